@@ -1,7 +1,7 @@
 """Exact set operations on solids by merging binary space partition trees.
 
 Meshes become inside/outside partition trees on a decimal lattice; unions, intersections and
-differences merge those trees in exact arithmetic; the result leaves as a closed mesh.
+differences merge those trees in exact arithmetic; the result is returned as a closed mesh.
 
 Examples
 --------
@@ -142,8 +142,8 @@ __all__ = [
     "xor",
 ]
 
-#: The module of each name; it is imported when the name is first asked for, so that the command
-#: line starts without numpy.
+#: The public names by the module that defines them. A module is imported when one of its names is
+#: first used, so that the command line starts without numpy.
 _MODULES = {
     "_core": "__version__",
     "bsp.sets.region": "Region",
@@ -180,7 +180,7 @@ _HOMES = {name: module for module, names in _MODULES.items() for name in names.s
 
 
 def __getattr__(name: str) -> "Any":
-    """Import a name when it is first used."""
+    """Return a public name of the package, importing its module on first use."""
     if name in _PARTS:
         return import_module(f".{name}", __name__)
     if name not in _HOMES:
@@ -192,5 +192,5 @@ def __getattr__(name: str) -> "Any":
 
 
 def __dir__() -> list[str]:
-    """Return the public names, imported or not."""
+    """Return the public names of the package, whether imported or not."""
     return sorted({*__all__, *_PARTS})

@@ -1,4 +1,4 @@
-"""Lets ``python -m bspcsg`` run the command line."""
+"""The entry point of ``python -m bspcsg``, which runs the command line."""
 
 from .cli.entry import main
 

@@ -1,4 +1,4 @@
-"""Names for the arrays and values that cross module borders."""
+"""Type aliases for arrays and values that modules share."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
@@ -8,42 +8,42 @@ import numpy.typing as npt
 
 from ._core import find_numpy
 
-# Imported here, so that an interrupt waits until the import ends, and not at the first array.
+# Import numpy here rather than at the first array, so that Ctrl-C waits for the end of the import.
 find_numpy()
 
-#: Coordinates or other measures: float64; the shape is given where the name is used.
+#: An array of float64; its shape is documented where the alias is used.
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
-#: Indices: int64; the docstring that uses the name says what they index.
+#: An array of int64 indices; the indexed elements are documented where the alias is used.
 IndexArray: TypeAlias = npt.NDArray[np.int64]
 
-#: In/on/out answers: int8, +1 inside, 0 on the boundary, -1 outside.
+#: An array of int8 positions of points: +1 inside, 0 on the boundary, -1 outside.
 SideArray: TypeAlias = npt.NDArray[np.int8]
 
-#: A number, Python's or numpy's.
+#: A number of Python or numpy.
 Scalar: TypeAlias = float | np.floating[Any] | np.integer[Any]
 
-#: One number per axis, in any form numpy understands.
+#: A sequence or array with one number per axis.
 Vector: TypeAlias = Sequence[Scalar] | npt.NDArray[np.floating] | npt.NDArray[np.integer]
 
-#: The rules that say which winding numbers count as inside.
+#: The names of the rules for which winding numbers count as inside.
 WindingRule: TypeAlias = Literal["positive", "nonzero", "even-odd"]
 
-#: A boolean of two or more operands, by name.
+#: The name of a set operation on two or more operands.
 SetOp: TypeAlias = Literal["union", "intersection", "difference", "xor"]
 
-#: One line of the program that the core evaluates: an operation, and the lines it uses.
+#: One line of a program that the core evaluates: an operator, and the line numbers of its operands.
 ProgramLine: TypeAlias = tuple[str, list[int]]
 
-#: Answers for each element: bool.
+#: An array of truth values.
 BoolArray: TypeAlias = npt.NDArray[np.bool_]
 
-#: Vertices (n, 3) and triangles (m, 3) of a mesh.
+#: The vertices, (n, 3), and the triangles, (m, 3), of a mesh.
 MeshArrays: TypeAlias = tuple[FloatArray, IndexArray]
 
 
 class _Shown:
-    """A stand-in for an alias while programs run, so that `help` prints its name.
+    """The replacement of a type alias at run time, so that `help` prints the alias's name.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class _Shown:
         self._name = name
 
     def __repr__(self) -> str:
-        """Return the name."""
+        """Return the name of the alias."""
         return self._name
 
     def __or__(self, other: object) -> "_Shown":

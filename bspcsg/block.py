@@ -1,4 +1,4 @@
-"""Blocks, where users find them; see `bspcsg.operations.block`."""
+"""The public module of blocks, which are documented in `bspcsg.operations.block`."""
 
 from .operations.block import Block, Unfilled
 

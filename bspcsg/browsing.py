@@ -1,4 +1,4 @@
-"""Shows pages in the browser of the user of this machine."""
+"""Opening of pages in a browser on this machine."""
 
 import os
 import sys
@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def has_screen() -> bool:
-    """Say whether a browser that starts here would be visible."""
+    """Return True if a browser started by this process would have a screen."""
     if os.environ.get("SSH_CONNECTION") or os.environ.get("SSH_TTY"):
         return False
     if sys.platform in ("win32", "darwin"):
@@ -16,7 +16,7 @@ def has_screen() -> bool:
 
 
 def opened(address: str) -> str:
-    """Open a page in a browser; return nothing, or a sentence that says why that failed."""
+    """Open a page in a browser; return an empty text, or the reason why that failed."""
     if not has_screen():
         return (
             "no browser was opened, because this machine has no display; open the page in a"
@@ -30,5 +30,5 @@ def opened(address: str) -> str:
 
 
 def temporary_page(stem: str) -> Path:
-    """Return a name for a page in a folder of its own, which is not removed."""
+    """Return the path of a new HTML page in a new temporary folder, which is not removed."""
     return Path(tempfile.mkdtemp(prefix="bspcsg-")) / f"{stem}.html"

@@ -1,4 +1,4 @@
-"""Reports of defects: a file with the call, its inputs, and the failure."""
+"""Reports of defects of this package: files with the failed call, its inputs and the error."""
 
 import itertools
 import os
@@ -11,19 +11,19 @@ from ._core import ObjectTree, PanicException, Tree, __version__
 if TYPE_CHECKING:
     import zipfile
 
-#: The largest number of reports that one process writes: a program that continues after a defect
-#: may meet the defect often.
+#: The largest number of reports that one process writes, since a program that continues after a
+#: defect may repeat it often.
 _MAX_REPORTS = 16
 
 _numbers = itertools.count(1)
 
 
 def report(message: str, call: str, inputs: Mapping[str, Any]) -> str | None:
-    """Write a report into the folder for temporary files; return its path, or None.
+    """Write a report of a defect into the folder for temporary files, and return its path.
 
     The file is a ZIP archive that only its owner may read: ``report.json`` with the message, the
     call, the versions and small inputs, arrays as ``.npy`` files, trees as ``.snapshot`` files.
-    Errors in here are never raised.
+    None means that writing failed, or that this process has written too many reports.
     """
     try:
         return _written(message, call, inputs) if next(_numbers) <= _MAX_REPORTS else None
@@ -32,7 +32,7 @@ def report(message: str, call: str, inputs: Mapping[str, Any]) -> str | None:
 
 
 def _written(message: str, call: str, inputs: Mapping[str, Any]) -> str:
-    # Imported late: every start needs this module, and hardly any writes a report.
+    # Import these modules only when a report is written, so that programs start faster.
     import json
     import platform
     import tempfile
@@ -63,7 +63,10 @@ def _written(message: str, call: str, inputs: Mapping[str, Any]) -> str:
 
 
 def _put(archive: "zipfile.ZipFile", name: str, value: Any) -> Any:
-    """Put a large input into the archive; return the entry for it in `report.json`."""
+    """Return the entry of an input in `report.json`: a small value, or the name of an archive file.
+
+    Arrays and trees are written into the archive.
+    """
     import io
 
     import numpy as np

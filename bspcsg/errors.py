@@ -1,7 +1,7 @@
 """The exceptions of this package, and the conversion of the core's errors to them.
 
-Every failure is a `BspcsgError` with a stable `code`, the places it concerns in `where`, and a
-sentence that describes the problem and the remedy.
+Every failure is a `BspcsgError` with a stable `code`, the numbers of the affected elements in
+`where`, and a sentence that describes the problem and the remedy.
 """
 
 import errno
@@ -22,106 +22,109 @@ if TYPE_CHECKING:
     from ._core import Finding as CoreFinding
 
 
-#: Characters that a terminal takes for commands; lines and columns may be broken.
+#: The control characters that a terminal may execute; tabs and line breaks are harmless.
 _CONTROLS = {*range(0x20), *range(0x7F, 0xA0)} - {ord("\t"), ord("\n")}
 
 _HARMLESS = dict.fromkeys(_CONTROLS, "\N{REPLACEMENT CHARACTER}")
 
 
 def harmless(text: str) -> str:
-    """Return a text in which names and words from files cannot control a terminal."""
+    """Return a text with control characters replaced, so that it cannot control a terminal."""
     return text.translate(_HARMLESS)
 
 
 class BspcsgError(Exception):
-    """Anything this package refuses or fails to do.
+    """The base class of all errors of this package.
 
     Parameters
     ----------
     message : str
-        A sentence for people; control characters in what it quotes are replaced.
+        A description for the user; control characters in it are replaced.
     code : str
         A stable name for programs, such as ``"not_closed"``.
     where : sequence of int
-        Indices of the faces or vertices concerned; the message says which of the two.
+        Numbers of the affected faces, vertices or other elements; the message says which.
     """
 
     def __init__(self, message: str, code: str = "internal", where: Sequence[int] = ()) -> None:
-        # All arguments go to the base class, so that pickling keeps them.
+        # Pass all arguments to the base class, which pickles them.
         super().__init__(harmless(message), code, tuple(where))
 
     @property
     def message(self) -> str:
-        """The sentence for people."""
+        """The description of the failure for the user."""
         return str(self.args[0])
 
     @property
     def code(self) -> str:
-        """The stable name of the failure."""
+        """The stable name of the failure, such as ``"not_closed"``."""
         return str(self.args[1])
 
     @property
     def where(self) -> tuple[int, ...]:
-        """Indices of the faces or vertices concerned."""
+        """The numbers of the affected faces, vertices or other elements; the message says which."""
         return tuple(self.args[2])
 
     def __str__(self) -> str:
-        """Return the sentence alone."""
+        """Return the message without code and numbers."""
         return self.message
 
 
 class InvalidMeshError(BspcsgError, ValueError):
-    """The input is not a closed mesh."""
+    """An error for an input that is not a closed mesh."""
 
 
 class InvalidParameterError(InvalidMeshError):
-    """A parameter is out of its range; until the next version an `InvalidMeshError`, too."""
+    """An error for a parameter with a wrong type or value.
+
+    Until the next version it is also an `InvalidMeshError`.
+    """
 
 
 class LimitError(BspcsgError, OverflowError):
-    """Coordinates or sizes exceed what the lattice can hold."""
+    """An error for coordinates or numbers of elements that exceed a limit of this package."""
 
 
 class FormatError(BspcsgError, ValueError):
-    """A file cannot be read in the format that it claims, or cannot be written."""
+    """An error for a file that cannot be read in the format of its suffix, or cannot be written."""
 
 
 class MissingFileError(FormatError, FileNotFoundError):
-    """A file is missing; as an `OSError` this has `errno` and `filename`, too."""
+    """An error for a missing file; it is also an `OSError` with `errno` and `filename`."""
 
     def __init__(self, message: str, code: str = "unreadable", where: Sequence[int] = ()) -> None:
         super().__init__(message, code, where)
-        # OSError gives a meaning of its own to three arguments.
+        # OSError interprets three arguments differently, so set them again.
         self.args = harmless(message), code, tuple(where)
         self.errno, self.strerror = errno.ENOENT, os.strerror(errno.ENOENT)
 
     @classmethod
     def of(cls, name: str, reason: str) -> "MissingFileError":
-        """Return the error for a file of this name."""
+        """Return the error for a file name, with the reason why the file cannot be read."""
         error = cls(f"{name}: cannot read this file: {reason}.")
         error.filename = name
         return error
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle the sentence, the code and the place, with the name of the file."""
+        """Return what pickle needs: message, code, numbers and the name of the file."""
         return type(self), self.args, {"filename": self.filename}
 
 
 class MissingPartError(BspcsgError, RuntimeError):
-    """An optional part of this package, or a program it asks, is not installed."""
+    """An error for an optional dependency or an external program that is not installed."""
 
 
 class UnboundedError(BspcsgError, ValueError):
-    """A solid that reaches to infinity was asked for a finite answer."""
+    """An error for an operation that needs a bounded solid, on a solid that reaches to infinity."""
 
 
 class InternalError(BspcsgError, RuntimeError):
-    """An invariant of this package failed; please report it with the file the message names."""
+    """An error for a failed invariant of this package; please report the file that it names."""
 
 
 _Value = TypeVar("_Value")
 
-#: The largest number of characters that a message quotes of another library's error.
+#: The largest number of characters of another library's error that a message quotes.
 _MAX_QUOTED_CHARACTERS = 200
 
 _CLASSES: dict[str, type[BspcsgError]] = {
@@ -156,7 +159,10 @@ _ADVICE = {
 
 
 def from_core(error: _CoreError) -> BaseException:
-    """Return the exception of this package for an error of the core."""
+    """Return the Python exception for an error of the Rust core.
+
+    It is `KeyboardInterrupt` for a cancelled operation, and `InternalError` for an unknown code.
+    """
     if error.code == "cancelled":
         return KeyboardInterrupt()
     kind = _CLASSES.get(error.code, InternalError)
@@ -173,7 +179,7 @@ def internal(
     call: str = "",
     inputs: Mapping[str, Any] = MappingProxyType({}),
 ) -> InternalError:
-    """Return the error for a defect, and write a report of it."""
+    """Return the error for a defect of this package, and write a report file about it."""
     path = defect.report(message, call, inputs)
     sent = "the input" if path is None else f"the file {path}, which holds the input"
     advice = f"This is a defect of bspcsg; please report it with {sent}."
@@ -188,15 +194,15 @@ def _sentence(message: str, advice: str) -> str:
 def format_errors(name: str, what: str) -> Iterator[None]:
     """Turn any error that a parser raises inside the block into a `FormatError`, with its cause.
 
-    Parsers of other libraries raise any kind of error on damaged files, even those for exhausted
-    memory or stack.
+    Parsers of other libraries may raise any type of error on damaged files, even `MemoryError` or
+    `RecursionError`.
 
     Parameters
     ----------
     name : str
         The name of the file.
     what : str
-        The format it is read as, such as ``"3MF"``.
+        The name of the format, such as ``"3MF"``.
     """
     try:
         yield
@@ -209,7 +215,7 @@ def format_errors(name: str, what: str) -> Iterator[None]:
 
 
 class _CoreErrors:
-    """The context of `core_errors`: without state, so that one serves all."""
+    """The context manager of `core_errors`, which has no state and so needs only one instance."""
 
     __slots__ = ()
 
@@ -227,12 +233,12 @@ _CORE_ERRORS = _CoreErrors()
 
 
 def core_errors() -> AbstractContextManager[None]:
-    """Turn the core's errors inside the block into exceptions of this package."""
+    """Return a context manager that turns errors of the core into exceptions of this package."""
     return _CORE_ERRORS
 
 
 def held(value: _Value | None, name: str) -> _Value:
-    """Return a value that is never None by an invariant of this package."""
+    """Return a value that cannot be None; raise `InternalError` if it is None."""
     if value is None:
         raise internal(f"the internal value “{name}” is missing")
     return value
@@ -252,7 +258,7 @@ def unreadable(name: object, error: Exception | None = None) -> FormatError:
     ----------
     name : str or path
     error : Exception, optional
-        The error that reading raised; by default the file is missing.
+        The error that reading raised; without it, the error is for a missing file.
     """
     if error is None or isinstance(error, FileNotFoundError):
         reason = getattr(error, "strerror", None) or os.strerror(errno.ENOENT)
@@ -262,12 +268,12 @@ def unreadable(name: object, error: Exception | None = None) -> FormatError:
 
 
 def invalid_parameter(message: str, where: Sequence[int] = ()) -> InvalidParameterError:
-    """Return the error for a parameter out of its range."""
+    """Return the error for a parameter with a wrong type or value."""
     return InvalidParameterError(message, "invalid_parameter", where)
 
 
 def missing_part(part: str, purpose: str, remedy: str) -> MissingPartError:
-    """Return the error for an optional part, with the command that installs it."""
+    """Return the error for a missing dependency, with its purpose and an installing command."""
     return MissingPartError(
         f"{part} is needed {purpose}, but is missing or incomplete. Try: {remedy}", "missing_part"
     )
@@ -275,19 +281,20 @@ def missing_part(part: str, purpose: str, remedy: str) -> MissingPartError:
 
 @dataclass(frozen=True)
 class Finding:
-    """Something noteworthy about an input or a result that is not an error.
+    """A noteworthy fact about an input or a result that does not stop the operation.
 
     Parameters
     ----------
     code : str
         A stable name, such as ``"zero_area"``.
     severity : {"note", "warning", "error"}
+        How serious the fact is.
     message : str
-        A sentence for people.
+        A description for the user.
     where : tuple of int
-        Indices of the first faces or vertices concerned.
+        Numbers of the first affected faces or vertices.
     count : int
-        The total number of these.
+        The total number of affected faces or vertices.
     """
 
     code: str
@@ -302,7 +309,7 @@ class Finding:
 
     @classmethod
     def from_core(cls, finding: "CoreFinding") -> "Finding":
-        """Return the finding of the core as a value."""
+        """Convert a finding of the Rust core, which is a dictionary."""
         return cls(
             finding["code"],
             finding["severity"],
@@ -313,7 +320,7 @@ class Finding:
 
 
 class LossWarning(UserWarning):
-    """A file or mesh made from a solid cannot store one of its attributes."""
+    """A warning that a file or mesh made from a solid cannot store an attribute of the solid."""
 
 
 #: The codes of findings about attributes that were not stored.
@@ -321,20 +328,26 @@ _LOSSES = frozenset({"attributes_left_out", "colors_left_out"})
 
 
 def warn_of_losses(findings: Iterable[Finding]) -> None:
-    """Warn the caller of this package about attributes that were lost."""
+    """Issue a `LossWarning` for each finding about attributes that were not stored."""
     for finding in findings:
         if finding.code in _LOSSES:
             warnings.warn(finding.message, LossWarning, stacklevel=_levels_to_caller())
 
 
 def deprecated(old: str, new: str) -> None:
-    """Warn the caller of this package about a name that the next version removes."""
+    """Issue a `DeprecationWarning` for a name that the next version removes.
+
+    `new` is the name to use instead.
+    """
     message = f"{old} will be removed in the next version; use {new}."
     warnings.warn(message, DeprecationWarning, stacklevel=_levels_to_caller())
 
 
 def _levels_to_caller() -> int:
-    """Return the stack level of the package's caller, as seen from the function that calls this."""
+    """Return the stack level of the code outside this package, for `warnings.warn`.
+
+    Levels are counted from the function that calls this one.
+    """
     frame = sys._getframe(1)
     level = 1
     while frame.f_back is not None and _is_own(str(frame.f_globals.get("__name__", ""))):

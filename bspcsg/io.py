@@ -1,8 +1,8 @@
-"""Mesh files: STL, OBJ, PLY, OFF, 3MF, GLB, and VTK through meshio, in and out.
+"""Reading and writing mesh files: STL, OBJ, PLY, OFF, 3MF, GLB, and VTK through meshio.
 
-Everything is read and written in double precision where the format has it. A file that is cut off
-or contradicts itself is refused with its name and the line or byte. A file is written completely or
-not at all, and only after it was read back and compared with the mesh.
+Coordinates are read and written in double precision where the format has it. A file that is cut off
+or contradicts itself is an error that names the file and the line or byte. A file is written
+completely or not at all, and only after it was read back and compared with the mesh.
 """
 
 import os
@@ -59,22 +59,23 @@ def load(path: str | os.PathLike[str], **options: Any) -> Solid:
     path : str or path
         Ending in one of `FORMATS`, or a script: ``.csg``, ``.json`` or ``.scad`` (see
         `bspcsg.csg.load`).
-        3MF and GLB are read in millimetres, the other formats in the unit in which they were
+        3MF and GLB are read in millimetres, all other formats in the unit in which they were
         written. A file that `save` wrote for the empty set is read as the empty set; any other file
         without faces is refused.
     **options
         For meshes as for `Solid`: ``pitch``, ``trusted``, ``winding``, and ``attributes=False`` to
-        leave colours and the like in the file; for scripts as for `bspcsg.csg.load`.
+        ignore colours and other attributes; for scripts as for `bspcsg.csg.load`.
 
     Raises
     ------
     FormatError
         If the file cannot be read in the format of its suffix.
     InvalidMeshError, LimitError
-        If the content is not a solid: the message names the file, `where` the faces.
+        If the content is not a solid: the message names the file, and the attribute `where` has the
+        numbers of the faces.
     """
     if Path(file_path(path)).suffix.lower() in SCRIPTS:
-        # Scripts import much that mesh files do not need.
+        # Import the modules for scripts only if they are needed.
         from . import csg
 
         return csg.load(path, **options)
@@ -83,21 +84,21 @@ def load(path: str | os.PathLike[str], **options: Any) -> Solid:
 
 @counted
 def loads(data: Any, suffix: str | None, **options: Any) -> Solid:
-    """Return the solid in the bytes of a mesh file, or in one that is open for reading bytes.
+    """Return the solid in the bytes of a mesh file, or in a file that is open for reading bytes.
 
     Parameters
     ----------
     data : bytes or file
-        Materials and pictures next to it are read only if it is a file on disk.
+        Companion files with materials and pictures are read only if `data` is a file on disk.
     suffix : str
-        One of `FORMATS`, with or without its dot.
+        The suffix of a format, one of `FORMATS`, with or without its dot.
     **options
         As for `Solid`.
 
     Raises
     ------
     FormatError
-        If no format is given (code "unknown_format"), or as for `load`.
+        If no format is given (code "unknown_format"), or the data cannot be read in that format.
     """
     named = f".{text_value('' if suffix is None else suffix, 'suffix').lower().removeprefix('.')}"
     if named not in FORMATS:
@@ -121,7 +122,7 @@ def loads(data: Any, suffix: str | None, **options: Any) -> Solid:
 
 
 def _is_on_disk(data: Any) -> bool:
-    """Say whether an object is a file on disk; members of archives have names, too."""
+    """Say whether an object is an open file on disk, not bytes or a member of an archive."""
     try:
         data.fileno()
     except (AttributeError, OSError):
@@ -137,27 +138,27 @@ def save(solid: Solid, path: str | os.PathLike[str], *, text: bool = False) -> t
     solid : Solid
     path : str or path
         Ending in one of `FORMATS`, or in ``.csg`` for the expression (see `bspcsg.csg.dump`).
-        Binary STL and GLB hold single precision; 3MF and GLB take the model as millimetres.
+        Binary STL and GLB have single precision; for 3MF and GLB, coordinates are millimetres.
     text : bool
         Write STL and PLY as text; OBJ and OFF always are.
 
     Returns
     -------
     tuple of Finding
-        Findings about everything that the format could not keep.
+        Findings about everything that the format could not store.
 
     Raises
     ------
     FormatError
-        If the format is unknown or cannot hold the coordinates, or the file cannot be written; code
-        ``"write_mismatch"`` if the file reads back as another mesh.
+        If the format is unknown or cannot store the coordinates, or the file cannot be written;
+        code ``"write_mismatch"`` if the file reads back as another mesh.
     UnboundedError
         If the solid reaches to infinity.
 
     Warns
     -----
     LossWarning
-        If the format cannot store an attribute, or not all of a colour.
+        If the format cannot store an attribute, or stores a colour only in part.
     """
     is_text = truth_value(text, "text")
     own = of_kind(Solid, solid, "solid")

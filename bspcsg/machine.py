@@ -1,4 +1,4 @@
-"""The machine and the memory of this process, as reported by the system."""
+"""Facts about this machine, and about the memory of this process, from the operating system."""
 
 import os
 import platform
@@ -9,12 +9,16 @@ from typing import TypedDict
 _STATUS = Path("/proc/self/status")
 _CLEAR = Path("/proc/self/clear_refs")
 
-#: Written to that file, it resets the peak to the current memory (proc_pid_clear_refs(5)).
+#: The text that, written to `_CLEAR`, resets the peak memory to the current memory
+#: (proc_pid_clear_refs(5)).
 _FORGET_PEAK = "5"
 
 
 class Machine(TypedDict):
-    """The machine on which a figure was measured."""
+    """The machine on which something was measured: processor, cores, memory and system.
+
+    The memory is in 10^9 bytes.
+    """
 
     processor: str
     cores: int
@@ -23,7 +27,7 @@ class Machine(TypedDict):
 
 
 def machine() -> Machine:
-    """Describe this machine."""
+    """Return the processor, number of cores, memory and operating system of this machine."""
     return {
         "processor": _processor(),
         "cores": os.cpu_count() or 1,
@@ -33,7 +37,7 @@ def machine() -> Machine:
 
 
 def system() -> str:
-    """Return the name and the release of the operating system, and the kind of processor."""
+    """Return the name and release of the operating system, and the processor architecture."""
     return f"{platform.system()} {platform.release()} {platform.machine()}"
 
 
@@ -47,7 +51,7 @@ def _processor() -> str:
 
 
 def _installed_gb() -> float:
-    """Return the memory of this machine in 10^9 bytes; 0 if unknown."""
+    """Return the installed memory of this machine in 10^9 bytes; 0 if unknown."""
     try:
         return round(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 1e9, 1)
     except (ValueError, OSError, AttributeError):
@@ -55,14 +59,14 @@ def _installed_gb() -> float:
 
 
 def held_mb() -> float:
-    """Return the current memory of this process in 10^6 bytes; its peak if that is unknown."""
+    """Return the current memory of this process in 10^6 bytes; if unknown, the peak memory."""
     return _status("VmRSS") or peak_mb()
 
 
 def peak_mb() -> float:
-    """Return the peak memory of this process since it began, or since `forget_peak`.
+    """Return the peak memory of this process in 10^6 bytes, since its start or `forget_peak`.
 
-    In 10^6 bytes; 0 if unknown.
+    It is 0 if unknown.
     """
     return _status("VmHWM") or _used_mb()
 
@@ -85,7 +89,7 @@ def _used_mb() -> float:
 
 
 def forget_peak() -> bool:
-    """Reset the peak; return False if the system cannot."""
+    """Reset the peak memory to the current memory; return False if the system cannot do that."""
     try:
         _CLEAR.write_text(_FORGET_PEAK, encoding="utf-8")
     except OSError:
@@ -94,7 +98,10 @@ def forget_peak() -> bool:
 
 
 def limit_memory(size: int | None) -> None:
-    """Limit the address space of this process, in bytes."""
+    """Limit the address space of this process to `size` bytes; None means no limit.
+
+    On Windows nothing is done.
+    """
     if size is None or sys.platform == "win32":
         return
     import resource

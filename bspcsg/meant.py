@@ -1,9 +1,9 @@
-"""Suggestions for mistyped or foreign names."""
+"""Suggestions for mistyped names, and for names from other libraries."""
 
 import sys
 from collections.abc import Collection, Iterable
 
-#: Names in other libraries and languages, by the names of the same things here.
+#: For names of this package, the names of the same function or property in other libraries.
 _ELSEWHERE = {
     "difference": "diff subtract subtraction minus cut sub remove",
     "union": "add fuse join merge unite combine plus append",
@@ -45,7 +45,7 @@ _ELSEWHERE = {
 
 
 def meant(word: str, known: Iterable[str]) -> str | None:
-    """Return the known name that a word means or resembles, or None."""
+    """Return the known name that is a synonym of a word or is spelled like it; None without any."""
     from difflib import get_close_matches
 
     names = [name for name in known if not name.startswith("_")]
@@ -55,13 +55,13 @@ def meant(word: str, known: Iterable[str]) -> str | None:
 
 
 def _elsewhere(word: str, names: Collection[str]) -> str | None:
-    """Return the name here for a word of other libraries, or None."""
+    """Return this package's name for a name of other libraries, if it is in `names`, else None."""
     found = (name for name, others in _ELSEWHERE.items() if word in others.split())
     return next((name for name in found if name in names), None)
 
 
 def question(word: object, known: Iterable[str]) -> str:
-    """Return a question to end an error with, or nothing if no known name is close."""
+    """Return " Is NAME meant?" for the end of an error message; empty if no known name is close."""
     name = meant(word, known) if isinstance(word, str) else None
     return f" Is {name} meant?" if name else ""
 
@@ -72,13 +72,14 @@ def no_attribute(owner: object, name: str, what: str) -> AttributeError:
     Parameters
     ----------
     owner : object
-        The object that lacks it.
+        The object without the attribute.
     name : str
+        The name of the attribute.
     what : str
-        The owner in the message: ``"'Solid' object"``.
+        The name of the owner in the message: ``"'Solid' object"``.
     """
     text = f"{what} has no attribute {name!r}"
-    # Programs probe private names often, `dir` among them, and nobody reads those errors.
+    # Programs often probe private names, and nobody reads those errors.
     if name.startswith("_"):
         return AttributeError(text)
     known = dir(owner)
@@ -89,6 +90,6 @@ def no_attribute(owner: object, name: str, what: str) -> AttributeError:
 
 
 def _function(name: str) -> str:
-    """Return the question whether the function of this name is meant, if there is one."""
+    """Return a question that suggests the package's function of a name; empty if there is none."""
     functions = getattr(sys.modules.get("bspcsg"), "__all__", ())
     return f" Is the function bspcsg.{name} meant?" if name in functions else ""

@@ -1,7 +1,8 @@
-"""Values that are made once and then shared by all threads.
+"""Values that are computed once and then shared by all threads.
 
-No lock is held while a value is made, because a process forked meanwhile would keep it locked
-forever. Threads may make a value at the same time; all get the one that was ready first.
+No lock is held during the computation, because a process forked meanwhile would have it locked
+forever. Several threads may compute a value at the same time; all get the value that was ready
+first.
 """
 
 from collections.abc import Callable
@@ -12,7 +13,7 @@ _Value = TypeVar("_Value")
 
 
 class Once(Generic[_Value]):
-    """A value that is made on first use."""
+    """A value that is computed on first use, and then shared by all threads."""
 
     __slots__ = ("_made",)
 
@@ -20,16 +21,16 @@ class Once(Generic[_Value]):
         self._made: list[_Value] = []
 
     def of(self, make: Callable[[], _Value]) -> _Value:
-        """Return the value; `make` is called if there is none yet."""
+        """Return the value; compute it by `make` if this is the first call."""
         if not self._made:
-            # Appends of threads are atomic, and the first entry stays first.
+            # Appending is atomic, so the first entry remains the first for all threads.
             self._made.append(make())
             del self._made[1:]
         return self._made[0]
 
 
 class Last(Generic[_Key, _Value]):
-    """The value that was made last, and its key."""
+    """A cache of one entry: the last value, and its key."""
 
     __slots__ = ("_kept",)
 
@@ -37,11 +38,14 @@ class Last(Generic[_Key, _Value]):
         self._kept: dict[_Key, _Value] = {}
 
     def get(self, key: _Key) -> _Value | None:
-        """Return the value for this key if it was made last, else None."""
+        """Return the stored value if it has this key, else None."""
         return self._kept.get(key)
 
     def keep(self, key: _Key, value: _Value) -> _Value:
-        """Return the value kept for this key: this one, unless another thread was faster."""
+        """Store a value as the only entry, and return the stored value of its key.
+
+        That is another value if another thread stored one for the same key first.
+        """
         kept = self._kept.setdefault(key, value)
         for other in list(self._kept):
             if other != key:

@@ -1,46 +1,37 @@
-"""Names methods after the class that users know, and not after the class that defines them."""
+"""Copies of inherited methods that have the name of the inheriting class in error messages."""
 
-from types import CellType, FunctionType
-from typing import Any, TypeVar
+from types import FunctionType
+from typing import TypeVar
 
 _Kind = TypeVar("_Kind", bound=type)
 
 
 def owning(kind: _Kind) -> _Kind:
-    """Give a class copies of the public methods that it inherits from this package.
+    """Decorate a class: give it copies of the public methods that it inherits from this package.
 
-    Python's messages about calls, such as one about a missing argument, then name the class.
+    Python's error messages about calls, such as for a missing argument, then name this class. A
+    wrapped method would still name its own class, so inherited methods must not be wrapped.
     """
     for base in kind.__mro__[1:]:
         if base.__module__.partition(".")[0] != __package__:
             continue
-        for name, held in vars(base).items():
-            own = None if name.startswith("_") or name in vars(kind) else _owned(held, kind)
-            if own is not None:
-                setattr(kind, name, own)
+        for name, method in vars(base).items():
+            is_public = isinstance(method, FunctionType) and not name.startswith("_")
+            if is_public and name not in vars(kind):
+                setattr(kind, name, _copied(method, kind))
     return kind
 
 
-def _owned(held: object, kind: type) -> Any:
-    """Return a copy of a method; None for anything else."""
-    if isinstance(held, FunctionType):
-        return _copied(held, kind)
-    if isinstance(held, (classmethod, staticmethod)) and isinstance(held.__func__, FunctionType):
-        return type(held)(_copied(held.__func__, kind))
-    return None
-
-
 def _copied(function: FunctionType, kind: type) -> FunctionType:
-    """Return a copy of a function for another class, with a copy of what it wraps."""
-    cells, state = function.__closure__, dict(function.__dict__)
-    wrapped = state.get("__wrapped__")
-    if isinstance(wrapped, FunctionType) and cells:
-        state["__wrapped__"] = inner = _copied(wrapped, kind)
-        cells = tuple(CellType(inner) if c.cell_contents is wrapped else c for c in cells)
+    """Return a copy of a method for another class."""
     copy = FunctionType(
-        function.__code__, function.__globals__, function.__name__, function.__defaults__, cells
+        function.__code__,
+        function.__globals__,
+        function.__name__,
+        function.__defaults__,
+        function.__closure__,
     )
-    copy.__dict__.update(state)
+    copy.__dict__.update(function.__dict__)
     copy.__kwdefaults__, copy.__doc__ = function.__kwdefaults__, function.__doc__
     copy.__annotations__ = function.__annotations__
     copy.__qualname__, copy.__module__ = f"{kind.__qualname__}.{function.__name__}", kind.__module__

@@ -1,7 +1,7 @@
-"""The checks of parameters: one for each kind of parameter, used everywhere.
+"""The checks of parameters, which the whole package uses.
 
-Each check returns the value in the type that the package uses, or raises an error that names the
-parameter. Truth values and texts do not count as numbers.
+Each check returns the value in the type that the package uses, or raises an
+`InvalidParameterError` that names the parameter. Truth values and texts are not numbers.
 """
 
 import math
@@ -18,39 +18,39 @@ from .meant import question
 if TYPE_CHECKING:
     from ._types import SetOp, WindingRule
 
-#: The largest exponent of the lattice step, either way: 10**22 is the last power of ten that is a
-#: double.
+#: The largest absolute value of a lattice step's exponent: 10**22 is the largest power of ten that
+#: doubles represent exactly.
 MAX_PITCH = 22
 
 #: The largest number of threads. Each has a stack of 64 MB, so this many take 64 GB of addresses.
 MAX_THREADS = 1024
 
-#: The largest number of sides of a circle. Such a polygon is within 1.2e-9 of the radius of the
-#: true circle, π²/2 / 2**32. In a body of radius one that is less than two steps of its lattice, so
-#: more sides would make it no rounder.
+#: The largest number of sides of a circle. Such a polygon differs from the circle by 1.2e-9 of the
+#: radius, π²/2 / 2**32. For radius 1 that is less than two lattice steps, so more sides would not
+#: make it rounder.
 MAX_SEGMENTS = 1 << 16
 
-#: Sides of a full circle, unless the caller says otherwise.
+#: The default number of sides of a full circle.
 SEGMENTS = 32
 
-#: The largest number of corners of one body. Each takes some 600 bytes while the solid is made, all
-#: of them 2.4 GB.
+#: The largest number of corners of one solid. Each takes about 600 bytes while the solid is made:
+#: at most 2.4 GB in all.
 MAX_CORNERS = 4_000_000
 
-#: The longest time that a caller may choose, in seconds: some twelve days. System calls accept at
-#: most 2**31 milliseconds.
+#: The largest time limit that a caller may choose, in seconds: about twelve days. System calls
+#: accept at most 2**31 milliseconds.
 MAX_SECONDS = 10**6
 
-#: The highest dimension: trees divide lines, planes and spaces.
+#: The largest dimension of a partition tree.
 _MAX_DIMENSION = 3
 
-#: Messages show all digits of numbers below this.
+#: Counts below this are written with all digits in messages.
 _MAX_COUNT_SHOWN = 10**15
 
 #: The largest number of characters of a value that a message quotes.
 _MAX_VALUE_CHARACTERS = 80
 
-#: Seeds are taken modulo this.
+#: Seeds are reduced modulo this.
 _SEED_MODULUS = 2**64
 
 _Kind = TypeVar("_Kind")
@@ -62,7 +62,7 @@ _WINDING_RULES: "tuple[WindingRule, ...]" = ("positive", "nonzero", "even-odd")
 
 
 def number(value: Any, name: str) -> float:
-    """Return a finite float."""
+    """Check that a parameter is a finite number, and return it as a float."""
     is_text = isinstance(value, (str, bytes, bytearray))
     if is_text or _is_truth_value(value) or is_complex(value):
         raise invalid_parameter(f"{name} must be a number, not {shown(value)}.")
@@ -76,12 +76,12 @@ def number(value: Any, name: str) -> float:
 
 
 def is_complex(value: Any) -> bool:
-    """Return whether a value is a complex number, of which `float` may take the real part."""
+    """Return True if a value is a complex number, also with imaginary part 0."""
     return isinstance(value, numbers.Complex) and not isinstance(value, numbers.Real)
 
 
 def positive(value: Any, name: str) -> float:
-    """Return a finite float above 0."""
+    """Check that a parameter is a finite number above 0, and return it as a float."""
     result = number(value, name)
     if result <= 0:
         raise invalid_parameter(f"{name} must be above 0, not {result:g}.")
@@ -89,7 +89,7 @@ def positive(value: Any, name: str) -> float:
 
 
 def not_negative(value: Any, name: str) -> float:
-    """Return a finite float, 0 or more."""
+    """Check that a parameter is a finite number of at least 0, and return it as a float."""
     result = number(value, name)
     if result < 0:
         raise invalid_parameter(f"{name} must be at least 0, not {result:g}.")
@@ -97,7 +97,10 @@ def not_negative(value: Any, name: str) -> float:
 
 
 def seconds(value: Any, name: str) -> float | None:
-    """Return a time above 0, up to `MAX_SECONDS`; None, also for infinity, means no limit."""
+    """Check a time limit, above 0 and up to `MAX_SECONDS`, and return it in seconds.
+
+    None and infinity, which mean no limit, are returned as None.
+    """
     if value is None or (isinstance(value, float) and value == math.inf):
         return None
     time = positive(value, name)
@@ -108,7 +111,7 @@ def seconds(value: Any, name: str) -> float | None:
 
 
 def at_least(least: int, value: Any, name: str) -> int:
-    """Return a whole number of at least `least`."""
+    """Check that a parameter is a whole number of at least `least`, and return it as an int."""
     result = _whole(value, name)
     if result is None or result < least:
         raise invalid_parameter(
@@ -118,7 +121,7 @@ def at_least(least: int, value: Any, name: str) -> int:
 
 
 def dimension_number(value: Any) -> int:
-    """Return 1, 2 or 3."""
+    """Check that a dimension is 1, 2 or 3, and return it as an int."""
     result = at_least(1, value, "dimension")
     if result > _MAX_DIMENSION:
         raise invalid_parameter(f"dimension must be 1, 2 or 3, not {shown(value)}.")
@@ -126,14 +129,14 @@ def dimension_number(value: Any) -> int:
 
 
 def sides_around(least: int, value: Any, name: str) -> int:
-    """Return a number of sides of a round body, at least `least`.
+    """Check a number of sides of a circle, and return it as an int.
 
     Raises
     ------
     InvalidParameterError
-        If it is not a whole number, or below `least`.
+        If the number is not whole, or below `least`.
     LimitError
-        If it is beyond `MAX_SEGMENTS`.
+        If the number exceeds `MAX_SEGMENTS`.
     """
     count = at_least(least, value, name)
     if count > MAX_SEGMENTS:
@@ -146,7 +149,10 @@ def sides_around(least: int, value: Any, name: str) -> int:
 
 
 def refuse_many_corners(count: float, what: str) -> None:
-    """Raise `LimitError` if a body would have more than `MAX_CORNERS` corners."""
+    """Raise `LimitError` if a solid would have more than `MAX_CORNERS` corners.
+
+    The message begins with `what`, a name of the solid.
+    """
     if count > MAX_CORNERS:
         amount = f"{count:.0f}" if count < _MAX_COUNT_SHOWN else "far too many"
         message = f"{what} would have {amount} corners, and at most {MAX_CORNERS} are allowed."
@@ -154,7 +160,7 @@ def refuse_many_corners(count: float, what: str) -> None:
 
 
 def truth_value(value: Any, name: str) -> bool:
-    """Return True or False; 1 and 0 are accepted."""
+    """Check that a parameter is a truth value, or 1 or 0, and return it as a bool."""
     if isinstance(value, bool) or (_is_truth_value(value) and value.shape == ()):
         return bool(value)
     if isinstance(value, int) and value in (0, 1):
@@ -163,20 +169,21 @@ def truth_value(value: Any, name: str) -> bool:
 
 
 def radius(r: Any, d: Any, owner: str, *, default: Any = None) -> Any:
-    """Return a radius, still unchecked, or half of a diameter.
+    """Return the given radius, or half of the given diameter; the radius is not checked.
 
     Parameters
     ----------
     r, d : float or None
-        One of them, or neither if there is a default.
+        The radius and the diameter, of which one is None; both may be None if there is a default.
     owner : str
-        The owner of the radius, for errors: ``"A sphere"``.
+        The owner of the radius in error messages, such as ``"A sphere"``.
     default : float, optional
+        The radius if neither is given.
 
     Raises
     ------
     InvalidParameterError
-        If both are given, or neither without a default.
+        If both are given, or if neither is given and there is no default.
     """
     if r is not None and d is not None:
         raise invalid_parameter("Both a radius and a diameter are given; give one of them.")
@@ -187,7 +194,7 @@ def radius(r: Any, d: Any, owner: str, *, default: Any = None) -> Any:
 
 
 def pair(value: Any, name: str) -> tuple[Any, Any]:
-    """Return two entries, still unchecked; a single value stands for both."""
+    """Return the two entries of a sequence, or a single value twice; entries are not checked."""
     try:
         entries = tuple(value)
     except TypeError:
@@ -200,7 +207,7 @@ def pair(value: Any, name: str) -> tuple[Any, Any]:
 
 
 def file_path(value: Any, name: str = "path") -> str:
-    """Return the name of a file."""
+    """Check that a parameter is a text or path object, and return it as a text."""
     try:
         path = os.fspath(value)
     except TypeError as error:
@@ -213,21 +220,21 @@ def file_path(value: Any, name: str = "path") -> str:
 
 
 def text_value(value: Any, name: str) -> str:
-    """Return a text."""
+    """Check that a parameter is a text, and return it as a plain `str`."""
     if isinstance(value, str):
         return str(value)
     raise invalid_parameter(f"{name} must be a str, not {shown(value)}.")
 
 
 def texts(value: Any, name: str) -> list[str]:
-    """Return a list of texts; a single text is refused."""
+    """Check that a parameter is an iterable of texts, not a single text, and return a list."""
     if isinstance(value, (str, bytes)) or not isinstance(value, Iterable):
         raise invalid_parameter(f"{name} must be a list of str, not {shown(value)}.")
     return [text_value(entry, f"each entry of {name}") for entry in value]
 
 
 def values_by_name(value: Any, name: str) -> dict[str, Any]:
-    """Return a dict with texts as keys; None stands for an empty one."""
+    """Check that a parameter is a mapping with texts as keys; return a dict, empty for None."""
     if value is None:
         return {}
     if not isinstance(value, Mapping):
@@ -236,7 +243,7 @@ def values_by_name(value: Any, name: str) -> dict[str, Any]:
 
 
 def word(known: Iterable[str], value: Any, name: str) -> str:
-    """Return one of the known words."""
+    """Check that a parameter is one of the known texts, and return it."""
     words = tuple(known)
     if isinstance(value, str) and value in words:
         return str(value)
@@ -245,7 +252,7 @@ def word(known: Iterable[str], value: Any, name: str) -> str:
 
 
 def function_of(value: Any, name: str) -> Callable[..., Any]:
-    """Return a callable."""
+    """Check that a parameter is callable, and return it."""
     if callable(value):
         called: Callable[..., Any] = value
         return called
@@ -253,14 +260,14 @@ def function_of(value: Any, name: str) -> Callable[..., Any]:
 
 
 def of_kind(kind: type[_Kind], value: Any, name: str) -> _Kind:
-    """Return an object of some class."""
+    """Check that a parameter is an instance of a class, and return it."""
     if isinstance(value, kind):
         return value
     raise invalid_parameter(f"{name} must be a {kind.__name__}, not {shown(value)}.")
 
 
 def no_options(options: Mapping[str, Any], solid: object) -> None:
-    """Refuse options for reading a mesh when the argument is a solid already."""
+    """Raise an error if options for reading a mesh are given together with a solid."""
     if options:
         given = ", ".join(options)
         raise invalid_parameter(
@@ -271,14 +278,14 @@ def no_options(options: Mapping[str, Any], solid: object) -> None:
 
 
 def pitch_exponent(value: Any) -> int:
-    """Return the exponent of a lattice step.
+    """Check the exponent of a lattice step, and return it as an int.
 
     Raises
     ------
     InvalidParameterError
-        If it is not a whole number.
+        If the exponent is not a whole number.
     LimitError
-        If it is out of range.
+        If the exponent is not from -22 to 22.
     """
     result = _whole(value, "pitch")
     if result is None:
@@ -294,12 +301,12 @@ def pitch_exponent(value: Any) -> int:
 
 
 def optional_pitch(value: Any) -> int | None:
-    """Return the exponent of a lattice step, or None if none was chosen."""
+    """Check the exponent of a lattice step, and return it as an int; return None for None."""
     return None if value is None else pitch_exponent(value)
 
 
 def thread_count(value: Any) -> int:
-    """Return a number of threads, 0 for as many as there are processors."""
+    """Check a number of threads, and return it as an int; 0 means one per processor."""
     result = _whole(value, "threads")
     if result is None or not 0 <= result <= MAX_THREADS:
         raise invalid_parameter(
@@ -309,23 +316,23 @@ def thread_count(value: Any) -> int:
 
 
 def set_threads(n: int) -> None:
-    """Set the default number of threads of operations.
+    """Set the number of threads that operations use by default.
 
     Parameters
     ----------
     n : int
-        From 0 to 1024; 0 for as many as there are processors.
+        The number of threads, from 0 to 1024; 0 means one per processor.
     """
     _set_threads(thread_count(n))
 
 
 def seed_number(value: Any) -> int:
-    """Return a seed: a whole number from 0 on, below 2**64."""
+    """Check that a seed is a whole number of at least 0, and return it modulo 2**64."""
     return at_least(0, value, "seed") % _SEED_MODULUS
 
 
 def winding_rule(value: Any) -> "WindingRule":
-    """Return the rule of this name."""
+    """Check that a parameter is the name of a winding rule, and return it."""
     for rule in _WINDING_RULES:
         if isinstance(value, str) and value == rule:
             return rule
@@ -334,7 +341,7 @@ def winding_rule(value: Any) -> "WindingRule":
 
 
 def _whole(value: Any, name: str) -> int | None:
-    """Return a whole number of any size, or None if it has a fraction."""
+    """Return a number as an int of any size, or None if it is not whole."""
     if not _is_truth_value(value):
         try:
             return operator.index(value)
@@ -345,7 +352,7 @@ def _whole(value: Any, name: str) -> int | None:
 
 
 def shown(value: Any) -> str:
-    """Return a value as messages quote it: its beginning and its end if it is long."""
+    """Return the `repr` of a value for error messages; only beginning and end if it is long."""
     try:
         text = repr(value)
     except ValueError:  # an integer of thousands of digits

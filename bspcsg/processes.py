@@ -1,7 +1,7 @@
-"""Child processes that end with this one, however it ends.
+"""Child processes that end when this process ends, also if it is killed.
 
-``processes.py PIPE PROGRAM ARGUMENT…`` becomes such a child and runs the program. As a script it
-imports nothing of this package.
+Run as a script, ``processes.py PIPE PROGRAM ARGUMENT…`` becomes such a child and runs the program.
+Then it imports nothing of this package.
 """
 
 import contextlib
@@ -16,13 +16,16 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import subprocess
 
-#: Linux: the signal that a process gets when the thread that started it ends (prctl(2)).
+#: The Linux option by which a process is killed when the thread that started it ends (prctl(2)).
 _PARENT_DEATH_SIGNAL = 1
 
 
 @contextlib.contextmanager
 def watched() -> Iterator[tuple[int, ...]]:
-    """Yield the file descriptors by which a child notices the end of this process, if any."""
+    """Yield the file descriptors to pass to a child, so that it notices the end of this process.
+
+    The tuple is empty on systems other than POSIX.
+    """
     if os.name != "posix":
         yield ()
         return
@@ -35,13 +38,13 @@ def watched() -> Iterator[tuple[int, ...]]:
 
 
 def end_with_parent(pipe: int | None = None) -> None:
-    """Have this process killed when its parent ends, or at once if that has ended already.
+    """Have this process killed when its parent ends, or at once if the parent has already ended.
 
     Parameters
     ----------
     pipe : int, optional
-        The read end of a pipe to which the parent alone can write; without it nothing is done. On
-        Linux the thread that started this process must wait for its end.
+        The read end of a pipe to which only the parent can write; without it nothing is done. On
+        Linux, the thread that started this process must wait until it ends.
     """
     if pipe is None:
         return
@@ -64,19 +67,21 @@ def _end_without_writer(pipe: int, patience: int | None) -> None:
 def run_program(
     command: Sequence[str], timeout: float | None, environment: Mapping[str, str] | None = None
 ) -> "subprocess.CompletedProcess[str]":
-    """Run a program to its end, and return its output; on Linux it ends with this process.
+    """Run a program to its end, and return its output and exit code.
+
+    On Linux the program is killed if this process ends first.
 
     Raises
     ------
     subprocess.TimeoutExpired
-        If it takes longer.
+        If the program takes longer than `timeout` seconds.
     """
     import subprocess
 
     with watched() as read_by_child:
         start: list[str] = []
         if sys.platform == "linux":
-            # Settings like the death signal survive when a process becomes another program.
+            # The setting to be killed with the parent persists when the program is exchanged.
             start = [sys.executable, "-I", "-S", __file__, *map(str, read_by_child)]
         return subprocess.run(
             [*start, *command],

@@ -1,4 +1,4 @@
-"""A boolean engine of trimesh, which keeps double precision.
+"""A boolean engine for trimesh in double precision.
 
 trimesh itself rounds vertices to single precision before it calls manifold3d. One line makes
 existing scripts exact::
@@ -22,25 +22,25 @@ from .solid.solid import Solid
 if TYPE_CHECKING:
     import trimesh
 
-#: The name by which trimesh calls this engine.
+#: The name of this engine in trimesh.
 NAME = "bspcsg"
 
-#: The operations that trimesh can ask for.
+#: The operations that trimesh supports.
 _KNOWN = ("difference", "intersection", "union")
 
 
 def register(default: bool = False) -> None:
-    """Make ``engine="bspcsg"`` known to trimesh; calling it again changes nothing.
+    """Register ``engine="bspcsg"`` in trimesh; further calls change nothing.
 
     Parameters
     ----------
     default : bool
-        True to use this engine where an operation names none.
+        True to use this engine for operations that name no engine.
 
     Raises
     ------
     MissingPartError
-        If this version of trimesh keeps its engines elsewhere; code ``"missing_part"``.
+        If this version of trimesh has no known table of engines; code ``"missing_part"``.
 
     Examples
     --------
@@ -74,32 +74,32 @@ def boolean(
     check_volume: bool = True,
     **options: Any,
 ) -> "trimesh.Trimesh":
-    """Combine meshes, with the signature of trimesh's engines.
+    """Combine meshes by a set operation, with the signature of trimesh's engines.
 
     Parameters
     ----------
     meshes : iterable of trimesh.Trimesh
-        Or anything else that `Solid.from_mesh` takes.
+        The operands, or any other objects that `Solid.from_mesh` takes.
     operation : {"difference", "intersection", "union"}
-        A difference subtracts all others from the first.
+        The operation; a difference subtracts all other meshes from the first.
     check_volume : bool
-        Refuse meshes whose ``is_volume`` is false: open, inconsistent or inside out. Without it,
-        meshes still have to be closed.
+        True to refuse meshes whose ``is_volume`` is false: open, inconsistently oriented or inside
+        out. With False, meshes must still be closed.
     **options
-        As for `Solid`: ``pitch``, ``trusted``, ``winding``; they apply to meshes, not to a `Solid`
-        among them.
+        The options of `Solid`: ``pitch``, ``trusted``, ``winding``; they do not apply to operands
+        of type `Solid`.
 
     Returns
     -------
     trimesh.Trimesh
-        With float64 vertices and the attributes of the operands, such as their colours (see
-        `Solid.to_trimesh`); empty if nothing is left.
+        The result, with float64 vertices and the attributes of the operands, such as their colours
+        (see `Solid.to_trimesh`); it may be empty.
 
     Raises
     ------
     InvalidMeshError
-        A ValueError, if a mesh is refused, the operation is another, or a difference is asked of
-        fewer than two meshes.
+        If a mesh is refused, the operation is unknown, or a difference has fewer than two meshes.
+        It is also a ValueError.
     """
     given: list[Any] = list(meshes)
     if operation not in _KNOWN:
@@ -117,7 +117,7 @@ def boolean(
 
 
 def _refuse_surfaces(meshes: list[Any]) -> None:
-    """Refuse meshes that are not volumes for trimesh; objects of other types pass."""
+    """Raise an error if `is_volume` of a mesh is false; other objects are accepted."""
     bad = [number for number, mesh in enumerate(meshes) if not getattr(mesh, "is_volume", True)]
     if bad:
         which = ", ".join(map(str, bad))

@@ -1,4 +1,4 @@
-"""Long calls that can be watched and stopped."""
+"""Display of the progress of long calls, and their interruption."""
 
 import sys
 import time
@@ -8,20 +8,20 @@ from contextlib import contextmanager
 from ._core import watch
 from .parameters import at_least, function_of, not_negative
 
-#: The number of characters of a full bar.
+#: The number of characters of a full progress bar.
 _WIDTH = 30
 
-#: A bar appears after this many seconds: short work needs none.
+#: The number of seconds after which a progress bar appears.
 _BAR_DELAY = 0.5
 
 
 class Steps:
-    """The steps done in a block, of a total that may be known.
+    """A counter of the steps done in a `progress` block.
 
     Parameters
     ----------
     of : int or None
-        The number of all steps; None if nobody knows.
+        The total number of steps; None if it is unknown.
     """
 
     def __init__(self, of: int | None = None) -> None:
@@ -30,13 +30,13 @@ class Steps:
         self._tell: Callable[[], object] = lambda: None
 
     def __call__(self, count: int = 1) -> None:
-        """Record that a step is done, or so many of them."""
+        """Record that one step, or `count` steps, are done."""
         self.done += at_least(0, count, "count")
         self._tell()
 
     @property
     def share(self) -> float | None:
-        """The share of the steps that are done, from 0 to 1; None if nobody knows."""
+        """The share of the steps that are done, from 0 to 1; None if the total is unknown."""
         return None if not self.of else min(self.done / self.of, 1.0)
 
     def told_to(self, tell: Callable[[], object]) -> None:
@@ -45,7 +45,7 @@ class Steps:
 
 
 class _Bar:
-    """One line of standard error, rewritten again and again."""
+    """A progress bar: a line of standard error that is rewritten repeatedly."""
 
     def __init__(self, steps: Steps) -> None:
         self._steps = steps
@@ -53,12 +53,12 @@ class _Bar:
         self._can_go_back = sys.stderr.isatty() or "ipykernel" in sys.modules
 
     def tell(self, seconds: float) -> None:
-        """Write the line if a terminal or notebook shows it and the delay has passed."""
+        """Write the progress bar in a terminal or notebook, after `_BAR_DELAY` seconds."""
         if self._can_go_back and (self._shown or seconds >= _BAR_DELAY):
             self._put(self._line(seconds))
 
     def end(self, seconds: float) -> None:
-        """Write the line a last time, and leave it there."""
+        """Write the final progress bar and a line break, if the bar was written before."""
         if self._shown:
             self._put(self._line(seconds) + "\n")
 
@@ -82,31 +82,32 @@ class _Bar:
 def progress(
     tell: Callable[[float], object] | None = None, *, every: float = 0.1, of: int | None = None
 ) -> Iterator[Steps]:
-    """Show a bar while operations run in a ``with`` block, or call a function, which may stop them.
+    """Show a progress bar while operations run in a ``with`` block, or call a function repeatedly.
 
     Parameters
     ----------
     tell : callable, optional
-        Called with the seconds since the block began, instead of the bar. An exception that it
-        raises stops the operation soon, and is raised from the call that was running; the solids
+        The function to call instead of writing the bar, with the seconds since the block began. An
+        exception that it raises stops the running operation soon, and is raised from it; the solids
         are unchanged.
     every : float
         The least number of seconds between two calls, which are made in the thread that opened the
         block.
     of : int, optional
-        The number of steps in the block, for a share of work done.
+        The number of steps in the block, to display the share that is done.
 
     Yields
     ------
     callable
-        Call it after each step; it has the steps that are `done`, and their `share`.
+        A function to call after each step, with the attributes `done`, the number of steps done,
+        and `share`.
 
     Notes
     -----
-    The bar is written to standard error, in terminals and notebooks. It shows the seconds, and the
-    share if `of` is given. Work of less than half a second shows no bar.
+    The bar is written to standard error, in terminals and notebooks. It contains the seconds, and
+    the share if `of` is given. No bar appears for work of less than half a second.
 
-    Another thread can stop an operation through something that `tell` checks, such as a
+    Another thread can stop an operation through an object that `tell` checks, such as a
     `threading.Event`. Operations that `tell` itself starts are not watched. Work outside the core,
     such as manifold3d's when a result is validated, is not interrupted.
 
@@ -143,7 +144,7 @@ def progress(
 
 
 class _PacedCall:
-    """Calls a function at intervals, and never while it runs already."""
+    """A function that calls another one at intervals, but never while that is still running."""
 
     def __init__(self, told: Callable[[float], object], pause: float, began: float) -> None:
         self._told, self._pause, self._began = told, pause, began

@@ -1,8 +1,8 @@
-"""Times rays beside trimesh's engines: the same rays, one thread, answers compared.
+"""Time rays beside trimesh's engines: the same rays, one thread, hits compared.
 
-Needs the packages embreex and rtree for the engines of those names; one that is missing is left
-out. Rates are of rays in processor time; the first pass of bspcsg includes what its boxes divide.
-Then trees that grow with use: what a ray costs at first and later, under three distributions.
+The engines embreex and rtree need the packages of these names; one that is missing is left out.
+Rates are rays per second of processor time; the first pass of bspcsg includes the division of its
+boxes. Then adaptive trees: the cost of a ray at first and later, under three distributions.
 """
 
 import argparse
@@ -20,14 +20,14 @@ from bspcsg import bsp
 from recording import keep
 from support.shapes import icosphere
 
-#: trimesh's engine without embree takes up to a tenth of a second a ray.
+#: The number of rays for trimesh's engine without embree, which takes up to 0.1 s a ray.
 RTREE_RAYS = 50
 
 Arrays = tuple[Any, Any]
 
 
 class Case(NamedTuple):
-    """Rays at a mesh."""
+    """Rays that are cast at a mesh."""
 
     name: str
     origins: Any
@@ -35,7 +35,7 @@ class Case(NamedTuple):
 
 
 def camera(width: int) -> Case:
-    """Return the rays of a camera at (0, 0, 3), square pixels, the unit sphere in view."""
+    """Return the rays of a camera at (0, 0, 3) with square pixels, which sees the unit sphere."""
     x, y = np.meshgrid(np.linspace(-1.1, 1.1, width), np.linspace(1.1, -1.1, width))
     directions = np.stack([x / 3, y / 3, -np.ones_like(x)], axis=-1).reshape(-1, 3)
     origins = np.broadcast_to([0.013, 0.021, 3.0], directions.shape)
@@ -43,7 +43,7 @@ def camera(width: int) -> Case:
 
 
 def scattered(count: int) -> Case:
-    """Return rays from all around through the middle third, in no order."""
+    """Return rays from random points around through random points of the middle third."""
     rng = np.random.default_rng(0)
     origins = rng.normal(size=(count, 3))
     origins *= 2 / np.linalg.norm(origins, axis=1, keepdims=True)
@@ -51,21 +51,21 @@ def scattered(count: int) -> Case:
 
 
 def vertices(mesh: Arrays, count: int) -> Case:
-    """Return rays through vertices, from outside."""
+    """Return rays from outside through random vertices of a mesh."""
     rng = np.random.default_rng(1)
     aims = mesh[0][rng.integers(0, len(mesh[0]), count)]
     return Case(f"at vertices, {count:,}", aims * 3, -aims)
 
 
 def seconds(call: Callable[[], Any]) -> tuple[float, Any]:
-    """Time one call in processor time, which other work on the machine does not lengthen."""
+    """Return the processor time of a call in seconds, and its result."""
     began = time.process_time()
     result = call()
     return time.process_time() - began, result
 
 
 def engines(mesh: Arrays) -> dict[str, Any]:
-    """Return those of trimesh's engines that are installed."""
+    """Return the installed ray engines of trimesh by name, made for a mesh."""
     surface = trimesh.Trimesh(*mesh, process=False)
     found: dict[str, Any] = {}
     engine: Any
@@ -83,7 +83,7 @@ def engines(mesh: Arrays) -> dict[str, Any]:
 
 
 def embree(mesh: Arrays) -> Any:
-    """Return embree's engine with its tree made, or None."""
+    """Return embree's engine with its tree already built, or None if it is not installed."""
     engine = engines(mesh).get("embreex")
     if engine is not None:
         engine.intersects_first(np.array([[0.0, 0, 3]]), np.array([[0.0, 0, -1]]))
@@ -91,7 +91,7 @@ def embree(mesh: Arrays) -> Any:
 
 
 def build(mesh: Arrays) -> dict[str, float]:
-    """Return how long all boxes take, those of a mesh that has moved, and embree's tree."""
+    """Return the milliseconds of building all boxes, of refitting them, and of embree's tree."""
     took, caster = seconds(lambda: bsp.RayCaster(mesh, deferred=False))
     moved = (mesh[0] * [1, 1, 1.01], mesh[1])
     times = {"bspcsg": took, "bspcsg, refitted": seconds(lambda: caster.refitted(moved))[0]}
@@ -100,7 +100,7 @@ def build(mesh: Arrays) -> dict[str, float]:
 
 
 def other_questions(mesh: Arrays, case: Case) -> list[dict[str, Any]]:
-    """Time which facet rays hit first, whether they hit at all, and all hits, beside embree."""
+    """Time first facets, occlusion and all hits of a case beside embree."""
     engine = embree(mesh)
     if engine is None:
         return []
@@ -138,7 +138,7 @@ def other_questions(mesh: Arrays, case: Case) -> list[dict[str, Any]]:
 
 
 def distributions(count: int) -> dict[str, Arrays]:
-    """Return rays from all around: at all of it, at one place, at one that moves."""
+    """Return rays at a unit sphere: spread over it, at one point of it, and at a moving point."""
     rng = np.random.default_rng(2)
     origins = rng.normal(size=(count, 3))
     origins *= 2 / np.linalg.norm(origins, axis=1, keepdims=True)
@@ -154,7 +154,7 @@ def distributions(count: int) -> dict[str, Arrays]:
 
 
 def growing(mesh: Arrays, count: int) -> list[dict[str, Any]]:
-    """Return what rays cost an adaptive tree: the first, the first tenth, the last tenth."""
+    """Return the cost of rays in an adaptive tree: the first ray, first tenth, last tenth."""
     engine = embree(mesh)
     rows = []
     for name, (origins, directions) in distributions(count).items():
@@ -177,7 +177,7 @@ def growing(mesh: Arrays, count: int) -> list[dict[str, Any]]:
 
 
 def compare(mesh: Arrays, case: Case) -> list[dict[str, Any]]:
-    """Time all engines on one case, and count where they name another triangle than bspcsg."""
+    """Time all engines on one case, and count the rays with another triangle than bspcsg's."""
     caster = bsp.RayCaster(mesh)
     rays = (case.origins, case.directions)
     first, hits = seconds(lambda: caster.first_hit(*rays, threads=1))

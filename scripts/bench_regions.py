@@ -1,7 +1,7 @@
-"""Times regions of the plane beside shapely, and cross sections beside trimesh; answers compared.
+"""Time regions of the plane beside shapely, and cross sections beside trimesh; results compared.
 
-Processor time of one thread where the other has one, the best of several runs in turns. A ratio is
-our time by theirs.
+Times are processor time, of one thread if the other library has one, the best of several runs in
+turns. A ratio is our time divided by theirs.
 """
 
 import argparse
@@ -19,10 +19,10 @@ from bspcsg import bsp
 from recording import keep
 from support.shapes import icosphere
 
-#: Runs of each side, in turns; the best of each counts.
+#: The number of runs of each library, in turns; the best of each counts.
 RUNS = 5
 
-#: Relative difference between answers that rounding in doubles explains.
+#: The relative difference between results that rounding explains.
 ALLOWED = 1e-9
 
 Ask = Callable[[], Any]
@@ -30,7 +30,7 @@ Measure = Callable[[Any], float]
 
 
 class Question(NamedTuple):
-    """The same question to both sides, and a number of each answer that the two should share."""
+    """The same computation for both libraries, and functions of the results that should agree."""
 
     name: str
     asked: tuple[Ask, Ask]
@@ -50,7 +50,7 @@ def total(numbers: Any) -> float:
 
 
 class Sizes(NamedTuple):
-    """How much is asked."""
+    """The numbers of circles, corners, points and triangles of a run."""
 
     circles: int
     corners: int
@@ -64,7 +64,7 @@ QUICK = Sizes(50, 1000, 1000, 100, 3)
 
 
 def circles(count: int) -> list[Any]:
-    """Return circles of 64 corners all over a square, as many as overlap each other in places."""
+    """Return circles of 64 corners at random in a square, some of which overlap."""
     rng = np.random.default_rng(3)
     angle = np.arange(64) * 2 * np.pi / 64
     turned = np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -74,14 +74,14 @@ def circles(count: int) -> list[Any]:
 
 
 def rough_disk(corners: int, seed: int, x: float) -> Any:
-    """Return the corners of a disk whose outline goes in and out by a hundredth."""
+    """Return the corners of a disk whose radius varies at random by a fiftieth."""
     angle = np.arange(corners) * 2 * np.pi / corners
     radius = 40 * (1 + 0.02 * np.random.default_rng(seed).uniform(-1, 1, corners))
     return np.stack([x + radius * np.cos(angle), radius * np.sin(angle)], axis=1)
 
 
 def unions(sizes: Sizes) -> list[Question]:
-    """Return unions of many circles, and of two outlines with many corners."""
+    """Return the questions of uniting circles, and of uniting two outlines with many corners."""
     loops = circles(sizes.circles)
     polygons = [shapely.Polygon(loop) for loop in loops]
     outlines = [rough_disk(sizes.corners, 1, 0.0), rough_disk(sizes.corners, 2, 30.0)]
@@ -109,7 +109,7 @@ def unions(sizes: Sizes) -> list[Question]:
 
 
 def points(sizes: Sizes) -> list[Question]:
-    """Return questions about points: inside or not, and how far from the boundary."""
+    """Return the questions of classifying points, and of their distances from a boundary."""
     loops, rng = circles(sizes.circles), np.random.default_rng(4)
     ours, theirs = bsp.Region(loops), shapely.union_all([shapely.Polygon(loop) for loop in loops])
     shapely.prepare(theirs)
@@ -135,7 +135,7 @@ def points(sizes: Sizes) -> list[Question]:
 
 
 def sections(sizes: Sizes) -> list[Question]:
-    """Return the areas of thirty cross sections of a ball."""
+    """Return the question of the areas of thirty cross sections of a ball."""
     mesh = icosphere(sizes.subdivisions)
     surface = trimesh.Trimesh(*mesh, process=False)
     solid = b.Solid.from_mesh(mesh)
@@ -154,14 +154,14 @@ def sections(sizes: Sizes) -> list[Question]:
 
 
 def timed(ask: Ask) -> tuple[float, Any]:
-    """Ask once, in processor time, which other work on the machine does not lengthen."""
+    """Return the processor time of one call in seconds, and its result."""
     began = time.process_time()
     answer = ask()
     return time.process_time() - began, answer
 
 
 def row(question: Question) -> dict[str, Any]:
-    """Return the best times of both sides, and whether their answers agree."""
+    """Return the best times of both libraries for a question, and whether their results agree."""
     runs = [[timed(ask) for ask in question.asked] for _ in range(RUNS)]
     ours, theirs = (min(took for took, _ in side) for side in zip(*runs, strict=True))
     mine, other = (

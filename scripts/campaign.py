@@ -1,10 +1,10 @@
-"""The campaign over real meshes whose counts are on record: ``bspcsg crosscheck`` with settings.
+"""Run the recorded campaign over real meshes: ``bspcsg crosscheck`` with settings.
 
     scripts/campaign [--meshes FOLDER] [--poses N] [--record] [options of bspcsg crosscheck]
 
 Pairs of files are drawn in random and in coincident poses and combined by four operations; the
-scripts in FOLDER's neighbour `csg` are compared with openscad. What is answered in the results file
-already is not asked again, so an interrupted campaign goes on where it stopped.
+scripts in FOLDER's neighbour `csg` are compared with openscad. Cases that are in the results file
+are not run again, so that an interrupted campaign continues.
 """
 
 import argparse
@@ -36,7 +36,7 @@ def main() -> int:
         "--results": relpath(options.results),
     }
     given = [str(word) for pair in settings.items() for word in pair]
-    # Reports name files as they were given, and are read elsewhere.
+    # Reports contain paths as given, so make them relative.
     folders = [relpath(folder) for folder in (options.meshes, scripts) if folder.is_dir()]
     code = run(["crosscheck", *folders, *given, "--resume", *more])
     if options.record:
@@ -45,7 +45,7 @@ def main() -> int:
 
 
 def record(results: Path, settings: dict[str, object]) -> None:
-    """Keep the counts of all cases in a results file."""
+    """Record the counts of all cases in a results file."""
     found = read_results([results])
     asked = {name.lstrip("-"): value for name, value in settings.items() if name != "--results"}
     counts = summary_of(list(found.cases.values()))

@@ -1,7 +1,7 @@
-"""Prints a word for each result of the corpus, or compares the words with the recorded ones.
+"""Print a hash for each result of the corpus, or compare the hashes with the recorded ones.
 
-Same input, same bytes: a change that is none of behaviour leaves every word as it is. With folders
-of meshes these are combined instead, and the words are printed, to be compared by `diff`.
+The same input must give the same bytes: a change that should not affect results leaves all hashes
+equal. With folders of meshes, these are combined instead, and the hashes are printed for `diff`.
 """
 
 import argparse

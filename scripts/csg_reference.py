@@ -2,10 +2,10 @@
 
     scripts/csg_reference [FOLDER]
 
-FOLDER (../shared/csg by default) holds `.csg` files and MANIFEST.tsv, which tells what OpenSCAD
-2021.01 makes of each. Prints a table: the relative difference of the volumes, the same after our
-coordinates are rounded as OpenSCAD writes them, and what rounding can explain at most. Ends with 1
-if a script fails or a volume differs by more than that.
+FOLDER (../shared/csg by default) has `.csg` files and MANIFEST.tsv with OpenSCAD 2021.01's results
+for them. Prints a table: the relative difference of the volumes, the same after our coordinates are
+rounded as OpenSCAD writes them, and the largest difference that rounding explains. Ends with 1 if a
+script fails or a volume differs by more than that.
 """
 
 import csv
@@ -20,15 +20,15 @@ import numpy as np
 import bspcsg as b
 from bspcsg import csg
 
-#: OpenSCAD's grid for plane figures, in units.
+#: The step of OpenSCAD's grid for plane figures, in model units.
 _PLANE_GRID = 2.0**-16
 
-#: Nodes whose results OpenSCAD rounds to that grid.
+#: The nodes whose results OpenSCAD rounds to its grid for plane figures.
 _PLANE = {"circle", "square", "polygon", "offset", "projection", "import", "linear_extrude",
           "rotate_extrude"}  # fmt: skip
 
 
-#: Scripts whose first node OpenSCAD leaves out, and why it is a solid nevertheless.
+#: The scripts whose first node OpenSCAD leaves out, with the reason why it is a solid.
 LEFT_OUT = {
     "openscad-bugs_issue802.csg": (
         "OpenSCAD leaves out the first polyhedron, in which four edges have one face each; they lie"
@@ -38,18 +38,18 @@ LEFT_OUT = {
 
 
 def manifest(folder: Path) -> Iterator[dict[str, str]]:
-    """Yield the scripts' rows."""
+    """Yield the rows of MANIFEST.tsv for the scripts in a folder."""
     with (folder / "MANIFEST.tsv").open(encoding="utf-8") as lines:
         rows = csv.DictReader(lines, delimiter="\t")
         yield from (row for row in rows if row["file"].endswith(".csg"))
 
 
 def tolerance(solid: b.Solid, uses_plane: bool) -> float:
-    """Return how far OpenSCAD's volume may be off through rounding.
+    """Return the largest error of OpenSCAD's volume by rounding, for our solid of the script.
 
-    It writes coordinates with six significant digits: each corner moves by up to half a unit of
-    the sixth digit of the largest coordinate, along each axis, and a boundary of area A that moves
-    by d changes the volume by A d at most. Plane figures are rounded to 2**-16 before that.
+    OpenSCAD writes coordinates with six significant digits: each corner moves by up to half a unit
+    of the sixth digit of the largest coordinate, along each axis, and a boundary of area A that
+    moves by d changes the volume by at most A d. Plane figures are rounded to 2**-16 before that.
     """
     largest = float(abs(solid.bounds).max()) if solid.bounds is not None else 0.0
     digits = 0.5 * 10.0 ** (len(str(int(largest))) - 6)
@@ -57,7 +57,7 @@ def tolerance(solid: b.Solid, uses_plane: bool) -> float:
 
 
 def compare(folder: Path, row: dict[str, str]) -> tuple[str, str]:
-    """Return a status ("same", "explained", "DIFFERS", "unsupported", "FAILS") and the details."""
+    """Return a status ("same", "explained", "DIFFERS", "unsupported", "FAILS") and details."""
     start = time.perf_counter()
     try:
         with warnings.catch_warnings():
@@ -81,7 +81,7 @@ def compare(folder: Path, row: dict[str, str]) -> tuple[str, str]:
 
 
 def first_node(path: Path) -> b.Solid:
-    """Return the solid of a script's first node."""
+    """Return the solid of the first node of a script."""
     tree = csg.read_tree(path)
     solid = csg.evaluate(csg.CsgTree(tree.nodes[:1], tree.name, tree.folder))
     assert isinstance(solid, b.Solid)
@@ -89,7 +89,7 @@ def first_node(path: Path) -> b.Solid:
 
 
 def six_digits(solid: b.Solid) -> float:
-    """Return the volume after rounding the coordinates as OpenSCAD writes them."""
+    """Return a solid's volume with its coordinates rounded as OpenSCAD writes them."""
     mesh = solid.normalized().to_mesh()
     single = mesh.vertices.astype(np.float32)
     rounded = np.array([[float(f"{c:.6g}") for c in point] for point in single.tolist()])
@@ -97,7 +97,7 @@ def six_digits(solid: b.Solid) -> float:
 
 
 def main() -> int:
-    """Print the table."""
+    """Print the table, and return the exit code."""
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else "../shared/csg")
     counts: dict[str, int] = {}
     print(f"{'file':46} {'status':12} {'rel.diff':>8} {'6 digits':>8} {'allowed':>8} volume, time")

@@ -1,10 +1,11 @@
-"""Random tests without end: how long each target ran, on what, and what it found.
+"""Run random tests for a given time; print each target's run time, executions and findings.
 
     scripts/fuzz [--minutes N] [--seed S] [TARGET ...]
 
-Targets of the core (`fuzz/`) and of the readers are led by coverage, and their corpora are kept in
-`.fuzz`; scenes, scenes of sizes and files come by rounds. Both go on where they stopped. A wrong
-scene is made small and put into `tests/corpus/cases`. `tests/fuzzing` has what is done.
+Targets of the core (`fuzz/`) and of the readers are guided by coverage, with their corpora in
+`.fuzz`; scenes, scenes of sizes and files are made in rounds. Both continue where they stopped. A
+scene with a wrong result is made small and put into `tests/corpus/cases`. The code is in
+`tests/fuzzing`.
 """
 
 import argparse
@@ -19,7 +20,7 @@ from fuzzing.guided import CORE, Core, Readers
 from fuzzing.outcome import Outcome
 from fuzzing.rounds import Rounds
 
-#: The folder of corpora, of what was found, and of the next rounds.
+#: The folder of corpora, of findings, and of the numbers of the next rounds.
 FOLDER = Path(__file__).resolve().parent.parent / ".fuzz"
 
 TARGETS = [*CORE, "readers", "scenes", "sizes", "files"]
@@ -50,7 +51,7 @@ def main() -> int:
 
 
 def run(name: str, options: argparse.Namespace) -> Outcome:
-    """Run one target from where it stopped last."""
+    """Run one target, continuing where it stopped last, and return the outcome."""
     folder: Path = options.folder / name
     folder.mkdir(parents=True, exist_ok=True)
     state = folder / "state.json"
@@ -59,7 +60,7 @@ def run(name: str, options: argparse.Namespace) -> Outcome:
     seconds = 60 * options.minutes
     if name in CORE or name == "readers":
         made = Core(name, options.folder) if name in CORE else Readers(options.folder)
-        # A seed names a sequence of runs, each with a seed of its own. Building is not counted.
+        # A seed stands for a sequence of runs, each with its own seed. Building takes no test time.
         outcome = made.run(options.seed * 1000 + times, time.monotonic() + seconds)
         after = times + 1
     else:

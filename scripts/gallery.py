@@ -1,9 +1,9 @@
-"""Runs the code on the page of the gallery, which writes the pictures below it.
+"""Run the code blocks of the gallery page, which write its pictures.
 
     scripts/gallery [FOLDER]
 
-Each block runs by itself, beside `examples/drawing.py`, in a folder that has `gallery/`; by default
-that is `examples`.
+Each block runs alone, with `examples/drawing.py` importable, and writes to `gallery/` in FOLDER, by
+default `examples`.
 """
 
 import os
@@ -17,27 +17,27 @@ os.environ.setdefault("MPLBACKEND", "agg")
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 
-#: The largest number of lines of a block, without imports and empty lines.
+#: The largest number of lines of a code block, without imports and empty lines.
 MAX_BLOCK_LINES = 10
 
 
 def blocks() -> list[str]:
-    """Return the code of the page, block by block."""
+    """Return the code blocks of the gallery page."""
     page = (EXAMPLES / "GALLERY.md").read_text(encoding="utf-8")
     return re.findall(r"```python\n(.*?)```", page, re.DOTALL)
 
 
 def pictures(block: str) -> list[str]:
-    """Return the names of the files that a block writes."""
+    """Return the names of the picture files that a code block writes."""
     return re.findall(r'"gallery/([\w.]+)"', block)
 
 
 def run(block: str, folder: Path) -> None:
-    """Run a block in a folder."""
+    """Run a code block in a folder."""
     folder.joinpath("gallery").mkdir(parents=True, exist_ok=True)
     sys.path.insert(0, str(EXAMPLES))
     try:
-        # It says how all plots look, whichever block comes first.
+        # `drawing` sets the style of all plots.
         import_module("drawing")
         with chdir(folder):
             exec(compile(block, "GALLERY.md", "exec"), {"__name__": "gallery"})

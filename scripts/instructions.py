@@ -1,7 +1,7 @@
-"""Counts the instructions of some fixed cases and compares them with the counts kept before.
+"""Count the instructions of fixed cases and compare them with the recorded counts.
 
-On a machine that is shared, times say little about a small change; counts repeat to within 0.1 %.
-Needs valgrind. With --record the new counts are kept, with the machine and the compiler.
+On a shared machine, times are too noisy to show a small change; counts repeat to within 0.1 %.
+Needs valgrind. With --record the new counts are recorded, with the machine and the compiler.
 """
 
 import argparse
@@ -19,7 +19,7 @@ from typing import Any
 
 from recording import RECORDS, REPOSITORY, keep
 
-#: The cases of core/examples/fixed_cases.rs, with what each is.
+#: The cases of core/examples/fixed_cases.rs, with a description of each.
 CASES = {
     "pair": "difference of two spheres of 81 920 triangles, arrays to arrays",
     "small": "the same of two spheres of 320 triangles, warm",
@@ -37,12 +37,12 @@ CASES = {
 
 _NAME = "instructions"
 
-#: By how much two counts of the same program may differ; more is a change.
+#: The largest relative difference between two counts of the same program.
 _NOISE = 0.001
 
 
 def built() -> Path:
-    """Build the program with the cases as users' builds are, and return where it is."""
+    """Build the program with the cases in release mode, and return its path."""
     command = ["cargo", "build", "--release", "--quiet", "-p", "bspcsg", "--example", "fixed_cases"]
     subprocess.run(command, cwd=REPOSITORY, check=True)
     target = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
@@ -50,7 +50,7 @@ def built() -> Path:
 
 
 def counted(program: Path, case: str) -> int:
-    """Return how many instructions the case takes, without the making of its meshes."""
+    """Return the number of instructions of a case, without making its meshes."""
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder) / "callgrind.out"
         options = ["--tool=callgrind", "--collect-atstart=no", "--toggle-collect=*measured*"]
@@ -64,7 +64,7 @@ def counted(program: Path, case: str) -> int:
 
 
 def all_counted(program: Path, cases: Iterable[str], before: dict[str, int]) -> dict[str, int]:
-    """Count cases side by side and say each as soon as it and those before it are known."""
+    """Count all cases in parallel, print each in order, and return the counts."""
     names = list(cases)
     counts = {}
     with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
@@ -75,20 +75,20 @@ def all_counted(program: Path, cases: Iterable[str], before: dict[str, int]) -> 
 
 
 def place() -> dict[str, str]:
-    """Return what counts depend on beside the core."""
+    """Return the compiler and the instruction set, on which counts depend."""
     done = subprocess.run(["rustc", "--version"], capture_output=True, text=True, check=True)
     return {"compiler": done.stdout.strip(), "instruction set": platform.machine()}
 
 
 def recorded() -> dict[str, int]:
-    """Return the counts that were kept on such a machine with this compiler."""
+    """Return the recorded counts, or none for another compiler or instruction set."""
     path = RECORDS / f"{_NAME}.json"
     kept: dict[str, Any] = json.loads(path.read_text("utf-8")) if path.exists() else {}
     return dict(kept["counts"]) if kept.get("place") == place() else {}
 
 
 def line(case: str, count: int, before: int | None) -> str:
-    """Say how a count compares with the recorded one."""
+    """Return a line of text that compares a count with the recorded one."""
     text = f"{case:11} {count:>16,}"
     if not before:
         return f"{text}   (none recorded)"

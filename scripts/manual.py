@@ -1,10 +1,9 @@
-"""Writes what can be generated of the manual: options of the verbs, the API, the shown examples.
+"""Write the generated parts of the manual: options of the verbs, the API, outputs of examples.
 
-Pages under docs/ are written by hand but for docs/api, which is in no commit, and what stands
-between two marks: options on the pages of verbs, scripts on that of parts side by side, what other
-engines answered on that of trust. With --examples, the commands on the pages are run, what they
-print is written below them and the pictures they make beside the page; look at the difference
-before you commit it.
+Pages under docs/ are written by hand except docs/api, which is not in the repository, and the text
+between two marks: options on the pages of verbs, scripts on the page "side by side", results of
+other engines on the page "trust". With --examples, the commands on the pages are run, their output
+is written below them and their pictures beside the page; check the difference before a commit.
 """
 
 import argparse
@@ -26,7 +25,7 @@ from support.documents import DOCS, ROOT, page_files, rewritten, with_generated
 
 
 def generated() -> dict[Path, str]:
-    """Return each page with a generated part, with its text."""
+    """Return the new text of each page that has a generated part, by path."""
     pages = {}
     for path in sorted((DOCS / "verbs").glob("*.md")):
         page = path.read_text("utf-8")
@@ -39,7 +38,7 @@ def generated() -> dict[Path, str]:
 
 
 def write_api() -> None:
-    """Write the pages of the API, and leave no others in their folder."""
+    """Write the pages of the API, and remove all other pages from their folder."""
     API.mkdir(exist_ok=True)
     for path in API.glob("*.md"):
         path.unlink()
@@ -72,7 +71,7 @@ def main() -> int:
 
 # Verbs
 
-#: The character that click prints for paragraphs that keep their lines.
+#: click's mark of paragraphs that keep their lines.
 _AS_IS = "\b"
 
 
@@ -95,7 +94,7 @@ def _cell(text: str) -> str:
 
 
 def _paragraphs(text: str) -> str:
-    """Return the help; what keeps its lines becomes preformatted."""
+    """Return a help text as Markdown; paragraphs whose lines click keeps become preformatted."""
     blocks = re.split(r"\n\s*\n", text.strip())
     return "\n\n".join(
         f"```text\n{block.strip().removeprefix(_AS_IS).strip()}\n```"
@@ -109,7 +108,7 @@ def _paragraphs(text: str) -> str:
 
 FOLDER = ROOT / "examples" / "side_by_side"
 
-#: The tools by their folders: how they are called, the ending of their scripts, and its language.
+#: For each tool's folder: its name, the suffix of its scripts, and their language.
 TOOLS = {
     "bspcsg": ("bspcsg", ".py", "py"),
     "manifold3d": ("manifold3d", ".py", "py"),
@@ -121,7 +120,7 @@ TOOLS = {
 
 @dataclass(frozen=True)
 class Part:
-    """A part: what it is, why a tool is shorter or missing, and nothing where none is."""
+    """A part of the page "side by side": its title, and a remark on missing or shorter scripts."""
 
     title: str
     remark: str
@@ -181,19 +180,19 @@ PARTS = {
 
 
 def script(part: str, tool: str) -> Path:
-    """Return where a script lies, or would."""
+    """Return the path of a tool's script for a part, whether it exists or not."""
     return FOLDER / tool / f"{part}{TOOLS[tool][1]}"
 
 
 def lines(path: Path) -> int:
-    """Return how many lines make the part."""
+    """Return the number of lines of a script that make the part."""
     left_out = ("import ", "from ", "print(", "//", "#")
     texts = [line.strip() for line in path.read_text(encoding="utf-8").splitlines()]
     return sum(bool(text) and not text.startswith(left_out) for text in texts)
 
 
 def with_parts(page: str) -> str:
-    """Return the page with its table and its parts as the scripts have them."""
+    """Return the page "side by side" with its table and the scripts as they are."""
     sections = "".join(_section(part) for part in PARTS)
     return with_generated("side_by_side", page, _table() + sections)
 
@@ -227,7 +226,7 @@ def _section(part: str) -> str:
 
 API = DOCS / "api"
 
-#: Packages with names of their own for users, and how their pages begin.
+#: The public packages, and the first lines of their pages.
 _PACKAGES = (
     "bspcsg",
     "bspcsg.bsp",
@@ -239,7 +238,7 @@ _PACKAGES = (
     "bspcsg.trimesh_engine",
 )
 
-#: On which page the names of a module or package stand.
+#: The page on which the names of a module or package are described.
 _PAGES = {
     "bspcsg.solid": "solid",
     "bspcsg.mesh": "solid",
@@ -269,7 +268,7 @@ _PAGES = {
     "bspcsg": "others",
 }
 
-#: Methods that are as everybody expects them.
+#: The methods that need no description.
 _UNTOLD = (
     "__init__",
     "__repr__",
@@ -281,10 +280,10 @@ _UNTOLD = (
     "__post_init__",
 )
 
-#: The words in docstrings of methods and parameters that are public for neighbours only.
+#: The words in docstrings of methods and parameters that only modules of the package use.
 _INSIDE = "for the modules of this package"
 
-#: The pages and their titles, beside their index.
+#: The pages of the API, without the index, with their titles.
 TITLES = {
     "solid": "Solids and meshes",
     "assemblies": "Assemblies",
@@ -306,7 +305,7 @@ TITLES = {
 
 
 def api_pages() -> dict[str, str]:
-    """Return each page's name and text."""
+    """Return the text of each page of the API, by name."""
     loader = griffe.GriffeLoader(
         search_paths=[ROOT], docstring_parser="numpy", allow_inspection=False
     )
@@ -326,12 +325,12 @@ def api_pages() -> dict[str, str]:
 
 
 def _module(found: Any) -> Any:
-    """Return a module itself, if what was found is another name for it."""
+    """Return the module itself if a found object is an alias of it, else the object."""
     return found.final_target if found.is_alias else found
 
 
 def _public(module: Any) -> list[str]:
-    """Return what a module exports; without ``__all__``, the functions and classes it defines."""
+    """Return a module's exported names; without ``__all__``, its own functions and classes."""
     if module.exports is not None:
         return sorted(map(str, module.exports), key=str.lower)
     own = [name for name, member in module.members.items() if not member.is_alias]
@@ -340,7 +339,7 @@ def _public(module: Any) -> list[str]:
 
 
 def _target(member: Any) -> Any | None:
-    """Return what a public name stands for; modules, and what only the core has, have no page."""
+    """Return the object that a public name refers to; None for modules and objects of the core."""
     try:
         found = member.final_target if member.is_alias else member
     except griffe.AliasResolutionError:
@@ -375,7 +374,7 @@ def _page_text(title: str, held: list[tuple[str, Any]]) -> str:
 
 
 def _entity(entity: Any, path: str, member: bool = False) -> Iterator[str]:
-    """Yield what describes an object to Sphinx, with its members inside of it."""
+    """Yield the description of an object for Sphinx, with its members nested."""
     fence = ":::" if member else "::::"
     module, _, name = path.rpartition(".")
     if not member:
@@ -383,7 +382,7 @@ def _entity(entity: Any, path: str, member: bool = False) -> Iterator[str]:
     head = f"{fence}{{py:{_role(entity, member)}}} {_signature(entity, name)}"
     yield "\n".join([head, *_options(entity)])
     if entity.docstring is not None:
-        # Apart from its owner, so that types stay the words they are.
+        # A docstring without its object, so that griffe does not parse types.
         text = griffe.Docstring(entity.docstring.value)
         yield from _sections(text.parse("numpy", warnings=False))
     if entity.is_class:
@@ -393,7 +392,7 @@ def _entity(entity: Any, path: str, member: bool = False) -> Iterator[str]:
 
 
 def _role(entity: Any, member: bool) -> str:
-    """Return what Sphinx calls such an object."""
+    """Return Sphinx's name of the kind of an object."""
     if entity.is_class:
         return "exception" if entity.name.endswith(("Error", "Warning")) else "class"
     if entity.is_function:
@@ -404,7 +403,7 @@ def _role(entity: Any, member: bool) -> str:
 
 
 def _options(entity: Any) -> Iterator[str]:
-    """Yield what is said of an object beside its signature."""
+    """Yield the options of an object's directive besides its signature."""
     yield from (f":{label}:" for label in ("classmethod", "staticmethod") if label in entity.labels)
     if entity.is_attribute:
         if entity.annotation is not None:
@@ -414,7 +413,7 @@ def _options(entity: Any) -> Iterator[str]:
 
 
 def _members(cls: Any) -> list[Any]:
-    """Return what a class offers and documents: methods and properties, operators at the end."""
+    """Return the documented public members of a class, operators last."""
     found = []
     for name, member in cls.all_members.items():
         target = _target(member)
@@ -437,7 +436,7 @@ def _signature(entity: Any, name: str) -> str:
 
 
 def _parameters(entity: Any) -> Iterator[str]:
-    """Yield the parameters as they are declared, without the first of methods."""
+    """Yield the parameters of a function as they are declared, without `self` and `cls`."""
     starred = False
     untold = {"self", "cls", *_parameters_inside(entity)}
     for parameter in entity.parameters:
@@ -455,7 +454,7 @@ def _parameters(entity: Any) -> Iterator[str]:
 
 
 def _parameters_inside(entity: Any) -> Iterator[str]:
-    """Yield the parameters that are there for neighbours only."""
+    """Yield the names of parameters that are only for modules of the package."""
     if entity.docstring is not None:
         for section in griffe.Docstring(entity.docstring.value).parse("numpy", warnings=False):
             if section.kind.value == "parameters":

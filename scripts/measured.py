@@ -1,11 +1,11 @@
-"""Writes the tables of docs/measured.md from the table of the last release, docs/records/*.json.
+"""Write the tables of docs/measured.md from the table of the last release, docs/records/*.json.
 
     scripts/measured [--check]
     scripts/measured --release VERSION [--records FOLDER]
 
-With --release the headline figures of what measuring scripts kept in out/records become
-docs/records/VERSION.json first; `scripts/bench -o out/records/bench.json` is one of them. Of a
-measure that is missing there the figures of the release before stay, with their machine.
+With --release the headline figures of the records that measuring scripts wrote to out/records
+become docs/records/VERSION.json first; `scripts/bench -o out/records/bench.json` is such a script.
+If a record is missing, the figures of the previous release stay, with their machine.
 """
 
 import argparse
@@ -26,7 +26,7 @@ PAGE = REPOSITORY / "docs" / "measured.md"
 Record = dict[str, Any]
 Rows = list[list[str]]
 
-#: Cases of `bspcsg bench` that are headlines.
+#: The cases of `bspcsg bench` that are shown.
 _CASES = (
     *["spheres-82k", "spheres-1310k", "spheres-1310k-one-core", "built-1310k", "real-pairs"],
     *["small-pairs", "overlapping-pairs", "drilled-steps", "drilled-expression", "boxes-steps"],
@@ -34,10 +34,10 @@ _CASES = (
     *["needles", "dome", "files-checked", "files-unchecked"],
 )
 
-#: What campaigns say of cases.
+#: The verdicts of campaigns that are shown.
 _VERDICTS = ("agree", "same set, other topology", "within rounding", "oracle failed", "DISAGREE")
 
-#: What stands above each table.
+#: The comment above each table.
 _MARK = "<!-- {} by scripts/measured -->\n"
 
 
@@ -59,7 +59,7 @@ def _named(record: Record, engine: str) -> str:
 
 
 def _ratio_text(items: list[Record]) -> str:
-    """Say how many times longer the main rival takes, in the geometric mean and at least."""
+    """Return how many times as long the main rival takes, as text: geometric mean and minimum."""
     ratios = [found.value for item in items if (found := ratio(item, MAIN_RIVAL))]
     if not ratios:
         return "—"
@@ -101,7 +101,7 @@ def _instructions(record: Record) -> Rows:
     return [[*counts], [f"{count / 1e6:.3g}" for count in counts.values()]]
 
 
-#: The tables of a release, with the records that they are made of.
+#: The tables of a release: for each the name of its record, and the function that makes its rows.
 _TABLES: dict[str, tuple[str, Callable[[Record], Rows]]] = {
     "times": ("bench", _bench),
     "dense places": ("bench", _dense),
@@ -112,7 +112,7 @@ _TABLES: dict[str, tuple[str, Callable[[Record], Rows]]] = {
 
 
 def condensed(records: Path, before: Record) -> Record:
-    """Return the table of a release: what is in a folder, and the rest as it was before."""
+    """Return the table of a release from records in a folder; missing ones are as in `before`."""
     found = dict(before)
     for name, (source, rows) in _TABLES.items():
         path = records / f"{source}.json"
@@ -134,13 +134,13 @@ def _place(record: Record) -> str:
 
 
 def written(table: Record) -> str:
-    """Return the table of a release as text, one row a line."""
+    """Return the table of a release as JSON text, with one row a line."""
     text = json.dumps(table, indent=1, ensure_ascii=False)
     return re.sub(r"\n {4,}|\n {3}(?=[\]}])", " ", text) + "\n"
 
 
 def page(text: str, table: Record) -> str:
-    """Return a page with its tables written anew."""
+    """Return the text of a page with its tables replaced."""
     for name in _TABLES:
         before, mark, rest = text.partition(_MARK.format(name))
         if not mark:

@@ -1,10 +1,11 @@
-"""Breaks the core in one line at a time, and sees that the tests named beside it fail.
+"""Change one line of the core at a time, and check that the tests named beside it fail.
 
     scripts/mutants [NUMBER ...]
 
-The core is copied to `.fuzz/mutants` and built there. `--record` keeps what earlier runs said of
-other mutants. Ends with status 1 if a mutant survives, or
-if a line to change is not in the source any more.
+if a line to change is not in the source any more. +The core is copied to `.fuzz/mutants` and built
+there. `--record` updates the recorded verdicts. Ends with status 1 if the tests of a mutant pass,
+or if a line to change is no longer in the source. if a line to change is not in the source any
+more.
 """
 
 import argparse
@@ -19,16 +20,16 @@ from recording import REPOSITORY, keep_rows
 
 FOLDER = REPOSITORY / ".fuzz" / "mutants"
 
-#: The exit code of cargo if a test has failed, rather than the build.
+#: The exit code of cargo if a test fails, which differs from that of a failed build.
 FAILED = 101
 
 
-#: A test that takes longer has failed, too.
+#: The time limit of a mutant's tests, in seconds; longer tests count as failed.
 SECONDS = 600
 
 
 class Mutant(NamedTuple):
-    """A change of one place, and the module of tests (and test) that must notice it."""
+    """A change of one line of the core, and the tests that must fail with it."""
 
     what: str
     file: str
@@ -147,7 +148,7 @@ def main() -> int:
 
 
 def verdict_on(mutant: Mutant, core: Path) -> str:
-    """Return whether a mutant's tests notice it, and pass without it."""
+    """Return "noticed" if a mutant's tests fail, "SURVIVED" if they pass, or another verdict."""
     copy_core(core)
     path = core / "src" / mutant.file
     text = path.read_text("utf-8")
@@ -159,7 +160,7 @@ def verdict_on(mutant: Mutant, core: Path) -> str:
 
 
 def copy_core(core: Path) -> None:
-    """Copy the workspace; what has not changed keeps its time, so that it is not built again."""
+    """Copy the workspace; unchanged files keep their time, so that cargo does not rebuild them."""
     members = [REPOSITORY / name for name in ("core", "fuzz", "lecture")]
     sources = [path for member in members for path in member.rglob("*") if _is_source(path)]
     for source in [REPOSITORY / "Cargo.toml", REPOSITORY / "Cargo.lock", *sources]:
@@ -177,7 +178,7 @@ def _copied(source: Path, target: Path) -> None:
 
 
 def tested(mutant: Mutant, core: Path) -> int:
-    """Return cargo's status; a build that fails has another one than a test."""
+    """Return cargo's exit code of a mutant's tests; -1 if the build fails."""
     file, *names = mutant.tests
     cargo = ["cargo", "test", "--quiet", "--manifest-path", str(core / "Cargo.toml"), "--lib"]
     built = subprocess.run([*cargo, "--no-run"], capture_output=True, check=False)

@@ -1,11 +1,11 @@
-"""Evaluate ten small scripts of each module of OpenSCAD's language, as OpenSCAD 2021.01 does.
+"""Record OpenSCAD 2021.01's results for ten small scripts of each module of its language.
 
     scripts/openscad_nodes
 
-Measures anew what is in tests/corpus/csg/openscad_nodes.tsv: of each script what OpenSCAD writes as
-`.csg`, and volume, area and Euler number of what it makes, or area, perimeter and outlines in the
-plane. tests/pipeline/test_csg_reference.py compares them. The program `openscad` must be on the
-PATH. The last five scripts of each module are special: empty, flat, touching, inside out.
+Writes tests/corpus/csg/openscad_nodes.tsv: for each script OpenSCAD's `.csg`, and the volume, area
+and Euler number of its result, or in the plane area, perimeter and number of outlines.
+tests/pipeline/test_csg_reference.py compares them. The program `openscad` must be on the PATH. The
+last five scripts of each module are degenerate: empty, flat, touching, inside out.
 """
 
 import csv
@@ -25,17 +25,17 @@ from recording import REPOSITORY
 
 RECORD = REPOSITORY / "tests" / "corpus" / "csg" / "openscad_nodes.tsv"
 
-#: The folder of the files that scripts import.
+#: The folder of the files that the scripts import.
 FOLDER = Path(__file__).parents[1] / "tests" / "corpus" / "csg"
 
 _BLOCK = "cube([3, 2, 1]);"
 _BAR = "translate([1, 0.5, -1]) cube([1, 1, 4]);"
 _DISC = "circle(2, $fn = 12);"
 _TETRA = "[[0,0,0],[2,0,0],[0,2,0],[0,0,2]]"
-#: Clockwise as seen from outside, as OpenSCAD has it.
+#: The faces of a tetrahedron, clockwise seen from outside, as in OpenSCAD.
 _OUT = "[[0,1,2],[0,3,1],[1,3,2],[0,2,3]]"
 
-#: Bodies that whatever moves or joins is tried on; the last five are special.
+#: The bodies for modules that move or combine bodies; the last five are degenerate.
 _BODIES = (
     *["cube(2);", "sphere(2, $fn = 8);", "cylinder(h = 3, r1 = 2, r2 = 1, $fn = 7);"],
     *[f"difference() {{ {_BLOCK} {_BAR} }}", "square([3, 2]);"],
@@ -43,7 +43,7 @@ _BODIES = (
     *["difference() { cube(2); cube(2); }", "cube(1); translate([1, 1, 0]) cube(1);"],
 )
 
-#: Pairs of them, of which the last five touch, are equal, nested, empty, or of other dimensions.
+#: Pairs of bodies; the last five touch, are equal, nested, empty, or differ in dimension.
 _PAIRS = (
     *[f"{_BLOCK} {_BAR}", "cube(2); translate([1, 1, 1]) cube(2);"],
     *["sphere(2, $fn = 8); cube(2);", "square(3); translate([1, 1]) circle(1.5, $fn = 9);"],
@@ -59,7 +59,7 @@ def _on_bodies(head: str, bodies: tuple[str, ...] = _BODIES) -> tuple[str, ...]:
     return tuple(f"{head} {{ {body} }}" for body in bodies)
 
 
-#: Ten scripts of each module.
+#: Ten scripts for each module.
 SCRIPTS: dict[str, tuple[str, ...]] = {
     "cube": (
         *["cube(2);", "cube([1, 2, 3]);", "cube([1, 2, 3], center = true);", "cube(0.1);"],
@@ -221,19 +221,19 @@ SCRIPTS: dict[str, tuple[str, ...]] = {
 
 @dataclass(frozen=True)
 class Sample:
-    """A script, and what OpenSCAD makes of it.
+    """A script, and OpenSCAD's result for it.
 
     Parameters
     ----------
     node, script, csg : str
-        `csg` is its evaluated tree in one line.
+        The module, the script, and its evaluated tree in one line.
     warnings : int
     dimension : int
-        3 or 2, 0 for nothing.
+        The dimension of the result: 3 or 2, or 0 for no result.
     measure, border : float
-        Volume and area, or area and perimeter.
+        The volume and the area in 3D, the area and the perimeter in 2D.
     shape : int
-        The Euler number, or the number of outlines.
+        The Euler number in 3D, the number of outlines in 2D.
     largest : float
         The largest coordinate.
     """
@@ -250,12 +250,12 @@ class Sample:
 
     @property
     def tolerance(self) -> float:
-        """Return how far the measure may be off, as in openscad_suite."""
+        """Return the largest error of the measure by OpenSCAD's rounding (see openscad_suite)."""
         return tolerance(self.dimension, self.border, self.largest)
 
 
 def sampled(node: str, script: str, folder: Path) -> Sample:
-    """Return what OpenSCAD makes of a script that lies in the corpus."""
+    """Return the sample of OpenSCAD's result for a script, run in the folder of the corpus."""
     path = FOLDER / "sample.scad"
     path.write_text(script, encoding="utf-8")
     targets = {suffix: folder / f"x.{suffix}" for suffix in ("csg", "stl", "svg")}
@@ -283,7 +283,7 @@ def sampled(node: str, script: str, folder: Path) -> Sample:
 
 
 def recorded() -> list[Sample]:
-    """Return what is recorded of OpenSCAD 2021.01."""
+    """Return the recorded samples of OpenSCAD 2021.01."""
     with RECORD.open(encoding="utf-8") as lines:
         rows = list(csv.DictReader(lines, delimiter="\t"))
     kinds = {field.name: field.type for field in fields(Sample)}
@@ -291,7 +291,7 @@ def recorded() -> list[Sample]:
 
 
 def main() -> int:
-    """Measure all scripts, and write down what OpenSCAD makes of them."""
+    """Run OpenSCAD on all scripts, and write its results to the record."""
     names = [field.name for field in fields(Sample)]
     with RECORD.open("w", encoding="utf-8", newline="") as lines, TemporaryDirectory() as fonts:
         with_fonts(Path(lettering.__file__).parent / "faces", Path(fonts))
@@ -305,14 +305,14 @@ def main() -> int:
 
 
 def ours(sample: Sample, body: b.Solid | Region | None) -> Sample:
-    """Return what is made of the same script here, with the figures of a sample."""
+    """Return our result for a sample's script, as a sample."""
     told = sample.node, sample.script, sample.csg, sample.warnings
     if body is None or body.is_empty:
         return Sample(*told)
     if isinstance(body, Region):
         return Sample(*told, 2, body.area, body.perimeter, len(body.outlines), sample.largest)
     mesh = body.normalized().to_mesh()
-    # What touches itself has corners of its own for each sheet here, and common ones there.
+    # Where a surface touches itself, our meshes have separate vertices, OpenSCAD's common ones.
     places, names = np.unique(mesh.vertices, axis=0, return_inverse=True)
     welded = b.Mesh(places, names.reshape(-1)[mesh.faces], mesh.source)
     return Sample(*told, 3, body.volume, body.area, welded.euler_number, sample.largest)

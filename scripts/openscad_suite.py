@@ -2,13 +2,13 @@
 
     scripts/openscad_suite SOURCE [--record]
 
-SOURCE holds OpenSCAD's sources as they are published, 2021.01 for what is recorded (`apt-get source
-openscad`); its scripts are GPL or CC0 and not part of this repository. The program `openscad` of
-the same version must be on the PATH: it writes the `.csg` that is read here. DejaVu Sans
-(`fonts-dejavu-core`) is the font of those that name none that is there. What OpenSCAD makes of each
-script is in tests/corpus/csg/openscad_suite.tsv; --record measures that anew. Prints the scripts
-that OpenSCAD evaluates without a warning and that are another set here, each with the reason, and
-counts. Ends with 1 if one has no reason.
+SOURCE is the folder of OpenSCAD's published sources, 2021.01 for the recorded results (`apt-get
+source openscad`); its scripts are GPL or CC0 and not part of this repository. The program
+`openscad` of the same version must be on the PATH: it writes the `.csg` that is read here. Scripts
+without an installed font use DejaVu Sans (`fonts-dejavu-core`). OpenSCAD's results are in
+tests/corpus/csg/openscad_suite.tsv; --record writes them anew. Prints counts, and the scripts that
+OpenSCAD evaluates without a warning and for which our result differs, each with the reason. Ends
+with 1 if a difference has no reason.
 """
 
 import argparse
@@ -35,20 +35,20 @@ from recording import REPOSITORY
 
 RECORD = REPOSITORY / "tests" / "corpus" / "csg" / "openscad_suite.tsv"
 
-#: Folders of the sources with scripts that make shapes.
+#: The folders of OpenSCAD's sources with scripts that make shapes.
 FOLDERS = (
     *["2D/features", "2D/issues", "3D/features", "3D/issues", "3D/misc", "bugs", "issues", "dxf"],
     *["svg", "svg/svg-spec", "svg/extruded", "stl", "misc"],
 )
 EXAMPLES = ("Old", "Basics", "Advanced", "Functions", "Parametric")
 
-#: The longest time for one script, in seconds.
+#: The time limit of OpenSCAD for one script, in seconds.
 TIMEOUT = 300
 
 _OPEN = "a lone polyhedron that is not closed: OpenSCAD writes its faces as they are"
 _GRID = "OpenSCAD moves corners of DXF files to multiples of 1/1024"
 
-#: The reasons for which a script without a warning is another set here.
+#: The reason why our result differs, by script.
 REASONS = {
     "testdata/scad/3D/issues/issue1061.scad": "its faces are not plane",
     "testdata/scad/3D/issues/issue964.scad": _OPEN,
@@ -63,16 +63,16 @@ REASONS = {
 
 @dataclass(frozen=True)
 class Reference:
-    """OpenSCAD's result of a script.
+    """OpenSCAD's result for a script.
 
     Parameters
     ----------
     file : str
     warnings : int
     dimension : int
-        3 or 2, or 0 if it makes nothing that it can write.
+        The dimension of the result: 3 or 2, or 0 if OpenSCAD writes no result.
     measure, border, largest : float
-        Volume and surface, or area and perimeter; the largest coordinate.
+        The volume and the area in 3D, the area and the perimeter in 2D; the largest coordinate.
     """
 
     file: str
@@ -84,18 +84,21 @@ class Reference:
 
     @property
     def tolerance(self) -> float:
-        """Return how far its measure may be off, as in csg_reference, in either dimension."""
+        """Return the largest error of `measure` by OpenSCAD's rounding."""
         return tolerance(self.dimension, self.border, self.largest)
 
 
 def tolerance(dimension: int, border: float, largest: float) -> float:
-    """Return how far a measure may be off with such a border, if coordinates have six digits."""
+    """Return the largest error of a volume or area by rounding coordinates to six digits.
+
+    `border` is the area or the perimeter, `largest` the largest coordinate.
+    """
     digits = 0.5 * 10.0 ** (len(str(int(largest))) - 6)
     return float(border * dimension**0.5 * (digits + _PLANE_GRID) + 1e-9)
 
 
 def scripts(source: Path) -> Iterator[str]:
-    """Yield the scripts of the sources."""
+    """Yield the paths of all scripts, relative to the folder of OpenSCAD's sources."""
     folders = [f"testdata/scad/{name}" for name in FOLDERS]
     for folder in (*folders, *(f"examples/{name}" for name in EXAMPLES)):
         for path in sorted((source / folder).glob("*.scad")):
@@ -103,7 +106,7 @@ def scripts(source: Path) -> Iterator[str]:
 
 
 def measured(source: Path, file: str) -> Reference:
-    """Return what OpenSCAD makes of a script now."""
+    """Return OpenSCAD's result for a script, by running it."""
     with tempfile.TemporaryDirectory() as folder:
         stl, svg = Path(folder, "x.stl"), Path(folder, "x.svg")
         said = asked(source / file, stl)
@@ -126,7 +129,7 @@ def measured(source: Path, file: str) -> Reference:
 
 
 def asked(script: Path, target: Path) -> str:
-    """Return what OpenSCAD says while it writes a script's shape."""
+    """Return OpenSCAD's messages while it writes a script's shape to a file."""
     command = ["openscad", "-o", str(target), str(script)]
     environment = {**os.environ, "QT_QPA_PLATFORM": "offscreen"}
     try:
@@ -141,7 +144,7 @@ def asked(script: Path, target: Path) -> str:
 
 
 def drawn(text: str) -> Region:
-    """Return the region of an SVG that OpenSCAD wrote: straight paths alone."""
+    """Return the region of an SVG file by OpenSCAD, which has only straight paths."""
     words = " ".join(re.findall(r'<path d="([^"]*)"', text))
     loops = []
     for loop in words.split("M")[1:]:
@@ -152,7 +155,7 @@ def drawn(text: str) -> Region:
 
 
 def ours(source: Path, file: str) -> float:
-    """Return the volume or area of a script here; children that are refused are left out."""
+    """Return the volume or area of our result for a script; refused children are left out."""
     tree = csg.read_tree(source / file)
     try:
         body = csg.evaluate(tree, allow_paths=[source])
@@ -164,7 +167,7 @@ def ours(source: Path, file: str) -> float:
 
 
 def judged(source: Path, row: Reference) -> tuple[str, str]:
-    """Return a status ("same", "explained", "DIFFERS", "FAILS") and the details."""
+    """Return the status of a script ("same", "explained", "DIFFERS", "FAILS") and details."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", csg.CsgWarning)
@@ -179,7 +182,7 @@ def judged(source: Path, row: Reference) -> tuple[str, str]:
 
 
 def recorded() -> list[Reference]:
-    """Return what is recorded of OpenSCAD 2021.01."""
+    """Return the recorded results of OpenSCAD 2021.01."""
     with RECORD.open(encoding="utf-8") as lines:
         rows = list(csv.DictReader(lines, delimiter="\t"))
     return [
@@ -194,7 +197,7 @@ def recorded() -> list[Reference]:
 
 
 def record(source: Path) -> None:
-    """Measure all scripts and write down what OpenSCAD makes of them."""
+    """Run OpenSCAD on all scripts, and write its results to the record."""
     names = [field.name for field in fields(Reference)]
     with RECORD.open("w", encoding="utf-8", newline="") as lines:
         table = csv.DictWriter(lines, names, delimiter="\t", lineterminator="\n")
@@ -204,7 +207,7 @@ def record(source: Path) -> None:
 
 
 def with_fonts(fonts: Path, folder: Path) -> None:
-    """Let fontconfig know the fonts of a folder, and keep what it says of them in another."""
+    """Make fontconfig find the fonts in a folder, with its cache in another folder."""
     usual = os.environ.get("FONTCONFIG_FILE", "/etc/fonts/fonts.conf")
     settings = folder / "fonts.conf"
     settings.write_text(
@@ -218,7 +221,7 @@ def with_fonts(fonts: Path, folder: Path) -> None:
 
 
 def main() -> int:
-    """Print what differs."""
+    """Print the scripts whose results differ, and return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("source", type=Path, metavar="SOURCE")
     parser.add_argument("--record", action="store_true", help="measure OpenSCAD's results anew")
@@ -226,7 +229,7 @@ def main() -> int:
     if options.record:
         record(options.source)
     with tempfile.TemporaryDirectory() as folder:
-        # Scripts take them by `use <….ttf>`.
+        # The fonts that scripts load with `use <….ttf>`.
         with_fonts(options.source / "testdata" / "ttf", Path(folder))
         counts = compared(options.source)
     print(", ".join(f"{count} {status}" for status, count in sorted(counts.items())))
@@ -236,7 +239,7 @@ def main() -> int:
 
 
 def compared(source: Path) -> Counter[str]:
-    """Print what differs, and return how many scripts there are of each kind."""
+    """Print the scripts whose results differ, and return the number of scripts of each status."""
     counts: Counter[str] = Counter()
     for row in recorded():
         if row.warnings or not row.dimension:

@@ -1,8 +1,8 @@
-"""Puts small questions whose answers are known to all engines that are installed.
+"""Put small set operations with known results to all installed engines.
 
-Each question goes to each engine in a process of its own, so that one that crashes or does not end
-is an answer, too. `--record` keeps the answers; docs/trust.md shows them. To install the engines:
-pip install libigl "bspcsg[bench]"
+Each engine runs each operation in a process of its own, so that a crash or an endless run is
+recorded as its answer. `--record` writes the answers; docs/trust.md shows them. To install the
+engines: pip install libigl "bspcsg[bench]"
 """
 
 import argparse
@@ -21,37 +21,37 @@ from bspcsg.bench.engines import ENGINES, Engine, EngineError, Operation, instal
 from recording import keep, release
 from support.documents import with_generated
 
-#: The unit cube, its faces counter-clockwise seen from outside.
+#: The corners of the unit cube; its faces are counter-clockwise seen from outside.
 CORNERS = np.array([[x, y, z] for x in (0.0, 1) for y in (0.0, 1) for z in (0.0, 1)])
 FACES = np.array(
     [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1]]
     + [[2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
 )
 
-#: A question counts as not answered after this many seconds.
+#: The time limit of an answer, in seconds.
 _TIMEOUT = 120
 
-#: The number of times that the cube is cut by another and put together again.
+#: The number of times that the cube is cut by another cube and united again.
 _ROUNDS = 10
 
-#: Relative difference of volumes that rounding explains; some engines are of single precision.
+#: The relative difference of volumes that rounding explains; some engines use single precision.
 _ROUNDING = 1e-5
 
 
 @dataclass(frozen=True)
 class Question:
-    """A set operation with a known answer.
+    """A set operation with a known result.
 
     Parameters
     ----------
     words : str
-        What it is.
+        A description of the operation.
     volume : float or None
-        Of the right answer; None if the input is to be refused.
+        The volume of the correct result; None if the engine should refuse the input.
     triangles : int
-        How few suffice; 0 if any number will do.
+        The number of triangles that suffice; 0 if any number is correct.
     ask : callable
-        Returns the volume and the number of triangles that an engine makes.
+        A function of an engine that returns the volume and the number of triangles of its result.
     """
 
     words: str
@@ -65,14 +65,14 @@ def cube(shift: tuple[float, ...] = (0, 0, 0)) -> MeshArrays:
 
 
 def turned() -> MeshArrays:
-    """Return the unit cube, turned by 45° around the axis through the middle of its caps."""
+    """Return the unit cube, rotated by 45° about its vertical axis."""
     half = 0.5**0.5
     matrix = np.array([[half, half, 0], [-half, half, 0], [0, 0, 1]])
     return (CORNERS - [0.5, 0.5, 0]) @ matrix + [0.5, 0.5, 0], FACES
 
 
 def both(first: MeshArrays, second: MeshArrays) -> MeshArrays:
-    """Return two meshes as one."""
+    """Return two meshes as one mesh."""
     faces = np.concatenate([first[1], second[1] + len(first[0])])
     return np.concatenate([first[0], second[0]]), faces
 
@@ -84,7 +84,7 @@ def opened() -> MeshArrays:
 def combined(
     first: MeshArrays, second: MeshArrays, operation: Operation
 ) -> Callable[[Engine], tuple[float, int]]:
-    """Return the question of two meshes."""
+    """Return a function of an engine that combines two meshes and measures the result."""
     return lambda engine: measured(engine.boolean(first, second, operation))
 
 
@@ -93,13 +93,16 @@ def measured(mesh: MeshArrays) -> tuple[float, int]:
 
 
 def overlapping(engine: Engine) -> tuple[float, int]:
-    """Ask for the volume itself: meshes may leave as they came where nothing cut them."""
+    """Return an engine's volume of the union of an overlapping mesh and a distant cube.
+
+    The volume is the engine's own, since parts that nothing cuts may come back overlapping.
+    """
     meshes = both(cube(), cube((0.5, 0, 0))), cube((9, 9, 9))
     return engine.volume(engine.combine("union", [engine.solid(mesh) for mesh in meshes])), 0
 
 
 def put_back(engine: Engine) -> tuple[float, int]:
-    """Cut the cube by turned cubes, and put both parts together again each time."""
+    """Cut the cube by rotated cubes, and unite both parts again each time."""
 
     def arrays(first: MeshArrays, second: MeshArrays, operation: Operation) -> MeshArrays:
         vertices, faces = engine.boolean(first, second, operation)
@@ -138,7 +141,7 @@ QUESTIONS = {
 
 
 class _Libigl(Engine):
-    """CGAL's exact arrangement, through libigl."""
+    """CGAL's exact arrangement as an engine, through libigl."""
 
     name = "libigl"
 
@@ -175,7 +178,7 @@ def volume_of(mesh: MeshArrays) -> float:
 
 
 def answer(name: str, question: str) -> str:
-    """Return an engine's answer in a few words."""
+    """Return an engine's answer to a question as a short text."""
     asked = QUESTIONS[question]
     engine = _Libigl() if name == "libigl" else ENGINES[name]()
     try:
@@ -193,7 +196,7 @@ def answer(name: str, question: str) -> str:
 
 
 def answers(name: str) -> Iterator[tuple[str, str]]:
-    """Yield an engine's answers, each from a process of its own."""
+    """Yield an engine's answer to each question, from a process of its own."""
     for question in QUESTIONS:
         command = [sys.executable, __file__, "--ask", name, question]
         try:
@@ -208,7 +211,7 @@ def answers(name: str) -> Iterator[tuple[str, str]]:
 
 
 def table(found: dict[str, dict[str, str]]) -> str:
-    """Return the answers as a table in Markdown."""
+    """Return the answers of all engines as a Markdown table."""
     rows = [["", *found], ["---"] * (len(found) + 1)]
     rows += [
         [question.words, *(said[name] for said in found.values())]
@@ -218,13 +221,13 @@ def table(found: dict[str, dict[str, str]]) -> str:
 
 
 def recorded() -> dict[str, dict[str, Any]]:
-    """Return the versions of the engines and their answers, in the table of the last release."""
+    """Return the versions and answers of the engines, as recorded for the last release."""
     found: dict[str, dict[str, Any]] = release()["peers"]
     return found
 
 
 def with_answers(page: str) -> str:
-    """Return a page with the table of what is recorded."""
+    """Return a page with the table of the recorded answers."""
     found = recorded()
     titled = {f"{name} {found['versions'][name]}": said for name, said in found["answers"].items()}
     return with_generated("trust", page, table(titled) + "\n")

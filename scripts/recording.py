@@ -1,4 +1,4 @@
-"""The shared part of the measuring scripts: the machine they ran on, and the keeping of results."""
+"""Shared by the measuring scripts: the machine that they run on, and the writing of records."""
 
 import json
 import platform
@@ -12,7 +12,8 @@ from bspcsg.machine import machine as this_machine
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 
-#: Where measuring scripts keep what they found; `scripts/measured` makes a release's table of it.
+#: The folder of records of measuring scripts, from which `scripts/measured` makes a release's
+#: table.
 RECORDS = REPOSITORY / "out" / "records"
 
 #: The tables of releases, one file each.
@@ -20,7 +21,7 @@ RELEASES = REPOSITORY / "docs" / "records"
 
 
 def machine() -> dict[str, Any]:
-    """Describe the machine and the versions that a figure belongs to."""
+    """Return the machine and the versions to which a measurement belongs."""
     return {
         "date": datetime.now(UTC).strftime("%Y-%m-%d"),
         "commit": _commit(),
@@ -32,7 +33,7 @@ def machine() -> dict[str, Any]:
 
 
 def keep(name: str, result: dict[str, Any]) -> Path:
-    """Write a result beside the earlier ones, with the machine it was measured on."""
+    """Write a result as a record, with the machine that it was measured on, and return its path."""
     RECORDS.mkdir(parents=True, exist_ok=True)
     path = RECORDS / f"{name}.json"
     path.write_text(json.dumps({"machine": machine(), **result}, indent=1) + "\n")
@@ -47,17 +48,17 @@ def release() -> dict[str, Any]:
 
 
 def keep_rows(name: str, rows: list[dict[str, Any]], key: str, order: list[str]) -> Path:
-    """Keep rows, each with its commit, and those of earlier runs that no row here replaces.
+    """Write rows to a record, each with its commit, besides earlier rows with other keys.
 
     Parameters
     ----------
     name : str
-        Of the record, and of the list in it.
+        The name of the record, and of the list in it.
     rows : list of dict
     key : str
-        The entry that tells rows apart.
+        The entry that identifies a row.
     order : list of str
-        What it may be.
+        The possible values of this entry, in the order of the rows.
     """
     path = RECORDS / f"{name}.json"
     earlier = json.loads(path.read_text("utf-8"))[name] if path.is_file() else []

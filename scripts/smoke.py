@@ -1,7 +1,7 @@
-"""Does with an installed package what the README and the first pages of the manual show.
+"""Try an installed package with the examples of the README and of the manual's first pages.
 
-Run by the Python of a clean environment, in any folder: `python scripts/smoke.py`. Needs nothing
-but the package, and no network. Prints what was done; what is wrong is an exception.
+Run it with the Python of a clean environment, in any folder: `python scripts/smoke.py`. It needs
+only the package and no network. It prints what was done; a failure is an exception.
 """
 
 import json
@@ -23,7 +23,7 @@ difference() {
 
 
 def command(*arguments: str, code: int = 0) -> str:
-    """Run the command line and return what it prints."""
+    """Run the package's command line, check its exit code, and return its output."""
     line = [sys.executable, "-m", "bspcsg", *arguments]
     done = subprocess.run(
         line, capture_output=True, text=True, encoding="utf-8", timeout=300, check=False
@@ -34,7 +34,7 @@ def command(*arguments: str, code: int = 0) -> str:
 
 
 def made() -> Iterator[str]:
-    """Make the parts of the README's first lines, and files of all formats."""
+    """Make the parts of the README's first lines, and write files of all formats."""
     import bspcsg as b
 
     plate = b.box((0.3, 0.2, 0.1)) - b.box((0.1, 0.1, 0.1)).translate(0.1, 0.1, 0)
@@ -49,7 +49,7 @@ def made() -> Iterator[str]:
 
 
 def flat() -> Iterator[str]:
-    """Offset, write and read drawings."""
+    """Offset a region, and write and read drawings."""
     from bspcsg import bsp
 
     region = bsp.Region.rectangle(40, 20) - bsp.Region.circle(5, 32).translate(10, 10)
@@ -65,13 +65,13 @@ def flat() -> Iterator[str]:
 
 
 def pictures() -> Iterator[str]:
-    """Render pictures, write a page, cut a section."""
+    """Render pictures, write an HTML page, and cut a section."""
     for name in ("part.png", "part.svg"):
         command("render", "part.stl", "-o", name, "--size", "200x150")
         yield name
     command("slice", "part.stl", "--z", "1", "-o", "section.svg")
     yield "section.svg"
-    # DXF is an extra; without it the command says so.
+    # Without the optional ezdxf, the command fails with code 6.
     code = 0 if find_spec("ezdxf") else 6
     command("slice", "part.stl", "--z", "1", "-o", "section.dxf", code=code)
     command("view", "part.stl", "-o", "page.html", "--no-open")
@@ -79,7 +79,7 @@ def pictures() -> Iterator[str]:
 
 
 def checked() -> Iterator[str]:
-    """Combine, check, compare, crosscheck; a mesh that is not closed is refused."""
+    """Combine, check, compare and crosscheck meshes; an open mesh must be refused."""
     said = json.loads(command("difference", "part.stl", "ball.stl", "-o", "cut.stl", "--json"))
     assert said["check"]["verdict"] == "agree", said
     command("check", "cut.stl")
@@ -97,7 +97,7 @@ def checked() -> Iterator[str]:
 
 
 def scripts() -> Iterator[str]:
-    """Run a script with text, and take apart what is installed."""
+    """Run a script with text, and run ``bspcsg doctor``."""
     Path("letters.csg").write_text(SCRIPT)
     command("run", "letters.csg", "-o", "letters.stl")
     command("doctor")

@@ -1,9 +1,9 @@
-"""Builds wheels of what is committed, looks into them, and tries them where no Rust is.
+"""Build wheels of the committed state, check their content, and try them without Rust.
 
-Zig links them against an old C library, so that they run on old systems, too; it and maturin are
-installed into out/wheel. What is built for this machine is installed into an environment of its
-own, without compilers on the path: there the time from `pip install` to the first checked boolean
-is measured, then scripts/smoke.py and the demo run. With --record the figures are kept.
+Zig links them against an old C library, so that they also run on old systems; it and maturin are
+installed into out/wheel. A wheel for this machine is installed into an environment of its own,
+without compilers on the PATH: there the time from `pip install` to the first checked set operation
+is measured, then scripts/smoke.py and the demo run. With --record the figures are recorded.
 """
 
 import argparse
@@ -25,13 +25,13 @@ from typing import TypeAlias
 from recording import RECORDS, REPOSITORY, keep, machine
 from wheel_contents import problems_of
 
-#: What a wheel weighs and how long it took to use, by name.
+#: The size of a wheel and the times of its trial, by name.
 Figures: TypeAlias = dict[str, str | float]
 
 OUT = REPOSITORY / "out" / "wheel"
 DIST = REPOSITORY / "dist"
 
-#: The target of the compiler for each kind of wheel, and the systems that it promises to run on.
+#: For each kind of wheel the target of the compiler, and the platform tag.
 TARGETS = {
     "manylinux": ("x86_64-unknown-linux-gnu", "manylinux_2_17"),
     "musllinux": ("x86_64-unknown-linux-musl", "musllinux_1_2"),
@@ -39,17 +39,17 @@ TARGETS = {
     "musllinux-aarch64": ("aarch64-unknown-linux-musl", "musllinux_1_2"),
 }
 
-#: The longest time until a user has a checked result, downloads included, in seconds.
+#: The time limit until a user has a checked result, downloads included, in seconds.
 MAX_SECONDS = 60
 
-#: No compilers are found here.
+#: A PATH without compilers.
 _PLAIN_PATH = "/usr/bin:/bin"
 
 _BOOLEAN = ("examples/meshes/plate_holes.stl", "examples/meshes/half_plate.off")
 
 
 def run(*command: object, **settings: object) -> None:
-    """Run a command, and end this program if it fails."""
+    """Run a command, and end this program if the command fails."""
     line = [str(word) for word in command]
     done = subprocess.run(line, check=False, **settings)  # type: ignore[call-overload]
     if done.returncode:
@@ -57,7 +57,7 @@ def run(*command: object, **settings: object) -> None:
 
 
 def tools() -> Path:
-    """Return the folder of the programs that build, installed when they are not there."""
+    """Return the folder of the build programs, after installing them if they are missing."""
     folder = OUT / "tools"
     if not (folder / "bin" / "maturin").exists():
         run(sys.executable, "-m", "venv", folder)
@@ -66,7 +66,7 @@ def tools() -> Path:
 
 
 def committed(folder: Path) -> Path:
-    """Lay what is committed into a folder."""
+    """Extract the committed files into a folder, and return it."""
     done = subprocess.run(
         ["git", "-C", str(REPOSITORY), "archive", "HEAD"], capture_output=True, check=True
     )
@@ -76,15 +76,15 @@ def committed(folder: Path) -> Path:
 
 
 def anonymous(tree: Path, environment: dict[str, str]) -> list[str]:
-    """Return the compiler's options that leave this machine's folders out of the messages."""
+    """Return the options of rustc that replace this machine's folders in messages."""
     cargo = Path(environment.get("CARGO_HOME") or Path.home() / ".cargo")
     names = {cargo / "registry" / "src": "crates", cargo: "cargo", tree: "bspcsg"}
-    # Of prefixes that fit the compiler takes the last.
+    # rustc uses the last prefix that matches.
     return [f"--remap-path-prefix={path}={name}" for path, name in reversed(names.items())]
 
 
 def built(kind: str, tree: Path) -> Path:
-    """Build one kind of wheel of a tree and return where it is."""
+    """Build one kind of wheel from a source tree, and return its path."""
     target, tag = TARGETS[kind]
     run("rustup", "target", "add", target, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     binaries = tools()
@@ -98,28 +98,28 @@ def built(kind: str, tree: Path) -> Path:
 
 
 def source(tree: Path) -> Path:
-    """Build the source distribution of a tree and return where it is."""
+    """Build the source distribution from a source tree, and return its path."""
     run(tools() / "maturin", "sdist", "--out", tree / "dist", cwd=tree)
     return kept(next((tree / "dist").glob("*.tar.gz")))
 
 
 def kept(found: Path) -> Path:
-    """Move a distribution to where it stays."""
+    """Move a distribution to the folder of distributions, and return its new path."""
     DIST.mkdir(exist_ok=True)
     return Path(shutil.move(found, DIST / found.name))
 
 
 @dataclass
 class Trial:
-    """The cost of the way from a wheel to the first checked boolean.
+    """The cost of getting from a wheel to the first checked set operation.
 
     Parameters
     ----------
     seconds, processor_seconds : float
     packages : int
-        How many packages were installed.
+        The number of packages that were installed.
     installed_megabytes : float
-        What the environment holds then.
+        The size of the environment after that, in 10^6 bytes.
     """
 
     seconds: float
@@ -129,9 +129,9 @@ class Trial:
 
 
 def tried(wheel: Path, tree: Path) -> Trial:
-    """Install a wheel where no Rust is, combine two meshes, then run the smoke test and the demo.
+    """Install a wheel without Rust, combine two meshes, then run the smoke test and the demo.
 
-    Downloads come from the index; what pip has kept is left aside.
+    All packages are downloaded; pip's cache is not used.
     """
     with tempfile.TemporaryDirectory() as name:
         home = Path(name)
@@ -153,7 +153,7 @@ def tried(wheel: Path, tree: Path) -> Trial:
 
 
 def _used() -> float:
-    """Return the processor time of all that this program started, in seconds."""
+    """Return the processor time of all finished child processes, in seconds."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -165,7 +165,7 @@ def _sizes(folder: Path) -> tuple[int, float]:
 
 
 def kind_of(path: Path) -> str:
-    """Return the kind of a distribution, by its name."""
+    """Return the kind of a distribution, from its file name."""
     if path.suffix != ".whl":
         return "sdist"
     for kind, (target, tag) in TARGETS.items():
@@ -175,7 +175,7 @@ def kind_of(path: Path) -> str:
 
 
 def runs_here(kind: str) -> bool:
-    """Say whether a kind of wheel can be installed on this machine."""
+    """Return true if a kind of wheel can be installed on this machine."""
     library = "manylinux" if platform.libc_ver()[0] == "glibc" else "musllinux"
     return TARGETS[kind][0].startswith(platform.machine()) and kind.startswith(library)
 
@@ -200,7 +200,7 @@ def main() -> int:
         parser.error(f"no such kind: {', '.join(unknown)}")
     if options.built and options.record:
         parser.error("--record is for what is built here: of other files the commit is not known")
-    # Work may go on while wheels are built; they belong to the commit of the beginning.
+    # The machine and commit now, since commits may be made while wheels are built.
     found, here = {}, machine()
     with tempfile.TemporaryDirectory() as name:
         tree = committed(Path(name))
@@ -214,14 +214,14 @@ def main() -> int:
 
 
 def with_earlier(found: dict[str, Figures], commit: str) -> dict[str, Figures]:
-    """Return the figures of what a commit made, and of other kinds those on record."""
+    """Return the figures of a commit, and the recorded figures of all other kinds."""
     path = RECORDS / "wheel.json"
     earlier = json.loads(path.read_text("utf-8"))["wheels"] if path.is_file() else {}
     return earlier | {kind: {**figures, "commit": commit} for kind, figures in found.items()}
 
 
 def examined(kind: str, path: Path, tree: Path) -> Figures:
-    """Look into a distribution, try it if it runs here, and return the figures."""
+    """Check a distribution, try it if it runs here, and return its figures."""
     megabytes, problems = path.stat().st_size / 1e6, problems_of(path, tree)
     print(f"{path.name}: {megabytes:.2f} MB", *problems, sep="\n  ", flush=True)
     if problems:

@@ -1,7 +1,7 @@
-"""Checks what is in wheels and source distributions: all of the package, and nothing else.
+"""Check that wheels and source distributions contain the whole package and nothing else.
 
 `python scripts/wheel_contents.py dist/*` prints a line for each file, and ends with 1 if something
-is wrong. Needs nothing but Python.
+is wrong. It needs only Python.
 """
 
 import re
@@ -17,10 +17,10 @@ ROOT = Path(__file__).resolve().parent.parent
 #: The largest number of bytes of a wheel or a source distribution.
 MAX_BYTES = 8_000_000
 
-#: Files that no source distribution holds.
+#: The files that must not be in a source distribution.
 _FOREIGN = re.compile(r"(^|/)(\.git|\.venv|target|out|dist|__pycache__)/|\.(so|pyd|pyc)$")
 
-#: Files that a source distribution has beside the package.
+#: The files of a source distribution besides the package.
 _SOURCES = (
     "pyproject.toml",
     "README.md",
@@ -30,10 +30,10 @@ _SOURCES = (
     "core/Cargo.toml",
 )
 
-#: Sections of a library that was not stripped.
+#: The names of sections of a library that is not stripped.
 _SYMBOLS = (b".symtab\0", b".debug_info\0")
 
-#: Folders of whoever built a library, in the messages of what it is made of.
+#: The folders of the build machine that messages of a library may contain.
 _BUILDERS = re.compile(
     rb"(?:/root|/home/[\w.-]+|/Users/[\w.-]+|[A-Z]:[/\\]Users[/\\][\w.-]+)[/\\][\w./\\-]*"
     rb"|(?:/|[A-Z]:)[\w./\\-]*[/\\]registry[/\\]src[/\\][\w./\\-]*"
@@ -41,14 +41,14 @@ _BUILDERS = re.compile(
 
 
 def package(root: Path = ROOT) -> set[str]:
-    """Return the files of the package as they stand in a folder, without what is built."""
+    """Return the relative paths of the package's files in a source tree, without built files."""
     found = (path for path in (root / "bspcsg").rglob("*") if path.is_file())
     names = {path.relative_to(root).as_posix() for path in found}
     return {name for name in names if not _FOREIGN.search(name)}
 
 
 def problems_of_wheel(path: Path, root: Path) -> list[str]:
-    """Return what is wrong with a wheel."""
+    """Return what is wrong with a wheel, as texts."""
     with zipfile.ZipFile(path) as archive:
         names = {name for name in archive.namelist() if not name.endswith("/")}
         info = next(name.split("/")[0] for name in names if ".dist-info/" in name)
@@ -70,7 +70,7 @@ def problems_of_wheel(path: Path, root: Path) -> list[str]:
 
 
 def problems_of_core(library: bytes) -> list[str]:
-    """Return what is wrong with a native core."""
+    """Return what is wrong with the compiled core, as texts."""
     stripped = all(mark not in library for mark in _SYMBOLS)
     problems = [] if stripped else ["the native core is not stripped"]
     named = _BUILDERS.search(library)
@@ -81,7 +81,7 @@ def problems_of_core(library: bytes) -> list[str]:
 
 
 def problems_of_source(path: Path, root: Path) -> list[str]:
-    """Return what is wrong with a source distribution."""
+    """Return what is wrong with a source distribution, as texts."""
     with tarfile.open(path) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
     core = {f.relative_to(root).as_posix() for f in (root / "core/src").rglob("*.rs")}
@@ -103,7 +103,7 @@ def _problems_of_metadata(about: Message) -> list[str]:
 
 
 def problems_of(path: Path, root: Path = ROOT) -> list[str]:
-    """Return what is wrong with a distribution of the tree in a folder."""
+    """Return what is wrong with a distribution of a source tree, as texts."""
     found = problems_of_wheel if path.suffix == ".whl" else problems_of_source
     return found(path, root)
 

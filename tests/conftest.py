@@ -1,4 +1,4 @@
-"""Settings for all tests: which cases run, how many random examples, where shared data lies."""
+"""Settings for all tests: which cases run, the seed of random examples, shared data."""
 
 import os
 from collections import Counter
@@ -26,18 +26,18 @@ hypothesis.settings.load_profile(os.environ.get("BSPCSG_HYPOTHESIS", "ci"))
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_configure(config: pytest.Config) -> None:
-    """Let the commit choose the random examples, unless a seed is given."""
+    """Seed hypothesis with the commit, unless a seed is given."""
     if config.option.hypothesis_seed is None:
         config.option.hypothesis_seed = str(draw("hypothesis", 2**32))
 
 
 def pytest_report_header() -> str:
-    """Name what repeats this choice of cases."""
+    """Return the line that says how to repeat this choice of cases."""
     return "all cases" if DEEP else f"cases drawn by BSPCSG_COMMIT={COMMIT}"
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Deselect what only a deep run does; the summary counts it."""
+    """Deselect the cases that only a deep run includes."""
     if DEEP:
         return
     cases = Counter(map(_function, items))
@@ -57,7 +57,7 @@ def _function(item: pytest.Item) -> str:
 
 
 def _is_drawn(item: pytest.Item, number: int, cases: int) -> bool:
-    """Return whether this commit's run has the case of this number among the test's cases."""
+    """Return true if this run includes case `number` of a test's `cases`."""
     if item.get_closest_marker("deep"):
         return False
     sampled = item.get_closest_marker("sampled")
@@ -69,13 +69,13 @@ def _is_drawn(item: pytest.Item, number: int, cases: int) -> bool:
 
 @pytest.fixture(scope="session")
 def repository() -> Path:
-    """Return the root of the working tree."""
+    """Return the root folder of the working tree."""
     return REPOSITORY
 
 
 @pytest.fixture(scope="session")
 def shared_meshes() -> Path:
-    """Return the folder of real meshes that lies beside a full checkout."""
+    """Return the folder of real meshes beside the checkout; skip the test if it is missing."""
     folder = REPOSITORY.parent / "shared" / "meshes"
     if not folder.is_dir():
         pytest.skip("the shared meshes do not lie beside this checkout")
@@ -84,7 +84,7 @@ def shared_meshes() -> Path:
 
 @pytest.fixture(scope="session")
 def shared_scripts() -> Path:
-    """Return the folder of OpenSCAD's scripts that lies beside a full checkout."""
+    """Return the folder of OpenSCAD scripts beside the checkout; skip the test if it is missing."""
     folder = REPOSITORY.parent / "shared" / "csg"
     if not folder.is_dir():
         pytest.skip("the shared scripts do not lie beside this checkout")

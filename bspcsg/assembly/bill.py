@@ -1,4 +1,4 @@
-"""`Bill`: the count, volume and mass of the parts of an assembly."""
+"""`Bill`: a table of the count, volume and mass of the parts of an assembly."""
 
 import math
 from collections.abc import Iterable
@@ -13,18 +13,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class BillRow:
-    """Parts of one name, shape and density.
+    """The parts of an assembly with the same name, shape and density.
 
     Parameters
     ----------
     name : str
     count : int
     volume : float
-        Of each, in cubic model units.
+        The volume of each part, in cubic model units.
     density : float or None
-        Mass of a cubic model unit.
+        The mass of a cubic model unit; None if it is unknown.
     mass : float or None
-        Of all of them together; None without a density.
+        The mass of all these parts together; None without a density.
     """
 
     name: str
@@ -36,33 +36,33 @@ class BillRow:
 
 @dataclass(frozen=True)
 class Bill:
-    """The bill of an assembly; as text it is a table.
+    """The bill of materials of an assembly; ``str`` makes it a table.
 
     Parameters
     ----------
     rows : tuple of BillRow
-        In the order of the parts.
+        One row for each kind of part, in the order of the parts.
     """
 
     rows: tuple[BillRow, ...]
 
     @property
     def volume(self) -> float:
-        """Volume of all parts, in cubic model units; volume shared by two counts twice."""
+        """The sum of the volumes of all parts, in cubic model units, including overlaps twice."""
         return math.fsum(row.volume * row.count for row in self.rows)
 
     @property
     def mass(self) -> float:
-        """Mass of all parts that have a density."""
+        """The mass of all parts that have a density, in the density's unit of mass."""
         return math.fsum(row.mass for row in self.rows if row.mass is not None)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything as JSON values."""
+        """Return the rows and the totals as values that JSON can represent."""
         rows = [asdict(row) for row in self.rows]
         return {"rows": rows, "volume": self.volume, "mass": self.mass}
 
     def __str__(self) -> str:
-        """Return a table."""
+        """Return the bill as a text table with a total row."""
         width = max([4, *(len(row.name) for row in self.rows)])
         lines = [f"{'part':{width}}  {'count':>5}  {'volume':>12}  {'mass':>12}"]
         lines += [
@@ -75,7 +75,7 @@ class Bill:
 
 
 def bill_of(parts: Iterable["Part"]) -> Bill:
-    """Return the bill of some parts."""
+    """Return the bill of materials of the given parts."""
     found: dict[tuple[str, int, float, float | None], list[Any]] = {}
     for part in parts:
         size = _growth(part)
@@ -90,7 +90,7 @@ def bill_of(parts: Iterable["Part"]) -> Bill:
 
 
 def _growth(part: "Part") -> float:
-    """Return the factor by which a part's place multiplies its volume; 1 for rotations."""
+    """Return the factor by which a part's transform multiplies its volume; 1 for rotations."""
     factor = 1.0
     for one in part.factors:
         size = abs(float(transform.determinant(transform.exact_linear(one.matrix))))
@@ -98,7 +98,7 @@ def _growth(part: "Part") -> float:
     return factor
 
 
-#: Determinants of rotations differ from 1 by less, with each of their nine entries rounded.
+#: The largest difference from 1 of the determinant of a rotation matrix with rounded entries.
 _TURN = 2.0**-48
 
 

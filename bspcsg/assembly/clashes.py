@@ -1,4 +1,4 @@
-"""Clashes: places where parts of an assembly share volume, or come too close to each other."""
+"""Clashes: pairs of parts of an assembly that share volume or are too close to each other."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -22,11 +22,11 @@ class Clash:
     Parameters
     ----------
     first, second : str
-        Their paths.
+        The paths of the two parts in the assembly.
     volume : float
-        The volume that they share, in cubic model units; 0 if they are only too close.
+        The volume that both parts share, in cubic model units; 0 if they are only too close.
     gap : float
-        The distance between them; 0 if they have something in common.
+        The distance between the parts, in model units; 0 if they share volume.
     place : (3,) float64
         The centre of the common volume, or the middle between the nearest points.
     """
@@ -38,7 +38,7 @@ class Clash:
     place: FloatArray
 
     def __repr__(self) -> str:
-        """Show the parts, how much they overlap, and where."""
+        """Return a text with the two parts, their common volume or gap, and the position."""
         x, y, z = (f"{value:.6g}" for value in self.place.tolist())
         much = f"volume {self.volume:.6g}" if self.volume else f"gap {self.gap:.6g}"
         return f"Clash({self.first!r}, {self.second!r}, {much}, at ({x}, {y}, {z}))"
@@ -46,7 +46,7 @@ class Clash:
 
 @uncounted
 def clashes_of(parts: Sequence["Part"], clearance: float) -> list[Clash]:
-    """Return the clashes of all pairs of parts, in the order of the parts."""
+    """Return the clashes of all pairs of parts that overlap or are closer than the clearance."""
     found = (
         _clash(parts[first], parts[second], clearance)
         for first, second in _near_pairs([part.solid for part in parts], clearance)
@@ -55,7 +55,7 @@ def clashes_of(parts: Sequence["Part"], clearance: float) -> list[Clash]:
 
 
 def are_apart(solid: Solid, other: Solid) -> bool:
-    """Say whether the boxes around two solids have no point in common."""
+    """Return True if two solids are bounded and their bounding boxes have no point in common."""
     if not (solid.is_bounded and other.is_bounded):
         return False
     own, others = solid.bounds, other.bounds
@@ -65,7 +65,7 @@ def are_apart(solid: Solid, other: Solid) -> bool:
 
 
 def _near_pairs(solids: Sequence[Solid], clearance: float) -> Iterator[tuple[int, int]]:
-    """Yield the pairs whose boxes are no farther apart than the clearance."""
+    """Yield pairs of solids, as numbers, whose bounding boxes are within the clearance."""
     nothing = np.array([np.full(3, np.inf), np.full(3, -np.inf)])
     held = [solid.bounds for solid in solids]
     boxes = np.array([nothing if box is None else box for box in held]).reshape(-1, 2, 3)

@@ -1,7 +1,7 @@
-"""Diagnoses of files with several objects: of each object, and of what they share.
+"""Diagnoses of files with several objects, of each object and of the volume that objects share.
 
-Objects that touch are separate solids that touch. Objects that share open edges are patches of one
-surface, and are judged together.
+Objects that touch are separate solids. Objects that share open edges are patches of one surface,
+and are diagnosed together.
 """
 
 from collections import Counter
@@ -27,24 +27,26 @@ from .tree import Part
 _Any = TypeVar("_Any")
 _Number = TypeVar("_Number", int, float)
 
-#: The separator of the names of patches that become one object, and the largest number of names
-#: that are shown.
+#: The separator between the names of patches that form one object, and the largest number of names
+#: in an object's name.
 _NAME_SEPARATOR, _MAX_NAMES_SHOWN = " + ", 3
 
-#: From the worst verdict to the best.
+#: The verdicts on an object, from the worst to the best.
 _VERDICTS = ("refused", "not closed", "empty", "inside out", "solid")
 
 
 @dataclass(frozen=True, eq=False)
 class ExaminedObject:
-    """One object of a file.
+    """One object of a file, and its diagnosis.
 
     Parameters
     ----------
     name : str
-        Unique among the objects of a file.
+        The object's name, unique in its file.
     mesh : RawMesh
+        The object's triangles.
     found : Diagnosis
+        The diagnosis of the object alone.
     """
 
     name: str
@@ -54,17 +56,18 @@ class ExaminedObject:
 
 @dataclass(frozen=True, eq=False)
 class Examination:
-    """The findings about a file.
+    """The diagnosis of a file and of each of its objects.
 
     Parameters
     ----------
     mesh : RawMesh
+        The contents of the file.
     found : Diagnosis
-        Of the whole file: the worst verdict, and the findings about each object.
+        The diagnosis of the whole file: the worst verdict, and the findings about each object.
     objects : tuple of ExaminedObject
-        Empty if the file is one object.
+        The objects; empty if the file has only one.
     clashes : tuple of Clash
-        The objects that share volume.
+        The pairs of objects that share volume.
     """
 
     mesh: RawMesh
@@ -75,7 +78,7 @@ class Examination:
 
 @uncounted
 def examine(raw: RawMesh) -> Examination:
-    """Diagnose a mesh, or each object of it separately."""
+    """Diagnose a mesh as a whole, or each of its objects separately if there are several."""
     groups = _objects_of(raw)
     if len(groups) < 2:
         return Examination(raw, diagnose(raw))
@@ -94,7 +97,11 @@ def examine(raw: RawMesh) -> Examination:
 
 
 def _objects_of(raw: RawMesh) -> list[tuple[str, IndexArray]]:
-    """Return names and triangles of the objects of a mesh, joining patches of one surface."""
+    """Return the name and the triangle numbers of each object of a mesh.
+
+    Objects that are patches of one surface form one object. The list is empty if the mesh is not
+    divided into several objects.
+    """
     parts = [(name, count) for name, count in raw.objects if count]
     counts = [count for _, count in parts]
     if len(parts) < 2 or sum(counts) != len(raw.faces):
@@ -114,21 +121,24 @@ def _objects_of(raw: RawMesh) -> list[tuple[str, IndexArray]]:
 
 
 def _surfaces(raw: RawMesh, owner: IndexArray, count: int) -> IndexArray:
-    """Return the number of the surface that each object is a patch of."""
+    """Return a surface number for each object, (count,), equal for objects with a common open edge.
+
+    `owner` is the object of each triangle.
+    """
     vertices, same = welded(raw.vertices)
     edges = EdgeUses(same[raw.faces], len(vertices))
     uses, times = np.unique(edges.edge * count + owner[edges.face], return_counts=True)
-    # Open edges of objects, by edge: two objects that share one are patches of one surface.
+    # Open edges of objects, sorted by edge: objects that share one are patches of one surface.
     edge, patch = np.divmod(uses[times == 1], count)
     shared = np.flatnonzero(edge[1:] == edge[:-1])
     links = np.stack([patch[shared], patch[shared + 1]], axis=1)
     alone = np.repeat(np.arange(count)[:, None], 2, axis=1)
-    # Represent a link as a triangle that repeats a corner.
+    # Write a link as a triangle that repeats a corner.
     return surfaces_of(np.concatenate([alone, links])[:, [0, 1, 1]], count)[:count]
 
 
 def _with_numbers(names: Sequence[str]) -> list[str]:
-    """Return the names; one that repeats an earlier name gets a number."""
+    """Return the names, with a number added to each name that repeats an earlier one."""
     seen: Counter[str] = Counter()
     numbered = []
     for name in names:
@@ -138,7 +148,10 @@ def _with_numbers(names: Sequence[str]) -> list[str]:
 
 
 def _findings(objects: Sequence[ExaminedObject], rows: Sequence[IndexArray]) -> Iterator[Finding]:
-    """Yield the findings about objects, with their names and with triangle numbers of the file."""
+    """Yield the findings about each object, with its name and with triangle numbers of the file.
+
+    `rows` are the triangle numbers of each object.
+    """
     for one, faces in zip(objects, rows, strict=True):
         for found in one.found.findings:
             where = tuple(faces[list(found.where)].tolist()) if found.where else ()
@@ -146,7 +159,7 @@ def _findings(objects: Sequence[ExaminedObject], rows: Sequence[IndexArray]) -> 
 
 
 def _clashes(objects: Sequence[ExaminedObject]) -> list[Clash]:
-    """Return the solids that share volume; solids whose boxes only touch share none."""
+    """Return the pairs of objects that share volume; objects that are not solids are ignored."""
     solids = [one for one in objects if one.found.is_solid]
     boxes = np.array([one.found.bounds for one in solids]).reshape(-1, 2, 3)
     near: set[int] = set()
@@ -185,7 +198,7 @@ def _summed(
     clashes: Sequence[Clash],
     findings: Sequence[Finding],
 ) -> Diagnosis:
-    """Return the diagnosis of all objects together."""
+    """Return the diagnosis of a file, summed up from the diagnoses of its objects."""
     each = [one.found for one in objects]
     overlaps = _all([one.self_overlapping for one in each])
     boxes = np.array([one.bounds for one in each])
@@ -211,7 +224,7 @@ def _summed(
 
 
 def _coarsest(each: Sequence[Diagnosis]) -> Precision | None:
-    """Return the coarsest precision that can represent all of these."""
+    """Return the coarsest precision that represents all objects; None if one has none."""
     found = {one.precision for one in each}
     if None in found:
         return None
@@ -219,7 +232,7 @@ def _coarsest(each: Sequence[Diagnosis]) -> Precision | None:
 
 
 def _volume(objects: Sequence[ExaminedObject], clashes: Sequence[Clash]) -> float | None:
-    """Return the volume of all objects, counting shared volume once."""
+    """Return the volume of the union of all objects; None if an object's volume is unknown."""
     total = _sum([one.found.volume for one in objects])
     if total is None or not clashes:
         return total
@@ -227,7 +240,7 @@ def _volume(objects: Sequence[ExaminedObject], clashes: Sequence[Clash]) -> floa
 
 
 def _all(values: "Sequence[_Any | None]") -> "list[_Any] | None":
-    """Return the values if all are known."""
+    """Return the values, or None if one of them is None."""
     known = [value for value in values if value is not None]
     return known if len(known) == len(values) else None
 

@@ -1,4 +1,4 @@
-"""Assemblies in files: components of 3MF, nodes of GLB, objects of OBJ."""
+"""Reading and writing of assemblies: components of 3MF, nodes of GLB, objects of OBJ."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -33,26 +33,26 @@ from ..solid.solid import Solid
 from . import scripts
 from .tree import Assembly, moved
 
-#: Formats that hold a tree, each with its reader and writer.
+#: The formats that store a tree of objects, each with its reader and writer.
 _TREES: dict[str, tuple[Callable[[Source], SceneNode], Callable[[SceneNode], Iterator[bytes]]]] = {
     ".3mf": (threemf.read, threemf.encode),
     ".glb": (glb.read, glb.encode),
 }
 
-#: Suffixes of scripts.
+#: The suffixes of OpenSCAD scripts and their JSON form.
 _SCRIPTS = frozenset({".csg", ".json", ".scad"})
 
-#: Steps of a colour in a file.
+#: The largest value of a colour component in a file.
 _BYTE = 255
 
 
 def load(path: str | os.PathLike[str], **options: Any) -> Assembly:
-    """Read an assembly (see `Assembly.load`)."""
+    """Read an assembly from a file; see `Assembly.load`."""
     return load_as(path, Path(file_path(path)).suffix.lower(), **options)
 
 
 def load_as(path: str | os.PathLike[str], suffix: str, **options: Any) -> Assembly:
-    """Read an assembly in the format of a suffix, whatever the file's own suffix."""
+    """Read an assembly in the format that `suffix` names, not the file's own suffix."""
     if suffix in _SCRIPTS:
         return scripts.load(path, Path(path).stem, **options)
     if suffix in _TREES:
@@ -78,7 +78,7 @@ def _decoded(name: str, data: bytes, suffix: str) -> SceneNode:
 
 
 class _Reading:
-    """The solids of one file: meshes that nodes share are shared by solids."""
+    """A file that is read as an assembly: nodes with a common mesh get a common solid."""
 
     def __init__(self, path: str | os.PathLike[str], suffix: str, options: dict[str, Any]) -> None:
         self._path = path
@@ -87,14 +87,17 @@ class _Reading:
         self._solids: dict[int, Solid] = {}
 
     def assembly(self, root: SceneNode) -> Assembly:
-        """Return the tree; a file with nothing usable is refused as for a mesh."""
+        """Return the assembly of a scene's root node.
+
+        Without any part in it, raise the error of reading the file as a mesh.
+        """
         made = self._node(root) or Assembly(root.name)
         if not made.parts:
             solid_of(read_as(self._path, self._suffix), self._path, **self._options)
         return made
 
     def _node(self, node: SceneNode) -> Assembly | None:
-        """Return the assembly of a node, or None if the node is flat."""
+        """Return the assembly of a node, or None if its matrix is singular."""
         if _is_flat(node.matrix):
             return None
         inner = (self._node(child) for child in node.children)
@@ -116,7 +119,7 @@ def _is_flat(matrix: FloatArray) -> bool:
 
 
 def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...]:
-    """Write an assembly (see `Assembly.save`)."""
+    """Write an assembly to a file, and return the findings about losses; see `Assembly.save`."""
     suffix = Path(file_path(path)).suffix.lower()
     return (*_written(assembly, path, suffix), *_densities(assembly))
 
@@ -183,7 +186,7 @@ def _densities(assembly: Assembly) -> tuple[Finding, ...]:
 
 
 class _Describing:
-    """Describes an assembly for files; parts that share a solid become nodes that share a mesh."""
+    """Converter of an assembly to scene nodes; parts with a common solid get a common mesh."""
 
     def __init__(self, form: Form) -> None:
         #: The number of parts without volume, which files cannot store.
@@ -194,7 +197,10 @@ class _Describing:
         self._meshes: dict[int, tuple[Solid, RawMesh]] = {}
 
     def node(self, assembly: Assembly, color: tuple[float, ...] | None) -> SceneNode | None:
-        """Return the description of an assembly, or None if it is empty."""
+        """Return the scene node of an assembly, or None if it has no part with volume.
+
+        `color` is the colour inherited from the assembly around it.
+        """
         name = called(assembly.name)
         color = color if assembly.color is None else assembly.color
         matrix = transform.product(assembly.factors) if assembly.factors else np.eye(4)
@@ -219,7 +225,7 @@ class _Describing:
         return self._meshes[id(solid)][1]
 
     def _tell(self, name: str, findings: tuple[Finding, ...]) -> None:
-        """Add the findings about a part; the one about the unit concerns all parts."""
+        """Record the findings about a part, with its name; the finding about the unit only once."""
         for one in findings:
             is_common = one.code == "unit"
             told = one if is_common else replace(one, message=f"“{name or 'part'}”: {one.message}")
@@ -234,18 +240,21 @@ def _raw(mesh: Mesh, name: str, in_single: bool) -> RawMesh:
 
 
 def _is_painted(said: Attributes | None) -> bool:
-    """Say whether faces have colours of their own, which override that of the part."""
+    """Return True if a mesh has colours or materials, which override the colour of its part."""
     return said is not None and not {"color", "material"}.isdisjoint(said.names)
 
 
 class _As3mf:
-    """A tree with the colours and attributes that 3MF can hold; shared meshes stay shared."""
+    """Converter of scene nodes to the colours and attributes that 3MF can store.
+
+    Nodes with a common mesh still have a common mesh afterwards.
+    """
 
     def __init__(self) -> None:
         self._meshes: dict[int, RawMesh] = {}
 
     def node(self, node: SceneNode) -> SceneNode:
-        """Return a node as 3MF holds it."""
+        """Return a scene node and its children as 3MF will store them."""
         color = node.color and tuple(round(value * _BYTE) / _BYTE for value in node.color)
         mesh = None if node.mesh is None else self._mesh(node.mesh)
         return SceneNode(node.name, node.matrix, mesh, color, tuple(map(self.node, node.children)))
@@ -259,7 +268,7 @@ class _As3mf:
 
 
 def _lost(given: SceneNode, written: SceneNode, suffix: str) -> tuple[Finding, ...]:
-    """Return the finding about attributes that a format cannot store."""
+    """Return the finding about attributes of `given` that are missing in `written`, if any."""
     lost: set[str] = set()
     for node, held in zip(given.walk(), written.walk(), strict=True):
         if node.mesh is not None and held.mesh is not None and node.mesh.attributes is not None:
@@ -269,15 +278,15 @@ def _lost(given: SceneNode, written: SceneNode, suffix: str) -> tuple[Finding, .
 
 
 def _left_out(lost: set[str], suffix: str) -> tuple[Finding, ...]:
-    """Return the finding about attributes with these names, if there are any."""
+    """Return the finding that a format cannot store attributes of the given names, if any."""
     return not_held([f"“{name}”" for name in sorted(lost)], suffix)
 
 
 def _in_place(assembly: Assembly) -> tuple[RawMesh, set[str]]:
-    """Return all parts as one mesh, each an object where it is, and the attributes left out.
+    """Return all parts as one mesh with an object for each, and the names of omitted attributes.
 
-    Attributes that OBJ cannot store are left out first, because parts may have them in types that
-    do not go together.
+    Attributes that OBJ cannot store are omitted before the meshes are joined, because their types
+    may differ between parts.
     """
     pieces: list[RawMesh] = []
     lost: set[str] = set()
@@ -293,6 +302,6 @@ def _in_place(assembly: Assembly) -> tuple[RawMesh, set[str]]:
         own = None if held.is_empty else held
         pieces.append(RawMesh(mesh.vertices, mesh.faces, part.path, attributes=own))
     if any(one.attributes and "material" in one.attributes.face for one in pieces):
-        # Colours of faces are stored next to materials of other parts.
+        # Another part has materials, so write the colours of faces as materials, too.
         pieces = [replace(one, attributes=obj.with_materials(one.attributes)) for one in pieces]
     return joined(pieces), lost

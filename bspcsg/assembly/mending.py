@@ -1,4 +1,4 @@
-"""Repairs of files with several objects: each on its own, since touching objects are two solids."""
+"""Repair of files with several objects: each separately, since objects that touch stay separate."""
 
 from typing import Any
 
@@ -8,19 +8,19 @@ from .examining import Examination, ExaminedObject, examine
 
 
 def mended(raw: RawMesh, **options: Any) -> Repair:
-    """Return the repair of a mesh, or of each of its objects.
+    """Repair a mesh; if it has several objects, repair each of them separately.
 
     Parameters
     ----------
     raw : RawMesh
     **options
-        As for `repair`.
+        The options of `repair`.
     """
     return mended_as_found(examine(raw), **options)
 
 
 def mended_as_found(whole: Examination, **options: Any) -> Repair:
-    """Return the repair of a mesh that was examined; its objects keep their names."""
+    """Repair a mesh that was already examined, object by object; objects keep their names."""
     raw = whole.mesh
     if not whole.objects:
         return repair(raw, **options)

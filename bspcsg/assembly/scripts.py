@@ -1,4 +1,4 @@
-"""Assemblies in `.csg` scripts: nodes that unite form the tree, colours apply to parts."""
+"""Assemblies in `.csg` scripts: nodes that unite their children become the tree."""
 
 import os
 from collections.abc import Iterable
@@ -14,22 +14,22 @@ from ..errors import Finding
 from ..solid.solid import Solid
 from .tree import Assembly
 
-#: Nodes that unite their children.
+#: The names of nodes that unite their children.
 _UNITING = frozenset({"group", "union", "render", "color"})
 
 
-#: The largest number of such nodes inside one another; anything deeper becomes one part.
+#: The largest nesting depth of the tree; a node at a greater depth becomes one part.
 _MAX_PART_DEPTH = 60
 
 
 def load(path: str | os.PathLike[str], name: str, **options: Any) -> Assembly:
-    """Return the assembly of a script; any node that does not unite, colour or move is a part."""
+    """Read an assembly from a script; each node that does not unite, colour or move is a part."""
     reading = _Reading(csg.read_tree(path), options)
     return Assembly(name, reading.assemblies(reading.tree.roots(), None, (), 0))
 
 
 class _Reading:
-    """A script, and the options with which its nodes are evaluated."""
+    """A script that is read as an assembly, and the options with which its nodes are evaluated."""
 
     def __init__(self, tree: CsgTree, options: dict[str, Any]) -> None:
         self.tree = tree
@@ -38,7 +38,7 @@ class _Reading:
     def assemblies(
         self, nodes: Iterable[Node], color: tuple[float, ...] | None, scope: Scope, depth: int
     ) -> list[Assembly]:
-        """Return the assemblies of some nodes, without empty ones."""
+        """Return the assemblies of the given nodes, omitting nodes that are not solids."""
         there = (node for node in nodes if not node.is_ignored)
         found = (self._assembly(node, color, scope, depth) for node in there)
         return [made for made in found if made is not None]
@@ -46,7 +46,10 @@ class _Reading:
     def _assembly(
         self, node: Node, color: tuple[float, ...] | None, scope: Scope, depth: int
     ) -> Assembly | None:
-        """Return a node as a tree; of nested colours the outermost counts."""
+        """Return the assembly of a node, or None if it is not a solid.
+
+        Of nested colours, the outermost one, `color`, applies.
+        """
         is_moving = node.name == "multmatrix" and len(node.arguments) > 0
         if depth > _MAX_PART_DEPTH or not (node.name in _UNITING or is_moving):
             one = CsgTree((Node("group", scope, (node,)),), self.tree.name, self.tree.folder)
@@ -59,14 +62,17 @@ class _Reading:
 
 
 def _color(node: Node) -> tuple[float, ...] | None:
-    """Return the colour that a node gives, if it gives one; a second argument is the opacity."""
+    """Return the colour of a `color` node, or None if it is invalid.
+
+    The second argument of the node is the opacity.
+    """
     named = {
         argument.name or str(place): argument.value for place, argument in enumerate(node.arguments)
     }
     given: Any = named.get("c", named.get("0"))
     alpha: Any = named.get("alpha", named.get("1"))
     try:
-        # Scripts give colours from 0 to 1, however the numbers are written.
+        # In scripts, colours are from 0 to 1, also if they are written as whole numbers.
         found = color_of(given if isinstance(given, str) else [float(value) for value in given])
         return found if alpha is None else color_of([*found[:3], float(alpha)])
     except (TypeError, ValueError):
@@ -74,7 +80,10 @@ def _color(node: Node) -> tuple[float, ...] | None:
 
 
 def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...]:
-    """Write each part in its place, with its colour; scripts have no names."""
+    """Write each part, transformed and with its colour, as a node of a script.
+
+    Return the findings about losses: scripts store no names and no attributes.
+    """
     nodes: list[Node] = []
     for part in assembly.parts:
         inner = tree_of(part.solid).nodes

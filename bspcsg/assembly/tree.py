@@ -1,4 +1,4 @@
-"""`Assembly`: a tree of named, coloured, placed solids, as an immutable value."""
+"""`Assembly`: an immutable tree of named and coloured solids with transforms."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator
@@ -21,30 +21,32 @@ from ..solid.solid import Solid
 from .bill import Bill, bill_of
 from .clashes import Clash, are_apart, clashes_of
 
-#: The largest number of assemblies inside one another, the same as in files.
+#: The largest nesting depth of assemblies, the same as in files.
 _MAX_DEPTH = 64
 
-#: The content of an assembly.
+#: The content of an assembly: a solid, or several solids and assemblies.
 Content: TypeAlias = Solid | Iterable[Any]
 
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A solid of an assembly, in its place.
+    """A solid of an assembly, with its transform, colour and density.
 
     Parameters
     ----------
     path : str
-        The names on the path to it, separated by ``/``; unique among the parts.
+        The names of the enclosing assemblies and of the part, separated by ``/``; unique among the
+        parts.
     name : str
+        The name of the part.
     shape : Solid
-        As given; instances share one object.
+        The solid before it is transformed; instances share one object.
     factors : tuple of Factor
-        The motions that put it in its place, outermost first.
+        The affine maps that transform the solid, outermost first.
     color : (4,) tuple of float or None
-        Its own, or that of an assembly around it.
+        The part's own colour, or the colour of an enclosing assembly.
     density : float or None
-        Mass of a cubic model unit.
+        The mass of a cubic model unit.
     """
 
     path: str
@@ -56,33 +58,35 @@ class Part:
 
     @cached_property
     def solid(self) -> Solid:
-        """The solid where it is."""
+        """The solid, transformed to its position in the assembly."""
         return moved(self.shape, self.factors)
 
 
 @owning
 class Assembly(Movable):
-    """A tree of named, coloured, placed solids.
+    """A tree of named and coloured solids, each with a transform.
 
     Solids and assemblies may appear several times: instances share their geometry, also in files.
-    Iterating yields the parts, each with its solid in its place.
+    Iterating yields the parts, each with its transformed solid.
 
     Parameters
     ----------
     name : str
+        The name of the assembly.
     content : Solid or sequence of Solid and Assembly
-        Whatever `Solid.from_mesh` takes counts as a solid.
+        The parts; any object that `Solid.from_mesh` takes counts as a solid.
     color : optional
-        For everything inside without a colour of its own: ``"orange"``, ``"#ff8800"``, or red,
-        green, blue and optionally opacity, as floats from 0 to 1 or whole numbers from 0 to 255.
-        Whole numbers count from 0 to 1 if none is above 1. The colour is stored as four floats.
+        The colour of all parts that have no colour of their own: ``"orange"``, ``"#ff8800"``, or
+        red, green, blue and optionally opacity, as floats from 0 to 1 or whole numbers from 0 to
+        255. Whole numbers are from 0 to 1 if none exceeds 1. It is stored as four floats.
     density : float, optional
-        Mass of a cubic model unit, for everything inside without a density of its own.
+        The mass of a cubic model unit, for all parts that have no density of their own.
 
     Raises
     ------
     InvalidParameterError
-        If assemblies nest more than 64 deep, the density is negative, or the colour is invalid.
+        If assemblies are nested more than 64 deep, the density is negative, or the colour is
+        invalid.
 
     Examples
     --------
@@ -127,7 +131,7 @@ class Assembly(Movable):
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
-        """All solids, each in its place, in the order of the tree."""
+        """All solids of the tree with their transforms, in order."""
         found: list[Part] = []
         taken: dict[str, int] = {}
         waiting: list[tuple[Assembly, str, Part | None]] = [(self, "", None)]
@@ -143,7 +147,7 @@ class Assembly(Movable):
         return tuple(found)
 
     def _inherited(self, path: str, around: Part | None) -> Part:
-        """Return this node as a part, with properties inherited from the assembly around it."""
+        """Return this node as a part that inherits transform, colour and density from `around`."""
         outer = () if around is None else around.factors
         color = self.color if self.color is not None or around is None else around.color
         density = self.density if self.density is not None or around is None else around.density
@@ -151,20 +155,20 @@ class Assembly(Movable):
         return Part(path, self.name, shape, outer + self.factors, color, density)
 
     def __iter__(self) -> Iterator[Part]:
-        """Yield the parts."""
+        """Yield the parts of the assembly."""
         return iter(self.parts)
 
     def __len__(self) -> int:
-        """Return the number of parts."""
+        """Return the number of parts of the assembly."""
         return len(self.parts)
 
     def __getitem__(self, path: str) -> Part:
-        """Return the part with a path, or with a name that only one part has.
+        """Return the part with the given path, or with the given name if it is unique.
 
         Raises
         ------
         KeyError
-            If there is no such part, or several of that name.
+            If there is no such part, or several parts have that name.
         """
         found = [part for part in self.parts if part.path == path]
         found = found or [part for part in self.parts if part.name == path]
@@ -177,7 +181,7 @@ class Assembly(Movable):
         return found[0]
 
     def __repr__(self) -> str:
-        """Say how many parts there are."""
+        """Return a text with the name of the assembly and the number of its parts."""
         count = len(self.parts)
         return f"Assembly({self.name!r}, {count} part{'' if count == 1 else 's'})"
 
@@ -188,7 +192,7 @@ class Assembly(Movable):
         show(self)
 
     def _repr_html_(self) -> str | None:
-        """Return the view in a notebook: an interactive view of the union."""
+        """Return HTML for a notebook: an interactive view of the union of all parts."""
         from ..report.viewer.notebook import solid_html
 
         return solid_html(self.to_solid())
@@ -199,10 +203,13 @@ class Assembly(Movable):
         kept = tuple(factor for factor in factors if not factor.is_identity)
         return self._with(factors=kept + self.factors) if kept else self
 
-    # Operations, object by object
+    # Operations, part by part
 
     def __sub__(self, tool: Any) -> "Assembly":
-        """Subtract a solid or an assembly from every part; parts that it misses stay shared."""
+        """Subtract a solid or an assembly from every part.
+
+        Parts whose bounding box does not meet the tool's bounding box are unchanged.
+        """
         other = _as_solid(tool)
         return self._each((), lambda part: part if are_apart(part, other) else part - other)
 
@@ -212,7 +219,10 @@ class Assembly(Movable):
         return self._each((), lambda part: part & other)
 
     def _each(self, outer: Factors, change: Callable[[Solid], Solid]) -> "Assembly":
-        """Return the tree with each part's solid changed in its place, if that changes it."""
+        """Return the tree with a change applied to each part's transformed solid.
+
+        `outer` are the affine maps of the enclosing assemblies.
+        """
         factors = outer + self.factors
         if self.shape is None:
             children = tuple(child._each(factors, change) for child in self.children)
@@ -229,33 +239,33 @@ class Assembly(Movable):
     def to_solid(self) -> Solid:
         """Return the union of all parts.
 
-        Its faces record their origin: the face attribute ``"part"`` is the path, and ``"color"``
-        the colour, in bytes, of parts that have one and no attribute ``"color"``.
+        The face attribute ``"part"`` is the path of the part that a face comes from, and
+        ``"color"`` the part's colour in bytes, unless the part's mesh has colours itself.
         """
         return union([_tagged(part) for part in self.parts]) if self.parts else Solid.empty()
 
     def clashes(self, clearance: Scalar = 0.0) -> list[Clash]:
-        """Return the pairs of parts that share volume, or come too close to each other.
+        """Return the pairs of parts that share volume or are too close to each other.
 
         Parameters
         ----------
         clearance : float
-            The least distance that parts must keep, in model units. By default parts may touch.
+            The least allowed distance of parts, in model units. By default parts may touch.
 
         Returns
         -------
         list of Clash
-            In the order of the parts. Pairs whose boxes are farther apart are skipped.
+            The clashes, in the order of the parts.
         """
         return clashes_of(self.parts, not_negative(clearance, "clearance"))
 
     def bill(self) -> Bill:
-        """Return the bill: the count, volume and mass of each kind of part."""
+        """Return the bill of materials: the count, volume and mass of each kind of part."""
         return bill_of(self.parts)
 
     @property
     def bounds(self) -> FloatArray | None:
-        """Lowest and highest coordinates, (2, 3) float64, or None if there is nothing."""
+        """The least and the greatest coordinates, (2, 3) float64, or None without points."""
         boxes = [box for part in self.parts if (box := part.solid.bounds) is not None]
         if not boxes:
             return None
@@ -267,14 +277,14 @@ class Assembly(Movable):
     def save(self, path: str | os.PathLike[str]) -> tuple[Finding, ...]:
         """Write the assembly; the suffix names the format.
 
-        3MF and GLB keep the tree, names, colours and shared geometry of instances, and attributes
-        of faces as far as `bspcsg.save` does. OBJ stores each part as an object in its place,
+        3MF and GLB store the tree, names, colours, the shared geometry of instances, and attributes
+        of faces as far as `bspcsg.save` does. OBJ stores each transformed part as an object,
         ``.csg`` each part with its colour.
 
         Returns
         -------
         tuple of Finding
-            Findings about everything that the format could not keep; no format keeps densities.
+            Findings about all data that the format cannot store; no format stores densities.
 
         Raises
         ------
@@ -296,16 +306,17 @@ class Assembly(Movable):
     def load(cls, path: str | os.PathLike[str], **options: Any) -> "Assembly":
         """Read an assembly; the suffix names the format.
 
-        The tree consists of the components of 3MF, the nodes of GLB, or the united nodes of
+        The tree consists of the components of 3MF, the nodes of GLB, or the uniting nodes of
         scripts; the objects of OBJ are parts. Any other mesh file is an assembly of one part.
-        Support and surfaces of 3MF, lines of GLB, and anything scaled to nothing are ignored, as by
+        Support and surface objects of 3MF, lines of GLB, and objects scaled by 0 are ignored, as by
         `bspcsg.load`.
 
         Parameters
         ----------
         path : str or path
         **options
-            For each solid, as for `Solid`; of scripts as for `bspcsg.csg.evaluate`.
+            The options of `Solid` for each solid; for scripts, the options of
+            `bspcsg.csg.evaluate`.
 
         Raises
         ------
@@ -318,7 +329,7 @@ class Assembly(Movable):
 
 
 def moved(solid: Solid, factors: Factors) -> Solid:
-    """Return a solid moved by factors, outermost first."""
+    """Return a solid transformed by affine maps, of which the last is applied first."""
     return solid._moved(factors)
 
 
@@ -342,10 +353,10 @@ def _as_solid(tool: Any) -> Solid:
 
 
 def _free(path: str, taken: dict[str, int]) -> str:
-    """Take a path, with a number appended if it is taken; `taken` has the last number of each.
+    """Return a path, with a number appended if it is already used, and mark it as used.
 
-    Counting continues from there, so many parts of one name take no longer than parts of different
-    names.
+    `taken` has the last number for each path. Counting continues from it, so the time for n parts
+    of one name is proportional to n.
     """
     number, free = taken.get(path, 1), path
     while free in taken:

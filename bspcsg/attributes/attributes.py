@@ -15,32 +15,35 @@ from ..parameters import shown
 from .colours import COLOR, colors_of, in_bytes
 from .material import Material
 
-#: Values of any type, one value or an array of values per element.
+#: An array with one value, or an array of values, per vertex, corner or face.
 Values: TypeAlias = npt.NDArray[Any]
 
-#: The kinds of elements that an array can have values for.
+#: The elements of a mesh for which an attribute has values.
 Kind: TypeAlias = Literal["vertex", "corner", "face"]
 
 KINDS: tuple[Kind, ...] = ("vertex", "corner", "face")
 
-#: Types of values: truth values, whole numbers, floats, text.
+#: The allowed `dtype.kind` of values: truth values, whole numbers, floats, text.
 _TYPES = "biufU"
 
-#: Names of attributes that rotate with the solid, and are reversed where it is subtracted.
+#: The names of normals, which rotate with the solid and are reversed where it is subtracted.
 NORMALS = frozenset({"normal", "normals"})
 
 
 @dataclass(frozen=True, eq=False)
 class Attributes:
-    """Named arrays over a mesh; each name has one array.
+    """Named arrays of values for the vertices, corners or faces of a mesh.
 
     Parameters
     ----------
     faces : (m, 3) int64
-        The triangles, which map values of vertices to values of corners.
+        The triangles of the mesh.
     vertex : dict of str to (n, …) array
+        The values of each vertex, by name; a name is in only one of the dictionaries.
     corner : dict of str to (m, 3, …) array
+        The values of each corner of each face, by name.
     face : dict of str to (m, …) array
+        The values of each face, by name.
     materials : dict of str to Material
         The materials that the face attribute ``"material"`` names.
     """
@@ -53,24 +56,24 @@ class Attributes:
 
     @property
     def is_empty(self) -> bool:
-        """True if there is no array."""
+        """True if there are no attributes of vertices, corners or faces."""
         return not (self.vertex or self.corner or self.face)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """All names, in the order vertices, corners, faces."""
+        """The names of all attributes: first of vertices, then of corners, then of faces."""
         return (*self.vertex, *self.corner, *self.face)
 
     def of(self, kind: Kind) -> Mapping[str, Values]:
-        """Return the arrays of one kind."""
+        """Return the arrays of the vertices, the corners or the faces, by name."""
         return {"vertex": self.vertex, "corner": self.corner, "face": self.face}[kind]
 
     def kind_of(self, name: str) -> Kind | None:
-        """Return the kind of elements that a name has values for, None if there is no array."""
+        """Return whether an attribute belongs to vertices, corners or faces; None if unknown."""
         return next((kind for kind in KINDS if name in self.of(kind)), None)
 
     def at_corners(self, name: str, faces: IndexArray | None = None) -> Values:
-        """Return the values of a name at the corners of some or all faces, (k, 3, …)."""
+        """Return the values of an attribute at the corners of the given or all faces, (k, 3, …)."""
         chosen: Any = slice(None) if faces is None else faces
         values: Values
         if name in self.vertex:
@@ -82,7 +85,7 @@ class Attributes:
         return values
 
     def taken(self, faces: IndexArray) -> "Attributes":
-        """Return the attributes of some of the faces, in the order of their numbers."""
+        """Return the attributes of a part of the faces, in the order of the given face numbers."""
         return replace(
             self,
             faces=self.faces[faces],
@@ -91,13 +94,13 @@ class Attributes:
         )
 
     def with_used_materials(self) -> "Attributes":
-        """Return the attributes with only the materials that faces use."""
+        """Return the attributes without the materials that no face uses."""
         used = set(np.unique(self.face.get("material", np.array([""]))).tolist())
         kept = {name: one for name, one in self.materials.items() if name in used}
         return replace(self, materials=kept)
 
     def without(self, names: Container[str]) -> "Attributes":
-        """Return the attributes without the given names."""
+        """Return the attributes without the arrays of the given names."""
         vertex, corner, face = (
             {name: values for name, values in self.of(kind).items() if name not in names}
             for kind in KINDS
@@ -111,7 +114,10 @@ class Attributes:
         return self.without({"material"}) if is_empty else self
 
     def turned(self, linear: FloatArray) -> "Attributes":
-        """Return the attributes after a linear map of the mesh; normals turn, and keep length."""
+        """Return the attributes after a linear map of the mesh, which changes normals.
+
+        Normals keep their lengths.
+        """
         if not NORMALS.intersection(self.names):
             return self
         vertex, corner, face = (
@@ -124,18 +130,21 @@ class Attributes:
         return replace(self, vertex=vertex, corner=corner, face=face)
 
     def reordered(self, order: list[int]) -> "Attributes":
-        """Return the attributes with the three corners of every face permuted."""
+        """Return the attributes with the corners of every face permuted: corner order[k] as k."""
         corner = {name: values[:, order] for name, values in self.corner.items()}
         return replace(self, faces=self.faces[:, order], corner=corner)
 
     def onto(self, faces: IndexArray, kept: IndexArray) -> "Attributes":
-        """Return the attributes of other triangles, each of which replaces one of these."""
+        """Return the attributes of new triangles, each of which replaces the old face `kept[k]`."""
         corner = {name: self.at_corners(name, kept) for name in (*self.vertex, *self.corner)}
         face = {name: values[kept] for name, values in self.face.items()}
         return Attributes(faces, {}, corner, face, self.materials)
 
     def among(self, taken: dict[str, Material]) -> "Attributes":
-        """Add the materials to others; one with a name that is taken gets a number appended."""
+        """Add the materials to `taken`, and return the attributes with their new names.
+
+        A number is appended to a name that another material in `taken` has.
+        """
         names = {}
         for name, material in self.materials.items():
             names[name] = _free(name, partial(_means_another, taken, material))
@@ -167,9 +176,10 @@ class Attributes:
 
     @cached_property
     def patches(self) -> tuple[IndexArray, list[bytes]]:
-        """Groups of faces with equal values: (m,) numbers, and the values that they stand for.
+        """The patches, groups of faces with equal values: a number for each face, and the values.
 
-        Faces whose corners differ have numbers of their own, above those that stand for values.
+        The (m,) numbers below the length of the list of values are positions in it. Each face whose
+        corners differ is a patch of its own, with a larger number.
         """
         rows, is_even = self._rows()
         count = len(self.faces)
@@ -182,7 +192,7 @@ class Attributes:
         return patches, [signature + value.tobytes() for value in kept]
 
     def _rows(self) -> tuple[npt.NDArray[np.uint8], BoolArray]:
-        """Return the bytes of all values of each face, and whether its corners agree."""
+        """Return the bytes of all values at corner 0 of each face, and if its corners agree."""
         count = len(self.faces)
         is_even = np.ones(count, dtype=bool)
         rows = [np.zeros((count, 1), dtype=np.uint8)]
@@ -203,7 +213,7 @@ def _means_another(taken: Mapping[str, Material], material: Material, name: str)
 
 
 def _free(name: str, is_taken: Callable[[str], bool]) -> str:
-    """Return a free name, with a number appended if need be."""
+    """Return a name that is not taken: the given one, with a number appended if necessary."""
     number, free = 1, name
     while is_taken(free):
         number += 1
@@ -218,18 +228,21 @@ def _bytes_of(values: Values, count: int) -> npt.NDArray[np.uint8]:
 
 
 def is_normal(name: str, values: Values) -> bool:
-    """Say whether an array rotates with the mesh: by name, with three floats per element."""
+    """Return True for normals: a name in `NORMALS`, with three floats per element."""
     return name in NORMALS and values.dtype.kind == "f" and values.shape[-1:] == (3,)
 
 
 def _turned(values: Values, linear: FloatArray) -> Values:
-    """Return normals under a linear map, by its cofactors, with their lengths kept."""
+    """Return normals after a linear map of the mesh, with unchanged lengths.
+
+    They are multiplied by the cofactors of the map.
+    """
     a, b, c = np.asarray(linear, dtype=np.float64)
     cofactors = np.array([np.cross(b, c), np.cross(c, a), np.cross(a, b)])
     if np.dot(a, cofactors[0]) < 0:
         cofactors = -cofactors
     if np.abs(linear).sum() == 3 and (np.abs(linear).sum(axis=0) == 1).all():
-        # Permuting and mirroring axes changes no bits of a coordinate except its sign.
+        # If the map only permutes and mirrors axes, permute the coordinates without rounding.
         axes = np.abs(linear).argmax(axis=1)
         signs = linear[np.arange(3), axes].astype(values.dtype)
         return np.ascontiguousarray(values[..., axes] * signs)
@@ -242,13 +255,13 @@ def _turned(values: Values, linear: FloatArray) -> Values:
 
 
 def with_even_faces(said: Attributes, only: str | None = None) -> Attributes:
-    """Return the attributes; those of corners become those of faces if every face's corners agree.
+    """Turn attributes of corners into attributes of faces if the corners of every face agree.
 
     Parameters
     ----------
     said : Attributes
     only : str, optional
-        The only name to change.
+        The only attribute to change; by default all are tested.
     """
     even = {}
     for name, values in said.corner.items():
@@ -265,7 +278,7 @@ def with_even_faces(said: Attributes, only: str | None = None) -> Attributes:
 
 @dataclass(frozen=True, eq=False)
 class Given:
-    """Attributes as a caller gives them, in any form that numpy understands."""
+    """Attributes as a caller gives them: dictionaries of values that numpy can convert."""
 
     vertex: Mapping[str, Any] | None = None
     corner: Mapping[str, Any] | None = None
@@ -277,7 +290,7 @@ class Given:
         return self.vertex, self.corner, self.face
 
     def over(self, vertex_count: int, faces: IndexArray) -> Attributes | None:
-        """Return the arrays over a mesh, or None if there are none.
+        """Return the checked attributes of a mesh, or None if there are none.
 
         Raises
         ------
@@ -320,7 +333,10 @@ def _named(given: Mapping[str, Any] | None, kind: Kind) -> list[tuple[str, Any]]
 
 
 def array_of(values: Any, name: str) -> Values:
-    """Return the values of an attribute as a new array."""
+    """Return the values of an attribute as a new array.
+
+    Raise `InvalidMeshError` if they are masked or cannot form an array.
+    """
     if is_masked(values):
         raise _refused(
             f"the attribute “{name}” is a masked array with masked values; fill them before you"
@@ -352,7 +368,10 @@ def _array(values: Any, name: str, kind: Kind, shape: tuple[int, ...]) -> Values
 
 
 def _colors(given: Any, shape: tuple[int, ...]) -> Values:
-    """Return the array "color" as colours, if it is one; a single colour is for all elements."""
+    """Return the values of the attribute "color", with colours in text or integers converted.
+
+    A single colour is repeated for all elements.
+    """
     is_mixed = isinstance(given, (list, tuple)) and any(isinstance(one, str) for one in given)
     array = colors_of(given) if is_mixed else array_of(given, COLOR)
     if array.dtype.kind == "U":
@@ -381,7 +400,7 @@ def _refused(message: str) -> InvalidMeshError:
 
 
 class Later:
-    """Attributes that are computed on first use, once.
+    """Attributes that are computed when they are first used, and then stored.
 
     Parameters
     ----------
@@ -393,7 +412,7 @@ class Later:
         self._made: Attributes | None = None
 
     def now(self) -> Attributes:
-        """Return the attributes."""
+        """Return the attributes; compute them if this is the first use."""
         make = self._make
         if make is not None:
             self._made, self._make = make(), None
@@ -402,12 +421,12 @@ class Later:
         return self._made
 
     def __reduce__(self) -> tuple[Any, tuple[Attributes]]:
-        """Pickle the computed attributes."""
+        """Return what pickle needs: the computed attributes."""
         return made, (self.now(),)
 
 
 def made(attributes: Attributes) -> Later:
-    """Return attributes that are computed already."""
+    """Return a `Later` of attributes that are already computed."""
     later = Later(lambda: attributes)
     later.now()
     return later

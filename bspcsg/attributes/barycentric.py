@@ -1,6 +1,6 @@
-"""Barycentric coordinates in double-doubles, and in fractions where those do not suffice.
+"""Barycentric coordinates in double-doubles, and in fractions for very thin triangles.
 
-A point lies in its triangle's plane up to rounding, so both are projected along the main axis.
+A point lies in its triangle's plane up to rounding, so both are projected along a coordinate axis.
 """
 
 from fractions import Fraction
@@ -10,21 +10,21 @@ import numpy as np
 
 from .._types import FloatArray
 
-#: Double-doubles: the rounded sum and its error.
+#: A double-double, the unevaluated sum of two doubles: the rounded value and its error.
 _Pair: TypeAlias = tuple[FloatArray, FloatArray]
 
-#: Splits the 53 bits of a double into two halves whose products are exact.
+#: The factor that splits the 53 bits of a double into two halves whose products are exact.
 _SPLITTER = 2.0**27 + 1
 
-#: The largest product of two edges' lengths per area for which pairs of doubles decide. Their
-#: determinants err by less than 2**-98 of that product, so weights err by less than 2**-58.
+#: The largest ratio of the product of two edge lengths to twice the area for which double-doubles
+#: suffice. Determinants err by less than 2**-98 of that product, so weights by less than 2**-58.
 _MAX_EXACT_THINNESS = 2.0**40
 
 
 def weights(points: FloatArray, triangles: FloatArray) -> FloatArray:
-    """Return (k, 3) weights of the corners of (k, 3, 3) triangles at (k, 3) points.
+    """Return the barycentric coordinates, (k, 3), of (k, 3) points in (k, 3, 3) triangles.
 
-    Their error is a few units in the last place of 1. Weights of triangles without area are not
+    Their error is a few units in the last place of 1. In triangles without area they are not
     finite.
     """
     flat, seen = _seen(points, triangles)
@@ -42,7 +42,10 @@ def weights(points: FloatArray, triangles: FloatArray) -> FloatArray:
 
 
 def _seen(points: FloatArray, triangles: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return (k, 2) points and (k, 3, 2) triangles without the coordinate that varies least."""
+    """Project points and triangles along the axis nearest to each triangle's normal.
+
+    Return (k, 2) points and (k, 3, 2) triangles.
+    """
     edges = triangles[:, 1:] - triangles[:, :1]
     normals = np.abs(np.cross(edges[:, 0], edges[:, 1]))
     axes = np.array([[1, 2], [2, 0], [0, 1]])[normals.argmax(axis=1)]
@@ -51,7 +54,7 @@ def _seen(points: FloatArray, triangles: FloatArray) -> tuple[FloatArray, FloatA
 
 
 def _determinant(a: FloatArray, b: FloatArray, c: FloatArray) -> tuple[_Pair, FloatArray]:
-    """Return twice the signed areas of triangles, and the size of the products in them."""
+    """Return twice the signed area of each triangle, and a bound of the products in it."""
     px, py = _difference(b[:, 0], a[:, 0]), _difference(b[:, 1], a[:, 1])
     qx, qy = _difference(c[:, 0], a[:, 0]), _difference(c[:, 1], a[:, 1])
     left, right = _product(px, qy), _product(py, qx)
@@ -85,7 +88,7 @@ def _halves(values: FloatArray) -> _Pair:
 
 
 def _quotient(part: _Pair, whole: _Pair) -> FloatArray:
-    """Return quotients of pairs; the second step corrects the error of the first double."""
+    """Return the quotients of double-doubles as doubles: a first quotient and its correction."""
     first = part[0] / whole[0]
     taken = _product((first, np.zeros_like(first)), whole)
     rest = (part[0] - taken[0]) + (part[1] - taken[1])

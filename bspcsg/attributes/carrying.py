@@ -1,7 +1,7 @@
-"""Attributes of a result, from the source faces in which its triangles lie, by exact places.
+"""The attributes of a result, taken from the source faces that contain its triangles.
 
 Each triangle of a result lies in one face of one source. Values of faces are copied. At a corner
-that equals a corner of the source's face, bit by bit, the value there is copied too; elsewhere it
+that equals a corner of the source's face, bit by bit, the value there is copied, too; elsewhere it
 is interpolated between the three corners of the face, in lattice coordinates.
 """
 
@@ -20,29 +20,31 @@ from .barycentric import weights
 from .colours import is_color, opaque
 from .material import Material
 
-#: The doubles of a source, its vertices on the lattice, its faces, and their input numbers.
+#: The arrays of a source: its vertices in doubles, its vertices snapped to the lattice, its faces,
+#: and the numbers of the faces in the input.
 SourceArrays: TypeAlias = tuple[FloatArray, FloatArray, IndexArray, IndexArray]
 
-#: A weight below minus this means that mending moved the place outside its face.
+#: A barycentric coordinate below minus this means that a corner was moved out of its source face.
 _OUTSIDE = 0.125
 
-#: Values at one vertex whose difference is smaller, in units of the largest, belong to one field:
-#: each is interpolated within 2**-49 of it, and the place was rounded within a spacing.
+#: The largest difference, relative to the largest value, of values at one vertex that count as
+#: equal. Each is interpolated with an error of 2**-49, and positions are rounded to doubles.
 _ONE_FIELD = 2.0**-40
 
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """The triangles of a result.
+    """The triangles of a result, and the source face that contains each.
 
     Parameters
     ----------
     vertices : (n, 3) float64
     faces : (m, 3) int64
     source : (m, 2) int64
-        Slot and number of the face that each triangle lies in.
+        The source's number (slot) and the face's number in it, for the face that contains each
+        triangle.
     flips : (m,) bool
-        True if it is reversed.
+        True if a triangle is oriented opposite to its source face.
     """
 
     vertices: FloatArray
@@ -53,16 +55,16 @@ class Surface:
 
 @dataclass(frozen=True, eq=False)
 class _Inner:
-    """Corners of triangles that are not corners of the faces around them.
+    """Corners of triangles that are not corners of the source faces that contain them.
 
     Parameters
     ----------
     triangles, corners : (j,) int64
-        Triangles of a group, and one corner of each.
+        The triangle of each such corner, and the corner's number in it, from 0 to 2.
     faces : (j,) int64
-        The number of the face that contains each.
+        The number of the face that contains each corner.
     places : (j, 3) float64
-        Weights of the corners of that face.
+        The barycentric coordinates of each corner in that face.
     """
 
     triangles: IndexArray
@@ -73,22 +75,22 @@ class _Inner:
 
 @dataclass(frozen=True, eq=False)
 class _SourceTriangles:
-    """The triangles of a result that lie in one source, and the places of their corners in it.
+    """The triangles of a result that lie in one source, and the positions of their corners in it.
 
     Parameters
     ----------
     attributes : Attributes
-        Of the source.
+        The attributes of the source.
     rows : (k,) int64
-        The numbers of the triangles.
+        The numbers of the triangles in the result.
     origins : (k,) int64
-        The number of each triangle's face.
+        The number of the source face that contains each triangle.
     corners : (k, 3) int64
-        The corner of that face that equals each corner, or -1.
+        The corner of that face, 0 to 2, that equals each corner of the triangle, or -1.
     inner : _Inner
-        The corners that equal none.
+        The corners that equal no corner of their source face.
     flips : (k,) bool
-        True if it is reversed.
+        True if a triangle is oriented opposite to its source face.
     """
 
     attributes: Attributes
@@ -99,7 +101,7 @@ class _SourceTriangles:
     flips: BoolArray
 
     def values(self, name: str) -> Values:
-        """Return the values of an attribute at the corners, (k, 3, …)."""
+        """Return the values of an attribute at the triangles' corners, (k, 3, …)."""
         given = self.attributes.at_corners(name, self.origins)
         width = math.prod(given.shape[2:])
         flat = given.reshape(len(self.rows), 3, width)
@@ -111,7 +113,7 @@ class _SourceTriangles:
         return self._faced(name, found.reshape(given.shape))
 
     def of_faces(self, name: str) -> Values:
-        """Return the values of a face attribute, (k, …)."""
+        """Return the values of a face attribute for each triangle, (k, …)."""
         return self._faced(name, self.attributes.face[name][self.origins])
 
     def _faced(self, name: str, values: Values) -> Values:
@@ -123,7 +125,10 @@ class _SourceTriangles:
 
 
 def patches_of(sources: Sequence[Attributes | None]) -> list[npt.NDArray[np.uint32] | None]:
-    """Return the patch of each face of each source; a patch is all faces with equal values."""
+    """Return the patch number of each face, an (m,) array or None for each source.
+
+    A patch consists of all faces, also of different sources, with equal attributes.
+    """
     known: dict[bytes, int] = {}
     found: list[npt.NDArray[np.uint32] | None] = []
     patches = [None if one is None else one.patches for one in sources]
@@ -146,13 +151,13 @@ def carried(
     sources: Sequence[Attributes | None],
     arrays_of: Callable[[int], SourceArrays | None],
 ) -> Attributes:
-    """Return the attributes of a result.
+    """Return the attributes of a result, copied or interpolated from its sources.
 
     Parameters
     ----------
     surface : Surface
     sources : sequence of Attributes or None
-        By slot.
+        The attributes of the source in each slot.
     arrays_of : callable
         Returns the core's arrays of the source in a slot.
 
@@ -178,7 +183,7 @@ def carried(
     return Attributes(surface.faces, **found, materials=materials)
 
 
-#: The arrays of a source from which nothing is left.
+#: The arrays of a source that contains no triangle of the result.
 _NO_ROWS: IndexArray = np.zeros(0, dtype=np.int64)
 _NO_ARRAYS: SourceArrays = (
     np.zeros((0, 3)),
@@ -189,7 +194,7 @@ _NO_ARRAYS: SourceArrays = (
 
 
 def _by_slot(source: IndexArray) -> Iterator[tuple[int, IndexArray]]:
-    """Yield each slot and the numbers of its triangles, ascending."""
+    """Yield each slot and the ascending numbers of the triangles from its source."""
     order = np.argsort(source[:, 0], kind="stable")
     slots, starts = np.unique(source[order, 0], return_index=True)
     yield from zip(slots.tolist(), np.split(order, starts[1:]), strict=False)
@@ -212,7 +217,7 @@ def _triangles_of(
 
 
 def _matches(points: FloatArray, corners: FloatArray) -> IndexArray:
-    """Return the corner of a face that equals each corner of a triangle, or -1."""
+    """Return the corner of a face, 0 to 2, that equals each corner of a triangle, or -1; (k, 3)."""
     same = (points[:, :, None] == corners[:, None]).all(axis=3)
     return np.where(same.any(axis=2), same.argmax(axis=2), -1)
 
@@ -220,10 +225,11 @@ def _matches(points: FloatArray, corners: FloatArray) -> IndexArray:
 def _brought_inside(
     inner: _Inner, vertices: IndexArray, corners: IndexArray, origins: IndexArray
 ) -> _Inner:
-    """Replace places outside their faces by those of other triangles there, or the nearest inside.
+    """Replace positions outside their source faces.
 
-    Where rounding would flip a triangle, an edge is swapped with a neighbour's, and a corner may
-    end up outside the face that its triangle is assigned to.
+    Such a corner gets the position of another triangle's corner at the same vertex, or else a
+    nearby position in its face. It arises where edges were swapped because rounding would flip a
+    triangle.
     """
     with np.errstate(invalid="ignore"):
         outside = np.flatnonzero(~(inner.places.min(axis=1, initial=1) >= -_OUTSIDE))
@@ -248,10 +254,10 @@ def _brought_inside(
 
 
 def _between(values: Values, places: FloatArray) -> Values:
-    """Return values (k, w) at places (k, 3) between those at three corners (k, 3, w).
+    """Interpolate between the values at three corners, (k, 3, w), with (k, 3) weights, to (k, w).
 
-    A value equal at all three corners stays exact. Whole numbers are rounded; truth values and text
-    take the value of the nearest corner.
+    A value that is equal at all three corners stays exact. Whole numbers are rounded; for truth
+    values and text, the value of the corner with the largest weight is taken.
     """
     rows = np.arange(len(values))
     nearest: Values = values[rows, places.argmax(axis=1)]
@@ -269,7 +275,7 @@ def _between(values: Values, places: FloatArray) -> Values:
 
 
 def _joined(name: str, lots: list[_SourceTriangles], surface: Surface) -> tuple[Kind, Values]:
-    """Return the kind of element that a name has values for in the result, and the values."""
+    """Return the values of an attribute in the result, and the kind of elements they belong to."""
     kinds = {lot.attributes.kind_of(name) for lot in lots}
     if kinds == {"face"}:
         parts = [lot.of_faces(name) for lot in lots]
@@ -286,7 +292,10 @@ def _joined(name: str, lots: list[_SourceTriangles], surface: Surface) -> tuple[
 def _filled(
     name: str, lots: list[_SourceTriangles], parts: list[Values], shape: tuple[int, ...], depth: int
 ) -> Values:
-    """Return the values of all triangles; triangles of sources without the name get the default."""
+    """Return the values of an attribute for all triangles of a result.
+
+    Triangles from sources without the attribute get the default value.
+    """
     parts = colors_alike(name, parts, depth)
     kind = common_type(name, parts, depth)
     blank = default_of(name, parts[0].astype(kind, copy=False), depth)
@@ -297,10 +306,10 @@ def _filled(
 
 
 def colors_alike(name: str, parts: Sequence[Values], depth: int) -> list[Values]:
-    """Return colours of several meshes in one form; other values as they are.
+    """Return the colours of several meshes in one type and width; return other values unchanged.
 
-    Whole numbers of one type stay; mixed types become floats from 0 to 1. If some colours have four
-    numbers, those of three become opaque.
+    Whole numbers of one type are unchanged; mixed types become floats from 0 to 1. If colours of
+    one mesh have four numbers, full opacity is added to colours of three.
 
     Parameters
     ----------
@@ -322,14 +331,14 @@ def colors_alike(name: str, parts: Sequence[Values], depth: int) -> list[Values]
 
 
 def common_type(name: str, parts: Sequence[Values], depth: int) -> np.dtype[Any]:
-    """Return the type of a name's values in several meshes.
+    """Return the common numpy type of an attribute's values in several meshes.
 
     Parameters
     ----------
     name : str
     parts : sequence of arrays
     depth : int
-        The number of axes that index the element.
+        The number of array axes that index the vertex, corner or face: 1 or 2.
 
     Raises
     ------
@@ -354,9 +363,9 @@ def common_type(name: str, parts: Sequence[Values], depth: int) -> np.dtype[Any]
 
 
 def default_of(name: str, values: Values, depth: int) -> Any:
-    """Return the default where a source lacks values like these: NaN, 0, False, or no text.
+    """Return the value for elements without an attribute: NaN, 0, False or empty text.
 
-    The default colour in whole numbers is opaque white, as pictures show a colour that is NaN.
+    For colours in whole numbers it is opaque white, which pictures also use for NaN.
     """
     kind = values.dtype
     if kind.kind == "u" and is_color(name, values, depth):
@@ -367,11 +376,11 @@ def default_of(name: str, values: Values, depth: int) -> Any:
 def _of_vertices(
     name: str, values: Values, lots: list[_SourceTriangles], surface: Surface
 ) -> Values | None:
-    """Return values of vertices if all corners at each vertex agree, else None."""
+    """Return one value per vertex if all corners at each vertex have equal values, else None."""
     count = len(surface.vertices)
     flat = values.reshape(3 * len(surface.faces), math.prod(values.shape[2:]))
     vertices = surface.faces.ravel()
-    # Write corners of sources last, so that copied values win over interpolated ones.
+    # Write copied values last, so that they replace interpolated ones.
     is_given = np.zeros(len(surface.faces) * 3, dtype=bool).reshape(-1, 3)
     for lot in lots:
         is_given[lot.rows] = lot.corners >= 0

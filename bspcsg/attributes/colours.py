@@ -1,4 +1,4 @@
-"""Parses colours in all forms in which people, programs and files write them.
+"""Conversion of colours from text, floats and whole numbers.
 
 A colour is red, green, blue and optionally opacity. It may be written as
 
@@ -7,7 +7,7 @@ A colour is red, green, blue and optionally opacity. It may be written as
 - floats from 0 to 1;
 - whole numbers from 0 to 255.
 
-Whole numbers count from 0 to 1 if none is above 1, as in OpenSCAD: (1, 0, 0) is red, and not a
+Whole numbers are from 0 to 1 if none is above 1, as in OpenSCAD: (1, 0, 0) is red, and not a
 black that looks like (0, 0, 0). For an array, its largest number decides. Numpy's unsigned types
 are unambiguous: their values are fractions of the type's largest number, so a uint8 of 1 is 1/255.
 """
@@ -24,18 +24,18 @@ from ..errors import InvalidParameterError, invalid_parameter
 from ..geometry.arrays import doubles
 from ..parameters import shown
 
-#: Colours in bytes, as most files have them.
+#: Colours as bytes, 0 to 255 for each component.
 Bytes = npt.NDArray[np.uint8]
 
-#: Any form of one colour listed above.
+#: One colour as a name, hexadecimal digits or numbers.
 AnyColor: TypeAlias = str | Iterable[float] | npt.NDArray[Any]
 
-#: The name of the attribute that holds colours.
+#: The name of the attribute whose values are colours.
 COLOR = "color"
 
 _BYTE = 255
 
-#: Digits without ``#`` count if there are enough of them not to be a word by chance.
+#: Hexadecimal colours; without ``#``, only six or eight digits, which are hardly an English word.
 _DIGITS = re.compile("#([0-9a-f]{3,4})|#?([0-9a-f]{6}|[0-9a-f]{8})")
 
 # Source: CSS Color Module Level 4, section 6.1.
@@ -80,14 +80,14 @@ def color_of(given: Any, name: str = COLOR) -> tuple[float, ...]:
     Raises
     ------
     InvalidParameterError
-        If it is not a colour.
+        If `given` is not a colour; the message calls it `name`.
     """
     numbers: list[float] = as_floats(one_color(given, name)).tolist()
     return (*numbers, 1.0) if len(numbers) == 3 else tuple(numbers)
 
 
 def one_color(given: Any, name: str = COLOR) -> npt.NDArray[Any]:
-    """Return one colour as attributes store it, (3,) or (4,): bytes, or floats from 0 to 1."""
+    """Return one colour as an array, (3,) or (4,): unsigned integers, or floats from 0 to 1."""
     found = colors_of(given, name)
     if found.ndim != 1:
         raise _refused(given, name)
@@ -95,14 +95,14 @@ def one_color(given: Any, name: str = COLOR) -> npt.NDArray[Any]:
 
 
 def colors_of(given: Any, name: str = COLOR) -> npt.NDArray[Any]:
-    """Return colours as attributes store them, (…, 3) or (…, 4): bytes, or floats from 0 to 1.
+    """Return colours as an array, (…, 3) or (…, 4): unsigned integers, or floats from 0 to 1.
 
     Parameters
     ----------
     given : text, numbers, or arrays or sequences of them
         A text has no axis of its own: one text gives (3,) or (4,), n texts give (n, 3) or (n, 4).
     name : str
-        For errors.
+        The name of the parameter in error messages.
 
     Raises
     ------
@@ -128,7 +128,7 @@ def _of_text(text: str, name: str) -> Bytes:
 
 
 def _of_texts(texts: npt.NDArray[np.str_], name: str) -> Bytes:
-    """Return the colours of many texts, most of which are usually the same few."""
+    """Return the colours of an array of texts; each distinct text is parsed once."""
     kinds, numbers = np.unique(texts, return_inverse=True)
     if not len(kinds):
         return np.zeros((*texts.shape, 3), dtype=np.uint8)
@@ -138,7 +138,7 @@ def _of_texts(texts: npt.NDArray[np.str_], name: str) -> Bytes:
 
 
 def _alike(rows: Sequence[npt.NDArray[Any]]) -> list[npt.NDArray[Any]]:
-    """Return colours of one width and one type: bytes if all are, else floats."""
+    """Return colours of equal width and one type: bytes if all are bytes, else floats."""
     width = max(map(len, rows))
     if any(row.dtype != np.uint8 for row in rows):
         rows = [as_floats(row) for row in rows]
@@ -164,7 +164,10 @@ def _of_numbers(given: Any, name: str) -> npt.NDArray[Any]:
 
 
 def in_bytes(numbers: npt.NDArray[Any]) -> Bytes | None:
-    """Return whole numbers as bytes by the rule above; None if one is out of range."""
+    """Return whole numbers as bytes, multiplied by 255 if none is above 1.
+
+    None means that a number is not from 0 to 255.
+    """
     low, high = numbers.min(initial=0), numbers.max(initial=0)
     if low < 0 or high > _BYTE:
         return None
@@ -172,7 +175,7 @@ def in_bytes(numbers: npt.NDArray[Any]) -> Bytes | None:
 
 
 def opaque(colors: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """Return colours of three numbers with opacity added; others as they are."""
+    """Return colours with four components: full opacity is added to colours of three."""
     if colors.shape[-1] == 4:
         return colors
     full = np.iinfo(colors.dtype).max if colors.dtype.kind == "u" else 1
@@ -180,23 +183,26 @@ def opaque(colors: npt.NDArray[Any]) -> npt.NDArray[Any]:
 
 
 def are_same_in_bytes(some: npt.NDArray[Any], others: npt.NDArray[Any]) -> bool:
-    """Say whether colours look the same on a screen, in whatever form they are."""
+    """Return True if two arrays of colours are equal after conversion to bytes."""
     return np.array_equal(opaque(as_bytes(some)), opaque(as_bytes(others)))
 
 
 def is_opaque(colors: npt.NDArray[Any]) -> bool:
-    """Say whether all colours are fully opaque."""
+    """Return True if all colours are fully opaque after conversion to bytes."""
     return colors.shape[-1] == 3 or bool((as_bytes(colors[..., 3]) == _BYTE).all())
 
 
 def is_color(name: str, values: npt.NDArray[Any], depth: int) -> bool:
-    """Say whether an attribute is a colour: three or four numbers."""
+    """Return True if an attribute has the name "color" and three or four numbers per element.
+
+    The first `depth` axes of the values index the elements.
+    """
     is_number = values.dtype.kind in "uf"
     return name == COLOR and is_number and values.shape[depth:] in ((3,), (4,))
 
 
 def as_bytes(colors: npt.NDArray[Any]) -> Bytes:
-    """Return colours in bytes, by the rules of `as_floats`, clamped to 0 and 1."""
+    """Return colours as bytes; floats are clamped to 0 to 1, and NaN becomes 255."""
     if colors.dtype == np.uint8:
         return colors
     scaled: Any = np.clip(as_floats(colors), 0, 1) * _BYTE
@@ -205,7 +211,10 @@ def as_bytes(colors: npt.NDArray[Any]) -> Bytes:
 
 
 def as_floats(colors: npt.NDArray[Any]) -> FloatArray:
-    """Return colours as floats: whole numbers are divided by their type's largest, NaN is white."""
+    """Return colours as floats from 0 to 1; NaN becomes 1.
+
+    Unsigned integers are divided by their type's largest number.
+    """
     numbers = colors.astype(np.float64)
     if colors.dtype.kind == "u":
         return numbers * (1 / np.iinfo(colors.dtype).max)
@@ -213,7 +222,7 @@ def as_floats(colors: npt.NDArray[Any]) -> FloatArray:
 
 
 def hexadecimal(color: Sequence[float]) -> str:
-    """Return ``"#rrggbb"``, or ``"#rrggbbaa"`` of four numbers from 0 to 1."""
+    """Return ``"#rrggbb"`` for three numbers from 0 to 1, or ``"#rrggbbaa"`` for four."""
     return "#" + bytes(round(value * _BYTE) for value in color).hex()
 
 

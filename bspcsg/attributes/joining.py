@@ -13,7 +13,7 @@ from .material import Material
 
 @dataclass(frozen=True, eq=False)
 class MeshPart:
-    """A mesh among others: its number of vertices, its faces, and its attributes."""
+    """One of several concatenated meshes: its number of vertices, its faces and its attributes."""
 
     vertex_count: int
     faces: IndexArray
@@ -21,13 +21,13 @@ class MeshPart:
 
 
 def concatenated(parts: Sequence[MeshPart], faces: IndexArray) -> Attributes | None:
-    """Return the attributes of the whole, or None if none of the parts has any.
+    """Return the attributes of concatenated meshes, or None if no mesh has attributes.
 
     Parameters
     ----------
     parts : sequence of MeshPart
     faces : (m, 3) int64
-        The triangles of the whole.
+        The triangles of the concatenated mesh.
     """
     said = [part for part in parts if part.attributes is not None]
     if not said:
@@ -72,7 +72,10 @@ def _values_of(name: str, kind: Kind, attributes: Attributes | None) -> Values |
 
 
 def _with_common_materials(parts: Sequence[MeshPart]) -> tuple[list[MeshPart], dict[str, Material]]:
-    """Return the materials of all parts; a name with two meanings gets a number appended."""
+    """Return the parts with unique names of materials, and the materials of all parts by name.
+
+    A number is appended to a name that an earlier part uses for another material.
+    """
     materials: dict[str, Material] = {}
     found = []
     for part in parts:

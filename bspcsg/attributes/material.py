@@ -1,17 +1,17 @@
-"""`Material`: the meaning of a name in the face attribute ``"material"``."""
+"""`Material`: a colour and a texture, which the face attribute ``"material"`` names."""
 
 from dataclasses import dataclass
 
 from ..errors import InvalidMeshError
 from .colours import AnyColor, color_of
 
-#: The first bytes of the picture formats that mesh files may hold.
+#: The media types of the picture formats in mesh files, by the first bytes of a file.
 _MEDIA = {b"\x89PNG\r\n\x1a\n": "image/png", b"\xff\xd8\xff": "image/jpeg"}
 
 
 @dataclass(frozen=True, init=False)
 class Material:
-    """A colour, and a picture that the attribute ``"uv"`` maps onto faces.
+    """A colour, and optionally a picture that the attribute ``"uv"`` maps onto faces.
 
     Parameters
     ----------
@@ -19,7 +19,7 @@ class Material:
         Red, green, blue and opacity (by default 1), from 0 to 1, as on a screen. It may also be
         given as ``"orange"``, ``"#ff8800"`` or whole numbers up to 255 (see `attributes.colours`).
     texture : bytes, optional
-        A PNG or JPEG file.
+        The contents of a PNG or JPEG file.
     """
 
     color: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0)
@@ -39,6 +39,6 @@ class Material:
 
     @property
     def media(self) -> str | None:
-        """The media type of the texture."""
+        """The media type of the texture, such as ``"image/png"``; None without a texture."""
         data = self.texture or b""
         return next((kind for start, kind in _MEDIA.items() if data.startswith(start)), None)

@@ -1,1 +1,1 @@
-"""Timed comparisons with other engines: cases, engines, measuring, records, tables and plots."""
+"""Benchmarks against other engines: cases, engines, time and memory, records, tables and plots."""

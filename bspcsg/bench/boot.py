@@ -1,8 +1,7 @@
-"""Starts a worker, on another build of the core if one is named: ``boot.py ROOT CORE TASK``.
+"""Start a worker, with another build of the core if one is named: ``boot.py ROOT CORE TASK``.
 
-With ``--`` and arguments in place of the task it starts the command line.
-
-The package loads its core when it is first imported, so this file must not be part of it.
+With ``--`` and arguments in place of the task it runs the package's command line. The package loads
+its core when it is first imported, so this file is not part of the package.
 """
 
 import sys
@@ -12,7 +11,7 @@ from runpy import run_module
 
 
 def put_in_place(core: str) -> None:
-    """Let the package find this file where it looks for its core."""
+    """Load a compiled module from this file as the package's core."""
     name = "bspcsg._core"
     spec = spec_from_file_location(name, core, loader=ExtensionFileLoader(name, core))
     if spec is None or spec.loader is None:
@@ -31,7 +30,7 @@ if __name__ == "__main__":
         put_in_place(core)
     if task == "--":
         sys.argv = ["bspcsg", *arguments]
-        # As `python -m bspcsg` does.
+        # Like `python -m bspcsg`.
         run_module("bspcsg", run_name="__main__")
     else:
         from bspcsg.bench.worker import main

@@ -1,4 +1,4 @@
-"""A case of the bench: one row of its table."""
+"""`BenchCase`: one benchmark case, a row of the result table."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -8,38 +8,40 @@ from typing import TypeAlias
 from .targets import Goal
 from .work import Work
 
-#: Makes the work of an item from the folder of shared data.
+#: A function of the folder of shared data that returns the work of an item.
 WorkMaker: TypeAlias = Callable[[Path], Work]
 
 
 @dataclass(frozen=True)
 class BenchCase:
-    """One row of the table.
+    """A benchmark case: what is timed, with which engines, and which targets it has.
 
     Parameters
     ----------
     title : str
     targets : tuple of Goal
     items : dict
-        The items to time, by label; `small` has the small forms of the same.
+        The works to time, by label.
     small : dict
-        Items that take a second or so together.
+        Smaller forms of the items, which take about a second together.
     engines : tuple of str
-        The engines that finish in reasonable time; none means all.
+        The names of the engines to time, which finish in reasonable time; empty for all.
     cores : int
         The number of cores that the process may use; 0 for no limit.
     alone : bool
-        Each engine runs in a process of its own, and its peak memory is measured.
+        True to run each engine in a process of its own and measure its peak memory.
     needs : str
-        Path of data that may be missing, below the folder of shared data.
+        The path of necessary data below the folder of shared data; the case is left out without it.
     limit : float
-        Seconds after which a call is stopped, unless another limit is asked for.
+        The default time limit of a call, in seconds.
     checked_at_once : bool
-        If no other engine finishes the chain, manifold3d computes the same set as one expression.
+        True to compare a chain that no other engine finishes with manifold3d's result of the same
+        set as one expression.
     needs_gb : dict of str to float
-        The memory that a machine must have for some items, in 10^9 bytes.
+        The memory that a machine must have for an item, by its label, in 10^9 bytes.
     other_sets : bool
-        Other engines take the operands for other sets, so that answers are not compared.
+        True if other engines interpret the operands as other sets, so that results are not
+        compared.
     """
 
     title: str

@@ -1,4 +1,4 @@
-"""The cases: operations, sizes, engines and targets."""
+"""The benchmark cases: operations, numbers of triangles, engines and targets."""
 
 from math import pi
 from pathlib import Path
@@ -33,11 +33,11 @@ from .work import (
     Work,
 )
 
-#: Engines that take part in large pairs, and in long chains.
+#: The engines that are timed on large pairs, and on long chains.
 QUICK_ENGINES = ("bspcsg", "manifold3d", "trueform", "meshlib")
 CHAIN_ENGINES = ("bspcsg", "manifold3d")
 
-#: Engines that we are to match in pairs, besides the main rival.
+#: The engines besides the main rival that the targets of pairs refer to.
 _OTHERS = ("meshlib", "trueform")
 
 _MESHES = "meshes/MANIFEST.tsv"
@@ -101,7 +101,7 @@ def _capsules(steps: int) -> WorkMaker:
 
 
 def dome(steps: int) -> WorkMaker:
-    """Return the carving of the first steps of the dome."""
+    """Return the maker of the work of carving the first `steps` balls of the dome."""
     block, _ = shapes.dome(0)
     return lambda _: Carving(block, lambda: shapes.dome(steps)[1])
 
@@ -130,13 +130,14 @@ def _files(level: int, *options: str) -> WorkMaker:
     return lambda _: CommandLine(*shapes.spheres_apart(shapes.icosphere(level)), options)
 
 
-#: Volume of a unit ball without another unit ball that is centred on its surface.
+#: The volume of a unit ball minus a unit ball whose centre is on the surface of the first.
 _BALL_WITHOUT_BALL = 11 * pi / 12
 
 
 def _huge_spheres(n: int) -> WorkMaker:
-    # An edge of the octahedron is √2 / n long, and at most √3 times that on the ball. A point of a
-    # triangle with corners on the unit ball and edges up to e is at most e² / 3 within it.
+    # An edge of the divided octahedron is √2 / n long, and at most √3 times that on the sphere. A
+    # point of a triangle with corners on the unit sphere and edges up to e is at most e² / 3 below
+    # it.
     depth = 2 / n**2
     balls = shapes.spheres_apart
     return lambda _: PairAsBalls(
@@ -158,7 +159,7 @@ def _none_below(factor: float, *engines: str) -> tuple[Goal, ...]:
 
 _SIZES = (36, 72, 144, 288, 576, 708)
 
-#: Sizes of spheres that fit into few machines, and the memory that the larger ones need.
+#: The divisions of huge spheres, and the memory that each pair needs, in 10^9 bytes.
 _HUGE = (500, 1000, 1582)
 _HUGE_GB = (2.5, 8.0, 18.0)
 
@@ -385,7 +386,7 @@ CASES: dict[str, BenchCase] = {
     **CLIFFS,
 }
 
-#: The cases that are measured if none is named: a minute or two.
+#: The default cases, which take one or two minutes.
 SHORT = (
     "spheres-82k",
     "small-pairs",

@@ -1,4 +1,7 @@
-"""Dense places, where many faces meet, at two sizes: cost should grow no faster than answers."""
+"""Benchmark cases in which many faces meet, each at two sizes.
+
+Time should grow no faster than input and result.
+"""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -10,7 +13,7 @@ from .case import BenchCase
 from .targets import DoublingTarget, Faster
 from .work import Expression, OneMesh, OverlappingPair, Pair, Work
 
-#: Makes the work of an item from its size.
+#: A function of a count that returns the work of an item.
 _Maker = Callable[[int], Work]
 
 
@@ -47,7 +50,7 @@ def _pair(meshes: Callable[[int], tuple[MeshArrays, MeshArrays]]) -> _Maker:
 
 
 def _doubled(title: str, make: _Maker, count: int, small: int) -> BenchCase:
-    """Return the case of something at a size and at twice that size."""
+    """Return a benchmark case with the work of `make` for a count and for twice that count."""
 
     def item(size: int) -> Callable[[Path], Work]:
         return lambda _: make(size)
@@ -62,7 +65,7 @@ def _doubled(title: str, make: _Maker, count: int, small: int) -> BenchCase:
     )
 
 
-#: By name; manifold3d takes seconds for these sizes.
+#: The cases by name; manifold3d takes seconds for these counts.
 CLIFFS: dict[str, BenchCase] = {
     "dense-half-spaces": _doubled(
         "cubes around a ball, one side of each touching it, intersected",

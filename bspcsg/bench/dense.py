@@ -1,4 +1,4 @@
-"""Meshes of the cases with dense places; each function takes a count."""
+"""Meshes in which many faces meet, each as a function of a count."""
 
 import numpy as np
 
@@ -19,29 +19,29 @@ from .shapes import (
     unit_vector,
 )
 
-#: Sides of a tube.
+#: The number of sides of a tube.
 _TUBE_SIDES = 24
 
-#: Rotates meshes that would be aligned with axes.
+#: A rotation for meshes that would otherwise be axis-parallel.
 _ASKEW = rotation((1, 2, 3), 0.4)
 
 
 def cubes_around_ball(count: int) -> list[MeshArrays]:
-    """Return large cubes that contain the unit ball and touch it with one side each."""
+    """Return large cubes that contain the unit ball, each of which touches it with one side."""
     random = generator(1)
     cube = box((-4, -4, -7), (4, 4, 1))
     return [turned(cube, random_rotation(random)) for _ in range(count)]
 
 
 def turned_cubes(count: int) -> list[MeshArrays]:
-    """Return unit cubes around the origin, turned at random."""
+    """Return randomly rotated unit cubes around the origin."""
     random = generator(2)
     cube = box((-0.5, -0.5, -0.5), (0.5, 0.5, 0.5))
     return [turned(cube, random_rotation(random)) for _ in range(count)]
 
 
 def aligned_boxes(count: int) -> list[MeshArrays]:
-    """Return axis-parallel boxes, large compared with the space that they share."""
+    """Return axis-parallel boxes at random in a small space, so that most of them overlap."""
     random = generator(3)
     lows = random.random((count, 3))
     sizes = 0.2 + 0.8 * random.random((count, 3))
@@ -49,7 +49,7 @@ def aligned_boxes(count: int) -> list[MeshArrays]:
 
 
 def bundles(count: int) -> tuple[MeshArrays, MeshArrays]:
-    """Return two bundles of thin tetrahedra side by side, across each other."""
+    """Return a bundle of parallel thin tetrahedra, and a randomly rotated copy of it."""
     random = generator(4)
     rows = int(np.ceil(np.sqrt(count)))
     pitch = 2.0 / rows
@@ -61,28 +61,28 @@ def bundles(count: int) -> tuple[MeshArrays, MeshArrays]:
 
 
 def near_cones(sides: int) -> tuple[MeshArrays, MeshArrays]:
-    """Return two cones of which one is moved by a tenth of its radius."""
+    """Return two equal cones, one of which is shifted by a tenth of its radius."""
     return cone(sides), moved(cone(sides), (0.03, 0.05, 0.08))
 
 
 def cones_at_one_apex(sides: int) -> tuple[MeshArrays, MeshArrays]:
-    """Return two cones that are turned about their apex."""
+    """Return a cone and a copy that is rotated about the apex."""
     return cone(sides), turned(cone(sides), rotation((1, 0.2, 0.1), 0.8))
 
 
 def equal_cones(sides: int) -> tuple[MeshArrays, MeshArrays]:
-    """Return a cone twice."""
+    """Return two equal cones."""
     return cone(sides), cone(sides)
 
 
 def turned_cones(count: int) -> list[MeshArrays]:
-    """Return cones of eight sides, turned about their apex at random."""
+    """Return cones of eight sides, randomly rotated about their common apex."""
     random = generator(5)
     return [turned(cone(8), random_rotation(random)) for _ in range(count)]
 
 
 def punched_plate(count: int) -> list[MeshArrays]:
-    """Return a plate and boxes through it, in rows of thirty, none touching; all askew."""
+    """Return a plate and disjoint boxes through it in rows of thirty, all rotated off the axes."""
     rows = -(-count // 30)
     plate = box((0, 0, 0), (rows, min(count, 30), 1))
     places = [divmod(k, 30) for k in range(count)]
@@ -91,7 +91,7 @@ def punched_plate(count: int) -> list[MeshArrays]:
 
 
 def drilled_plate(count: int) -> list[MeshArrays]:
-    """Return a plate and cylinders of 32 sides through it, in rows of thirty, none touching."""
+    """Return a plate and disjoint cylinders of 32 sides through it, in rows of thirty."""
     rows = -(-count // 30)
     drill = cylinder(32, 0.35, -1.0, 2.0)
     places = [divmod(k, 30) for k in range(count)]
@@ -106,35 +106,35 @@ def drilled_at_once(count: int) -> tuple[MeshArrays, MeshArrays]:
 
 
 def slab_and_column(sides: int) -> tuple[MeshArrays, MeshArrays]:
-    """Return a column and a slab that parts it; edges of the two meet on the slab's diagonals."""
+    """Return a column and a slab that cuts it in two; edges meet on diagonals of the slab."""
     return cylinder(sides, 2.0, 0.0, 5.0), box((-3, -3, 1), (3, 3, 2))
 
 
 def nested_balls(count: int) -> list[MeshArrays]:
-    """Return balls around one centre, each a little larger than the one before."""
+    """Return balls with one centre and increasing radii."""
     ball = icosphere(2)
     return [scaled(ball, 1 + 0.01 * k) for k in range(count)]
 
 
 def film(triangles: int) -> tuple[MeshArrays, MeshArrays]:
-    """Return a ball of about so many triangles, and a copy shifted by one step of the lattice."""
+    """Return a ball of about `triangles` triangles, and a copy shifted by one lattice step."""
     ball = octasphere(round((triangles / 8) ** 0.5))
     return ball, moved(ball, (1e-9, 0, 0))
 
 
 def moved_copies(count: int) -> list[MeshArrays]:
-    """Return copies of a ball, each moved by a thousandth of a step of the lattice."""
+    """Return copies of a ball, each shifted by another thousandth of a lattice step."""
     ball = icosphere(3)
     return [moved(ball, (1e-12 * k, 0, 0)) for k in range(count)]
 
 
 def copies(count: int) -> list[MeshArrays]:
-    """Return `count` copies of a ball."""
+    """Return `count` equal balls."""
     return [icosphere(2)] * count
 
 
 def revisions(triangles: int) -> tuple[MeshArrays, MeshArrays]:
-    """Return a ball, and the same with a corner further out and its faces in another order."""
+    """Return a ball, and a copy with one vertex moved outwards and its faces in another order."""
     points, faces = octasphere(round((triangles / 8) ** 0.5))
     later = points.copy()
     later[0] *= 1.01
@@ -142,7 +142,7 @@ def revisions(triangles: int) -> tuple[MeshArrays, MeshArrays]:
 
 
 def near_balls(count: int) -> list[MeshArrays]:
-    """Return balls that are turned by a hundredth of a radian, and a little larger each."""
+    """Return balls rotated by a hundredth of a radian each, with slightly increasing radii."""
     random = generator(8)
     turns = [rotation(unit_vector(random), 0.01) for _ in range(count)]
     ball = icosphere(2)
@@ -150,13 +150,13 @@ def near_balls(count: int) -> list[MeshArrays]:
 
 
 def touching_cubes(count: int) -> list[MeshArrays]:
-    """Return unit cubes side by side, in layers of ten by ten."""
+    """Return unit cubes that touch side by side, in layers of ten by ten."""
     places = [(k // 100, k // 10 % 10, k % 10) for k in range(count)]
     return [box(at, np.array(at) + 1) for at in places]
 
 
 def cubes_in_room(count: int) -> list[MeshArrays]:
-    """Return unit cubes turned at random, one per unit of volume."""
+    """Return randomly rotated unit cubes at random points, one per unit of volume."""
     random = generator(9)
     cube = box((-0.5, -0.5, -0.5), (0.5, 0.5, 0.5))
     side = count ** (1 / 3)
@@ -166,7 +166,7 @@ def cubes_in_room(count: int) -> list[MeshArrays]:
 
 
 def tetrahedra_in_room(count: int) -> list[MeshArrays]:
-    """Return tetrahedra turned at random, one per unit of volume."""
+    """Return randomly rotated tetrahedra at random points, one per unit of volume."""
     random = generator(11)
     shape = np.vstack([np.zeros(3), np.eye(3)]) - 0.25, _TETRAHEDRON
     side = count ** (1 / 3)
@@ -176,7 +176,7 @@ def tetrahedra_in_room(count: int) -> list[MeshArrays]:
 
 
 def combs(teeth: int) -> tuple[MeshArrays, MeshArrays]:
-    """Return two combs across each other, teeth apart; all askew."""
+    """Return two combs of parallel slabs across each other, rotated off the axes."""
     slabs = [box((k / teeth, 0, 0), ((k + 0.5) / teeth, 1, 0.2)) for k in range(teeth)]
     comb = joined(slabs)
     other = moved(turned(comb, rotation((0, 0, 1), np.pi / 2)), (1.0, 0.0, 0.1))
@@ -184,12 +184,12 @@ def combs(teeth: int) -> tuple[MeshArrays, MeshArrays]:
 
 
 def bar(sides: int) -> list[MeshArrays]:
-    """Return a long bar with a round end, in single precision as in STL: caps are needle fans."""
+    """Return one long thin bar with a round end, in single precision; its caps are needle fans."""
     return [_in_single_precision(turned(_round_bar(sides), rotation((3, 1, 2), 0.7)))]
 
 
 def bars(sides: int) -> tuple[MeshArrays, MeshArrays]:
-    """Return two such bars across each other."""
+    """Return two long thin bars with round ends across each other (see `bar`)."""
     [first] = bar(sides)
     return first, _in_single_precision(turned(first, rotation((1, 2, -1), 0.3)))
 
@@ -205,7 +205,7 @@ def _in_single_precision(mesh: MeshArrays) -> MeshArrays:
 
 
 def tube_and_box(rings: int) -> tuple[MeshArrays, MeshArrays]:
-    """Return a tube that passes through itself, and a box across the place where it does."""
+    """Return a tube that passes through itself, and a box around the crossing."""
     return _loop(rings), turned(box((-0.3, -0.3, 0), (0.3, 0.3, 1)), _ASKEW)
 
 
@@ -231,18 +231,18 @@ def _loop(rings: int) -> MeshArrays:
 
 
 def spikes(count: int) -> list[MeshArrays]:
-    """Return thin tetrahedra with one corner at the origin."""
+    """Return randomly rotated thin tetrahedra with one corner at the origin."""
     random = generator(10)
     spike = np.array([[0, 0, 0], [0.05, 0, 2], [-0.02, 0.04, 2], [-0.02, -0.04, 2]])
     return [turned((spike, _TETRAHEDRON), random_rotation(random)) for _ in range(count)]
 
 
-#: The sides of a tetrahedron whose fourth corner lies on the left of the others' turn.
+#: The faces of a tetrahedron of positive volume.
 _TETRAHEDRON = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
 
 
 def cone(sides: int) -> MeshArrays:
-    """Return a cone with its apex at the origin; its base is divided from the middle."""
+    """Return a cone with its apex at the origin; its base is a fan around the centre."""
     angles = 2 * np.pi * np.arange(sides) / sides
     rim = np.column_stack([0.9 * np.cos(angles), 0.9 * np.sin(angles), np.full(sides, -1.0)])
     points = np.concatenate([rim, [[0, 0, 0], [0, 0, -1]]])

@@ -1,4 +1,4 @@
-"""The engines that are compared, behind one interface: solids, operations, volumes and arrays."""
+"""The engines that are timed, behind one interface: solids, operations, volumes and arrays."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -17,21 +17,21 @@ from .shapes import joined
 #: The operations of engines; a difference subtracts the other operands from the first one.
 Operation: TypeAlias = Literal["union", "difference", "intersection"]
 
-#: Largest relative error when a number is rounded to a double, and to a float.
+#: The largest relative error of rounding a number to double, and to single precision.
 _DOUBLE = 2.0**-53
 _FLOAT = 2.0**-24
 
 
 class EngineError(Exception):
-    """An engine reported that it cannot do the work."""
+    """An engine reports that it cannot do the work."""
 
 
 class Engine(ABC):
-    """One engine; its solids are whatever it keeps between two operations."""
+    """One engine; its solids are objects of the engine's own type."""
 
     name: str
 
-    #: True if `counters` returns anything.
+    #: True if the engine has counters of its work.
     counts = False
 
     @abstractmethod
@@ -40,22 +40,22 @@ class Engine(ABC):
 
     @abstractmethod
     def combine(self, operation: Operation, solids: Sequence[Any]) -> Any:
-        """Combine solids; the engine may defer the work."""
+        """Return the result of an operation on solids; the engine may defer the work."""
 
     @abstractmethod
     def volume(self, solid: Any) -> float:
-        """Return the volume, which forces any deferred work."""
+        """Return the volume of a solid, which forces deferred work."""
 
     @abstractmethod
     def arrays(self, solid: Any) -> MeshArrays:
-        """Return the boundary as arrays."""
+        """Return the boundary of a solid as arrays (vertices, faces)."""
 
     def resolution(self, size: float) -> float:
-        """Return how far the engine may move a vertex of a model with coordinates up to `size`."""
+        """Return the largest distance a vertex may be moved, with coordinates up to `size`."""
         return 4 * _DOUBLE * size
 
     def boolean(self, first: MeshArrays, second: MeshArrays, operation: Operation) -> MeshArrays:
-        """Combine two meshes, arrays in to arrays out, in the way that the engine recommends."""
+        """Return the result for two meshes as arrays, computed as the engine recommends."""
         return self.arrays(self.combine(operation, [self.solid(first), self.solid(second)]))
 
     def united(self, parts: Sequence[MeshArrays]) -> Any:
@@ -63,12 +63,12 @@ class Engine(ABC):
         return self.combine("union", [self.solid(part) for part in parts])
 
     def counters(self, solid: Any) -> dict[str, int]:
-        """Return what the engine counted while it made a solid."""
+        """Return the numbers that the engine counted while it made a solid."""
         return {}
 
 
 class _Bspcsg(Engine):
-    """Our own engine, by the public functions of the package."""
+    """The engine of this package, by its public functions."""
 
     name = "bspcsg"
     counts = True
@@ -93,7 +93,8 @@ class _Bspcsg(Engine):
         return vertices, faces
 
     def resolution(self, size: float) -> float:
-        # A vertex moves to the default lattice, by at most half a diagonal of a cell.
+        # Snapping to the default lattice moves a vertex by at most half the diagonal of a step's
+        # cube.
         return 3**0.5 / 2 * 1e-9 + super().resolution(size)
 
     def boolean(self, first: MeshArrays, second: MeshArrays, operation: Operation) -> MeshArrays:
@@ -107,7 +108,7 @@ class _Bspcsg(Engine):
 
 
 class _Manifold(Engine):
-    """manifold3d in double precision; deferred work is forced before a clock stops."""
+    """The engine manifold3d in double precision; deferred work is forced in the timed part."""
 
     name = "manifold3d"
 
@@ -140,7 +141,7 @@ class _Manifold(Engine):
         return np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts)
 
     def resolution(self, size: float) -> float:
-        # Its documented precision relative to the largest coordinate.
+        # manifold3d's documented precision, relative to the largest coordinate.
         return 1e-12 * size
 
     def _refuse_errors(self, solid: Any) -> None:
@@ -150,7 +151,7 @@ class _Manifold(Engine):
 
 
 class _Trueform(Engine):
-    """trueform; a result becomes an operand again as a mesh."""
+    """The engine trueform; its solids are meshes."""
 
     name = "trueform"
 
@@ -183,12 +184,12 @@ class _Trueform(Engine):
         return np.asarray(solid.points), np.asarray(solid.faces)
 
     def resolution(self, size: float) -> float:
-        # Its lattice is finer than that of coordinates with 30 bits.
+        # Its lattice is finer than 30 bits for the largest coordinate.
         return 2.0**-30 * size
 
 
 class _OfArrays(Engine):
-    """An engine that only combines two meshes; its solids are arrays."""
+    """The base class of engines that only combine two meshes; solids are arrays."""
 
     def solid(self, mesh: MeshArrays) -> Any:
         return mesh
@@ -203,16 +204,16 @@ class _OfArrays(Engine):
         return solid[0], solid[1]
 
     def resolution(self, size: float) -> float:
-        # Single precision in, inside, or out.
+        # These engines use single precision for input, computation or output.
         return 8 * _FLOAT * size
 
     @abstractmethod
     def boolean(self, first: MeshArrays, second: MeshArrays, operation: Operation) -> MeshArrays:
-        """Combine two meshes."""
+        """Return the result of an operation on two meshes, as arrays."""
 
 
 class _Meshlib(_OfArrays):
-    """MeshLib."""
+    """The engine MeshLib."""
 
     name = "meshlib"
 
@@ -251,7 +252,7 @@ class _Meshlib(_OfArrays):
 
 
 class _Pymeshlab(_OfArrays):
-    """pymeshlab, whose booleans are libigl's."""
+    """The engine pymeshlab, whose set operations are libigl's."""
 
     name = "pymeshlab"
 
@@ -271,7 +272,7 @@ class _Pymeshlab(_OfArrays):
 
 
 class _Vtk(_OfArrays):
-    """VTK's boolean filter for polygonal data."""
+    """The engine VTK, by its boolean filter for polygonal data."""
 
     name = "vtk"
 
@@ -304,7 +305,7 @@ class _Vtk(_OfArrays):
         return made
 
 
-#: All engines, ours first, then those that answers are compared with, then by speed.
+#: All engines by name: ours, then the main rival, then the others by speed.
 ENGINES: dict[str, type[Engine]] = {
     made.name: made for made in (_Bspcsg, _Manifold, _Trueform, _Meshlib, _Pymeshlab, _Vtk)
 }
@@ -316,9 +317,9 @@ def installed() -> dict[str, str]:
 
 
 def version_of(name: str) -> str:
-    """Return the version of an installed package, or nothing."""
+    """Return the version of an installed engine, or "" if it is not installed."""
     if name == _Bspcsg.name:
-        # Also of a checkout that is only on the path.
+        # A checkout on the path has no metadata of an installed package.
         return str(import_module(name).__version__)
     try:
         return version(name) if find_spec(name) is not None else ""

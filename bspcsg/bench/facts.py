@@ -1,4 +1,4 @@
-"""The facts measured of an answer, and the amounts by which two right answers may differ."""
+"""The facts about a result that are compared and shown, with bounds of the rounding."""
 
 from dataclasses import dataclass
 from math import log2
@@ -7,19 +7,21 @@ import numpy as np
 
 from .._types import FloatArray, IndexArray, MeshArrays
 
-#: Unit roundoff of doubles.
+#: The unit roundoff of doubles.
 _ROUNDOFF = 2.0**-53
 
-#: Rounded operations behind one term of the volume, three differences, and five of the product.
+#: The number of rounded operations in one term of the volume: three differences, five of the
+#: product.
 _TERM = 8
 
-#: numpy adds blocks of 128 in eight strands, and then pairs of blocks.
+#: The number of rounded additions in a block: numpy sums blocks of 128 in eight strands, then pairs
+#: of blocks.
 _BLOCK_SUM = 128 // 8 + 3
 
 
 @dataclass(frozen=True)
 class Volume:
-    """A volume and how far rounding may have moved it."""
+    """A volume, and a bound of its rounding error."""
 
     value: float
     error: float
@@ -27,15 +29,16 @@ class Volume:
 
 @dataclass(frozen=True)
 class AnswerFacts:
-    """The facts by which two answers are compared, and which the tables show.
+    """The numbers of triangles and open edges, the Euler number and the volume of a result.
 
     Parameters
     ----------
     triangles, euler_number, open_edges : int
-        The Euler number counts vertices by index; open edges are those without an opposite one.
+        The Euler number counts vertices by index; open edges are directed edges without an opposite
+        edge.
     volume : float
     volume_error : float
-        Bound of the rounding in `volume`.
+        A bound of the rounding error of `volume`.
     """
 
     triangles: int
@@ -46,7 +49,7 @@ class AnswerFacts:
 
 
 def facts_of(mesh: MeshArrays) -> AnswerFacts:
-    """Measure a mesh."""
+    """Return the facts about a mesh."""
     faces = np.asarray(mesh[1], dtype=np.int64)
     volume = mesh_volume((mesh[0], faces))
     return AnswerFacts(
@@ -59,15 +62,15 @@ def facts_of(mesh: MeshArrays) -> AnswerFacts:
 
 
 def mesh_volume(mesh: MeshArrays) -> Volume:
-    """Return the signed volume that a mesh bounds."""
+    """Return the signed volume that a mesh bounds, with a bound of its rounding error."""
     vertices, faces = np.asarray(mesh[0], dtype=np.float64), np.asarray(mesh[1], dtype=np.int64)
     if len(faces) == 0:
         return Volume(0.0, 0.0)
-    # About the middle, where the terms are smallest.
+    # Relative to the centre of the bounding box, so that terms are small.
     corners = (vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2)[faces]
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     terms = np.einsum("ij,ij->i", np.cross(a, b), c) / 6
-    # Of each factor of the products only its size counts: a bound for all six products of a term.
+    # A bound of the absolute values of the six products of each term.
     sizes = np.abs(corners).sum(axis=2).prod(axis=1) / 6
     steps = _TERM + _BLOCK_SUM + max(log2(len(faces) / 128), 0)
     return Volume(float(terms.sum()), float(steps * _ROUNDOFF * sizes.sum()))
@@ -81,12 +84,12 @@ def area(mesh: MeshArrays) -> float:
 
 
 def size_of(vertices: FloatArray) -> float:
-    """Return the largest coordinate."""
+    """Return the largest absolute value of a coordinate."""
     return float(np.abs(vertices).max(initial=0.0))
 
 
 def _open_edges(faces: IndexArray, count: int) -> int:
-    """Count directed edges that are not paired with an opposite one each."""
+    """Return the number of directed edges without an opposite edge of their own."""
     starts, ends = faces[:, [0, 1, 2]].ravel(), faces[:, [1, 2, 0]].ravel()
     forward, back = np.sort(starts * count + ends), np.sort(ends * count + starts)
     return int((forward != back).sum())

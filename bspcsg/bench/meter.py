@@ -1,7 +1,7 @@
-"""Runs a command and prints what it used: ``meter.py COMMAND...``, in a process of its own.
+"""Run a command and print its use of time and memory: ``meter.py COMMAND...``.
 
-Linux counts the memory that a parent has when it starts a child to the child's peak; so the parent
-must be small.
+It is a process of its own, because Linux counts the memory of a parent at the start of a child to
+the child's peak; so the parent must be small.
 """
 
 import json
@@ -15,16 +15,16 @@ from pathlib import Path
 
 @dataclass(frozen=True)
 class Usage:
-    """The resources of a process and of those that it started.
+    """The time and memory used by a process and the processes that it started.
 
     Parameters
     ----------
     seconds, cpu : float
-        Wall time, and processor time of all threads.
+        Wall-clock time, and processor time of all threads, in seconds.
     peak_mb : float
         The peak memory of the largest of the processes, in 10^6 bytes.
     code : int
-        The exit code.
+        The exit code of the process.
     said : str
         The last line on standard error.
     """
@@ -37,7 +37,7 @@ class Usage:
 
 
 def metered(command: Sequence[str]) -> Usage:
-    """Run a command and return what it used."""
+    """Run a command, and return the time and memory that it used."""
     meter = [sys.executable, str(Path(__file__)), *command]
     done = subprocess.run(meter, capture_output=True, check=True)
     return Usage(**json.loads(done.stdout))

@@ -1,4 +1,4 @@
-"""Time against size as an SVG drawing with logarithmic axes."""
+"""Draw time against number of triangles as SVG with logarithmic axes."""
 
 from dataclasses import dataclass
 from html import escape
@@ -8,12 +8,12 @@ from typing import Any
 from .targets import OURS, exponent
 from .times import seconds_text
 
-#: The case that is drawn.
+#: The name of the case that is drawn.
 _CASE = "sizes"
 
 _WIDTH, _HEIGHT = 860, 520
 
-#: Left, top, right and bottom of the area between the axes; names of lines stand at the right.
+#: The area between the axes, in pixels; the names of the lines are to the right of it.
 _LEFT, _TOP, _RIGHT, _BOTTOM = 80, 60, 690, 450
 
 _STYLE = (
@@ -24,10 +24,10 @@ _STYLE = (
 
 _OUR_COLOUR = "#c2410c"
 
-#: For the other engines, in the order in which they come.
+#: The colours of the other engines, in the order of the record.
 _COLOURS = ("#1d4ed8", "#15803d", "#7e22ce", "#0e7490", "#6b7280")
 
-#: Least distance of two names in pixels.
+#: The least vertical distance of two names, in pixels.
 _NAME_HEIGHT = 18
 
 
@@ -41,7 +41,7 @@ class _Line:
 
 @dataclass(frozen=True)
 class _Scale:
-    """Powers of ten on one axis, and the pixels of the first and the last."""
+    """A logarithmic axis: its least and greatest power of ten, and their pixels."""
 
     least: int
     most: int
@@ -50,18 +50,18 @@ class _Scale:
 
     @classmethod
     def around(cls, values: list[float], start: float, end: float) -> "_Scale":
-        """Return the scale of the whole powers of ten around some values."""
+        """Return the axis from the power of ten below all values to the power above them."""
         least = floor(log10(min(values)))
         return cls(least, max(ceil(log10(max(values))), least + 1), start, end)
 
     def at(self, value: float) -> float:
-        """Return the pixel of a value."""
+        """Return the pixel coordinate of a value."""
         part = (log10(value) - self.least) / (self.most - self.least)
         return self.start + part * (self.end - self.start)
 
     @property
     def powers(self) -> list[float]:
-        """The values at grid lines."""
+        """The powers of ten at which grid lines are drawn."""
         return [10.0**k for k in range(self.least, self.most + 1)]
 
 
@@ -71,7 +71,7 @@ def plot(record: dict[str, Any]) -> str:
     Parameters
     ----------
     record : dict
-        As `bspcsg.bench.record.read` returns it. If it lacks the case, the drawing says so.
+        The record, as from `bspcsg.bench.record.read`. If it lacks the case, the drawing says so.
     """
     lines = _lines_of(record)
     if not lines:
@@ -135,7 +135,7 @@ def _drawn(line: _Line, across: _Scale, upwards: _Scale) -> str:
 
 
 def _names(lines: list[_Line], upwards: _Scale) -> list[str]:
-    """Write each name at the end of its line, moved down where two would meet."""
+    """Return the text elements with each name at the end of its line, moved apart if too close."""
     body = []
     last = float("-inf")
     for line in sorted(lines, key=lambda line: upwards.at(line.points[-1][1])):

@@ -1,4 +1,4 @@
-"""The command line as work: two STL files in, one out, in a process of its own."""
+"""`CommandLine`: the work of a command-line call that reads two STL files and writes one."""
 
 import sys
 from dataclasses import dataclass, field
@@ -21,20 +21,20 @@ from .work import Evidence, Outcome, SurfaceExtent, Tell, Work, extent_of
 
 _BOOT = Path(__file__).with_name("boot.py")
 
-#: Largest relative error of a coordinate in a file.
+#: The largest relative error of a coordinate in an STL file.
 _SINGLE = 2.0**-24
 
 
 @dataclass(frozen=True)
 class CommandLine(Work):
-    """A difference of two files by `bspcsg difference`.
+    """The difference of two STL files by the command ``bspcsg difference``.
 
     Parameters
     ----------
     first, second : (vertices, faces)
     options : tuple of str
     folder : Path
-        For the files; the process that starts a worker removes its temporary files.
+        The folder for the files; the process that starts a worker removes it.
     """
 
     first: MeshArrays
@@ -43,11 +43,11 @@ class CommandLine(Work):
     folder: Path = field(default_factory=lambda: Path(mkdtemp()))
 
     def extent(self) -> SurfaceExtent:
-        """Add the operands up."""
+        """Return the total extent of both operands."""
         return extent_of([self.first, self.second])
 
     def prepare(self, engine: Engine) -> list[str]:
-        """Write the operands and return their names."""
+        """Write both operands to STL files and return their paths."""
         paths = [self.folder / name for name in ("a.stl", "b.stl")]
         for path, mesh in zip(paths, (self.first, self.second), strict=True):
             if not path.exists():
@@ -55,7 +55,7 @@ class CommandLine(Work):
         return [str(path) for path in paths]
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
-        """Do it."""
+        """Run the command and read its output file."""
         answer = self.folder / "c.stl"
         asked = ["difference", *prepared, "-o", str(answer), "-q", *self.options]
         used = metered([*_ours(), *asked])
@@ -64,19 +64,19 @@ class CommandLine(Work):
         return Outcome(_read(answer), process=used)
 
     def proof(self, answer: MeshArrays) -> Evidence:
-        """Compare the volume with that of the main rival, which is given the same files."""
+        """Compare the volume with the main rival's volume for the same files."""
         operands = [_read(Path(name)) for name in self.prepare(ENGINES[MAIN_RIVAL]())]
         theirs = mesh_volume(ENGINES[MAIN_RIVAL]().boolean(operands[0], operands[1], "difference"))
         ours, extent = mesh_volume(answer), self.extent()
         apart = abs(ours.value - theirs.value)
-        # A vertex moves along three coordinates.
+        # Rounding moves each of the three coordinates of a vertex.
         moved = extent.area * extent.size * 3**0.5 * 2 * _SINGLE
         allowed = moved + ours.error + theirs.error
         return Evidence(apart <= allowed, f"of {MAIN_RIVAL} {apart:.1e}, {allowed:.1e} allowed")
 
 
 def _ours() -> list[str]:
-    """Return the start of a command line that uses the core of this process."""
+    """Return the start of the command line of this package with this process's core."""
     root = Path(__file__).resolve().parents[2]
     core = import_module("bspcsg._core").__file__
     return [sys.executable, "-P", str(_BOOT), str(root), str(core), "--"]

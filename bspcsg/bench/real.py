@@ -1,4 +1,4 @@
-"""Real data that lies next to a checkout: meshes of public projects, a chain of swept tools."""
+"""Meshes from public projects and a chain of swept tools, in a folder beside the checkout."""
 
 import csv
 from functools import cache
@@ -9,27 +9,27 @@ import numpy as np
 from .._types import MeshArrays
 from .shapes import generator, moved, random_rotation, scaled, turned, unit_vector
 
-#: The least and the greatest number of triangles of meshes in large pairs, and in small ones.
+#: The least and the greatest number of triangles of a mesh in large pairs, and in small pairs.
 LARGE, SMALL = (10_000, 500_000), (10, 30_000)
 
-#: The distance between the middles of two meshes, in halves of their diagonals.
+#: The distance between the box centres of two meshes, in multiples of their half diagonal.
 _APART = 0.3
 
 
 def swept_capsules(shared: Path) -> tuple[MeshArrays, list[MeshArrays]]:
-    """Return the workpiece and the tools of the chain, in their order."""
+    """Return the workpiece and the tools, in order, of the chain of swept capsules."""
     with np.load(shared / "chains" / "swept-capsules-100.npz") as data:
         vertices = np.split(data["v"].astype(np.float64), np.cumsum(data["nv"])[:-1])
         faces = np.split(data["f"].astype(np.int64), np.cumsum(data["nf"])[:-1])
     base, *tools = zip(vertices, faces, strict=True)
-    # The tools are stored inside out.
+    # The tools are stored with reversed faces.
     return base, [(points, triangles[:, ::-1].copy()) for points, triangles in tools]
 
 
 def posed_pair(
     shared: Path, number: int, sizes: tuple[int, int] = LARGE
 ) -> tuple[MeshArrays, MeshArrays]:
-    """Return two of the meshes, both of half diagonal 1, turned and moved at random."""
+    """Return two of the meshes, scaled to half diagonal 1, rotated and shifted at random."""
     random = generator(number)
     names = solid_names(shared, sizes)
     first, second = random.choice(len(names), size=2, replace=False)
@@ -37,7 +37,7 @@ def posed_pair(
 
 
 def overlapping_pair(shared: Path, number: int) -> tuple[MeshArrays, MeshArrays]:
-    """Return two small meshes, the first of which overlaps itself, in such a pose."""
+    """Return two small meshes in a random pose, the first of which overlaps itself."""
     random = generator(number)
     overlapping = solid_names(shared, SMALL, overlapping=True)
     first = overlapping[random.integers(len(overlapping))]
@@ -56,13 +56,15 @@ def _posed(
 def solid_names(
     shared: Path, sizes: tuple[int, int] = LARGE, *, overlapping: bool = False
 ) -> list[str]:
-    """Return closed meshes that every engine accepts, all self-overlapping or none of them.
+    """Return the names of closed meshes that every engine accepts.
+
+    Either all of them overlap themselves, or none does.
 
     Parameters
     ----------
     shared : Path
     sizes : (int, int)
-        The least and the largest number of triangles.
+        The least and the greatest number of triangles.
     overlapping : bool
     """
     with (shared / "meshes" / "MANIFEST.tsv").open(newline="") as lines:

@@ -1,4 +1,4 @@
-"""Records of runs: where, with what versions, and what was measured."""
+"""Records of benchmark runs: the machine, the versions and the measured rows."""
 
 import json
 import os
@@ -12,18 +12,18 @@ from ..formats.atomic import write_file
 from ..machine import machine
 from .engines import installed
 
-#: Version of the schema, raised whenever a field changes its meaning.
+#: The version of the schema, increased whenever a field changes its meaning.
 SCHEMA = 1
 
 
 def record_of(rows: list[dict[str, Any]], runs: int, command: str) -> dict[str, Any]:
-    """Return a record of rows that were just measured."""
+    """Return the record of measured rows, with the machine, the versions and the date."""
     return {
         "schema": SCHEMA,
         "type": "bench",
         "command": command,
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
-        # The load is that of all users of the machine over the last five minutes.
+        # The load by all users of the machine, averaged over five minutes.
         "machine": {**machine(), "load": round(os.getloadavg()[1], 2)},
         "versions": {**installed(), "python": platform.python_version()},
         "runs": runs,
@@ -32,7 +32,7 @@ def record_of(rows: list[dict[str, Any]], runs: int, command: str) -> dict[str, 
 
 
 def other_place(record: dict[str, Any]) -> str:
-    """Return what differs from this machine and these versions, or nothing."""
+    """Return how this machine or these versions differ from a record's, or "" if they do not."""
     ours = record_of([], 0, "")
     if {**ours["machine"], "load": 0} != {**record["machine"], "load": 0}:
         return "another machine"
@@ -40,7 +40,7 @@ def other_place(record: dict[str, Any]) -> str:
 
 
 def write(record: dict[str, Any], path: Path) -> None:
-    """Write a record.
+    """Write a record to a file as JSON.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def write(record: dict[str, Any], path: Path) -> None:
 
 
 def read(path: Path) -> dict[str, Any]:
-    """Read a record.
+    """Return the record from a file.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Runs cases in child processes with a limit on each call, and collects their results."""
+"""Run benchmark cases in child processes with a time limit for each call, and collect results."""
 
 import json
 import os
@@ -21,7 +21,8 @@ from .engines import ENGINES
 from .targets import MAIN_RIVAL, OURS
 from .worker import Task
 
-#: The longest time to make operands before the first call, and to end after the last, in seconds.
+#: The time limit for making operands before the first call, and for ending after the last call, in
+#: seconds.
 _GRACE_SECONDS = 120.0
 
 _PACKAGE = Path(__file__).resolve().parents[1]
@@ -31,28 +32,28 @@ _BOOT = Path(__file__).with_name("boot.py")
 
 @dataclass(frozen=True)
 class Settings:
-    """The settings with which cases are run.
+    """The settings of a benchmark run.
 
     Parameters
     ----------
     engines : sequence of str
-        The engines that take part where they can.
+        The names of the engines to time, in the cases that include them.
     runs : int
-        Timed runs of each engine.
+        The number of timed runs of each engine.
     small : bool
-        True if small items are taken.
+        True to time the small items of the cases.
     limit : float or None
-        Seconds for one call; None for the limit of the case.
+        The time limit of one call, in seconds; None for the limit of the case.
     budget : float
-        Seconds for all runs of an engine on an item.
+        The time for all runs of an engine on an item, in seconds.
     shared : Path
-        Folder of shared data.
+        The folder of shared data.
     core : Path or None
-        Another build of the compiled core.
+        The path of another build of the compiled core; None for the installed one.
     memory_gb : float
-        Address space of a worker.
+        The address space of a worker, in 2^30 bytes; 0 for no limit.
     steps : int
-        Steps of the dome; 0 for all.
+        The number of steps of the case "dome"; 0 for all.
     """
 
     engines: Sequence[str]
@@ -66,12 +67,12 @@ class Settings:
     steps: int = 0
 
 
-#: Called with a line about the current work.
+#: A function that is called with a line of text about the current work.
 Progress = Callable[[str], None]
 
 
 def run_case(key: str, settings: Settings, progress: Progress) -> dict[str, Any]:
-    """Run one case and return its row of the record."""
+    """Run one case, and return its row of the record."""
     case = CASES[key]
     if case.needs and not (settings.shared / case.needs).exists():
         missing = f"{settings.shared / case.needs} does not exist"
@@ -79,7 +80,7 @@ def run_case(key: str, settings: Settings, progress: Progress) -> dict[str, Any]
     too_large = _too_large(case, settings)
     labels = [label for label in _items_of(case, settings) if label not in too_large]
     items = [_item(key, label, settings, progress) for label in labels]
-    # A partial run says nothing about the targets.
+    # Targets do not apply to a partial run.
     small = settings.small or _is_cut(key, settings)
     row = {"case": key, "title": case.title, "small": small, "items": items}
     return row | {"too_large": too_large} if too_large else row
@@ -90,7 +91,7 @@ def _items_of(case: BenchCase, settings: Settings) -> Iterable[str]:
 
 
 def _too_large(case: BenchCase, settings: Settings) -> dict[str, str]:
-    """Return the items that need more memory than this machine has, by label, with the reason."""
+    """Return why items need more memory than this machine has, by the item's label."""
     has = machine()["memory_gb"]
     return {
         label: f"needs {case.needs_gb[label]:g} GB of memory, this machine has {has:g}"
@@ -128,14 +129,14 @@ def _item(key: str, label: str, settings: Settings, progress: Progress) -> dict[
 
 
 def _bound_of_memory(case: BenchCase, label: str, settings: Settings) -> float:
-    """Return the GiB of addresses for an item: at least what it is known to need."""
+    """Return the limit of a worker's address space in 2^30 bytes, enough for this item."""
     if not settings.memory_gb:
         return 0.0
     return max(settings.memory_gb, case.needs_gb.get(label, 0.0) * 1e9 / 2**30)
 
 
 def _parts(case: BenchCase, task: Task) -> list[Task]:
-    """Return one task for all engines, or one for each if each runs alone."""
+    """Return one task for all engines, or one task for each engine if the case runs them alone."""
     if not case.alone:
         return [task]
     return [replace(task, engines=[name]) for name in task.engines]
@@ -146,7 +147,7 @@ def _checked(row: dict[str, Any]) -> bool:
 
 
 def _at_once(task: Task, settings: Settings, progress: Progress) -> dict[str, Any]:
-    """Ask the referee for the set of a chain as one expression."""
+    """Return the main rival's result for a chain, computed as one expression."""
     gathered = Gathered(task.item)
     asked = replace(task, engines=[MAIN_RIVAL], runs=0, at_once=True, cores=0)
     _until_done(asked, settings, gathered, progress)
@@ -155,7 +156,7 @@ def _at_once(task: Task, settings: Settings, progress: Progress) -> dict[str, An
 
 
 def _until_done(task: Task, settings: Settings, gathered: "Gathered", progress: Progress) -> None:
-    """Run workers until each engine is done or has failed; leave out one that ends a worker."""
+    """Run workers until each engine is done or has failed, without engines that end a worker."""
     engines = list(task.engines)
     while engines:
         culprit = _work(replace(task, engines=engines), settings, gathered, progress)
@@ -166,7 +167,7 @@ def _until_done(task: Task, settings: Settings, gathered: "Gathered", progress: 
 
 
 def _work(task: Task, settings: Settings, gathered: "Gathered", progress: Progress) -> str | None:
-    """Run one worker; return the engine that was under way if it ended too early."""
+    """Run one worker; return the engine at whose call it ended too early, or None."""
     limit = CASES[task.case].limit if settings.limit is None else settings.limit
     core = str(settings.core.resolve()) if settings.core else ""
     command = [sys.executable, "-P", str(_BOOT), str(_PACKAGE.parent), core]
@@ -175,7 +176,7 @@ def _work(task: Task, settings: Settings, gathered: "Gathered", progress: Progre
         subprocess.Popen(
             [*command, json.dumps(asdict(task))],
             stdout=subprocess.PIPE,
-            # Engines write anything to standard error; our errors go to standard output.
+            # Engines may write anything to stderr; the worker reports errors on stdout.
             stderr=subprocess.DEVNULL,
             env={**os.environ, "PYTHONHASHSEED": "0", "TMPDIR": scratch},
         ) as child,
@@ -197,7 +198,7 @@ def _listen(
     gathered: "Gathered",
     progress: Progress,
 ) -> tuple[str | None, dict[str, Any] | None]:
-    """Read a worker's output; return the engine under way, and why the worker failed, if it did."""
+    """Read a worker's output; return the engine in progress and the worker's failure, or None."""
     lines = _Lines(child)
     under_way, began = None, time.monotonic()
     while True:
@@ -219,14 +220,14 @@ def _listen(
 
 
 class _Lines:
-    """The output of a process, line by line."""
+    """Reads the output of a process line by line, with deadlines."""
 
     def __init__(self, child: "subprocess.Popen[bytes]") -> None:
         self._descriptor = held(child.stdout, "the process's output").fileno()
         self._waiting = b""
 
     def next(self, deadline: float) -> bytes | None:
-        """Return a line, nothing at the end, or None when the deadline has passed."""
+        """Return the next line, b"" at the end of the output, or None after the deadline."""
         while b"\n" not in self._waiting:
             left = deadline - time.monotonic()
             if left <= 0 or not select.select([self._descriptor], [], [], left)[0]:
@@ -240,7 +241,7 @@ class _Lines:
 
 
 class Gathered:
-    """The answers of workers about one item."""
+    """Collects what workers report about one item."""
 
     def __init__(self, label: str) -> None:
         self._label = label
@@ -248,7 +249,7 @@ class Gathered:
         self._engines: dict[str, dict[str, Any]] = {}
 
     def take(self, said: dict[str, Any]) -> None:
-        """Record one line."""
+        """Store one report of a worker."""
         if said["say"] == "extent":
             self._extent = {name: said[name] for name in ("area", "size", "triangles")}
         elif said["say"] == "plan":
@@ -275,23 +276,23 @@ class Gathered:
                 found[name] = said[name]
 
     def ended(self, engine: str, reason: dict[str, Any]) -> None:
-        """Note that the worker ended while this engine was under way."""
+        """Store that the worker ended during a call of this engine."""
         self._engines.setdefault(engine, _nothing_yet()).update(reason)
 
     def is_over(self, engine: str) -> bool:
-        """Say whether an engine failed, or has all its runs."""
+        """Return true if an engine has failed or has finished all its runs."""
         found = self._engines.get(engine, {})
         wanted = found.get("planned", 0) + 1
         return "state" in found or len(found.get("seconds", ())) >= wanted
 
     def forget_unfinished(self, engines: Sequence[str], culprit: str) -> None:
-        """Forget the runs of engines that will start anew."""
+        """Remove the results of engines that are not finished, except the culprit."""
         for name in engines:
             if name != culprit and not self.is_over(name):
                 self._engines.pop(name, None)
 
     def row(self) -> dict[str, Any]:
-        """Return the item as records store it."""
+        """Return the results of the item in the form of a record."""
         for found in self._engines.values():
             found["median"] = _warm_median(found["seconds"])
             found["cpu"] = _warm_median(found["cpu_seconds"])
@@ -310,12 +311,12 @@ def _nothing_yet() -> dict[str, Any]:
 
 
 def _warm_median(times: list[float]) -> float | None:
-    """Return the median without the first, which warms caches, unless there is no other."""
+    """Return the median of all times but the first, a warm-up; of one time, the time itself."""
     return median(times[1:] or times) if times else None
 
 
 def judged(row: dict[str, Any]) -> dict[str, Any]:
-    """Compare the volumes of all answers with ours, within what rounding allows."""
+    """Return the row with each volume compared with ours, within a bound of the rounding."""
     ours = row["engines"].get(OURS, {})
     if "facts" not in ours:
         return row
@@ -335,7 +336,7 @@ def judged(row: dict[str, Any]) -> dict[str, Any]:
 
 
 def _bound(row: dict[str, Any], ours: dict[str, Any], theirs: dict[str, Any], name: str) -> float:
-    """Return by how much two right volumes may differ.
+    """Return the largest difference of two correct volumes.
 
     An engine may move each vertex by its resolution. The faces of the answer are parts of the
     operands' faces, so the volume changes by at most the operands' area times that distance.
@@ -346,5 +347,5 @@ def _bound(row: dict[str, Any], ours: dict[str, Any], theirs: dict[str, Any], na
 
 
 def _resolution(engine: str, size: float) -> float:
-    # Called on the class, because creating an engine would load it.
+    # Without calling `__init__`, which would import the engine.
     return ENGINES[engine].resolution(ENGINES[engine].__new__(ENGINES[engine]), size)

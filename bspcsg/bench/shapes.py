@@ -1,4 +1,4 @@
-"""Meshes of the bench, as plain arrays that any engine takes."""
+"""Meshes for benchmarks, as arrays (vertices, faces) that any engine accepts."""
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
@@ -9,20 +9,20 @@ import numpy as np
 from .._types import FloatArray, IndexArray, MeshArrays
 from ..errors import missing_part
 
-#: Vertices (n, 3) and faces (m, 3), counter-clockwise seen from outside.
+#: Meshes are vertices (n, 3) and faces (m, 3), counter-clockwise seen from outside.
 
 
-#: Seeds are arbitrary and fixed, so that two runs see the same arrays.
+#: An arbitrary fixed seed, so that all runs have the same arrays.
 _SEED = 7
 
 
 def generator(number: int = 0) -> np.random.Generator:
-    """Return the random numbers of one case."""
+    """Return a random number generator, seeded with the number of a case."""
     return np.random.default_rng([_SEED, number])
 
 
 def moved(mesh: MeshArrays, by: object) -> MeshArrays:
-    """Return the mesh shifted."""
+    """Return the mesh translated by a vector."""
     return mesh[0] + np.asarray(by, dtype=np.float64), mesh[1]
 
 
@@ -32,32 +32,32 @@ def scaled(mesh: MeshArrays, factor: float) -> MeshArrays:
 
 
 def turned(mesh: MeshArrays, matrix: FloatArray) -> MeshArrays:
-    """Return the mesh with a 3 × 3 matrix applied to its vertices."""
+    """Return the mesh with its vertices multiplied by a (3, 3) matrix."""
     return mesh[0] @ matrix.T, mesh[1]
 
 
 def rotation(axis: object, angle: float) -> FloatArray:
-    """Return the matrix of a turn by an angle in radians about an axis through the origin."""
+    """Return the matrix of a rotation by an angle in radians about an axis through the origin."""
     x, y, z = (v := np.asarray(axis, dtype=np.float64)) / np.linalg.norm(v)
     across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return np.asarray(np.eye(3) + np.sin(angle) * across + (1 - np.cos(angle)) * (across @ across))
 
 
 def random_rotation(random: np.random.Generator) -> FloatArray:
-    """Return a uniformly distributed rotation."""
+    """Return a uniformly distributed rotation matrix, (3, 3)."""
     matrix, upper = np.linalg.qr(random.normal(size=(3, 3)))
     matrix = matrix * np.sign(np.diag(upper))
     return np.ascontiguousarray(matrix * np.linalg.det(matrix))
 
 
 def unit_vector(random: np.random.Generator) -> FloatArray:
-    """Return a uniformly distributed direction."""
+    """Return a uniformly distributed unit vector, (3,)."""
     direction = random.normal(size=3)
     return np.asarray(direction / np.linalg.norm(direction))
 
 
 def joined(meshes: Sequence[MeshArrays]) -> MeshArrays:
-    """Return one mesh of several."""
+    """Return several meshes as one mesh."""
     starts = np.cumsum([0, *(len(vertices) for vertices, _ in meshes)])
     faces = [mesh[1] + start for mesh, start in zip(meshes, starts, strict=False)]
     return np.concatenate([vertices for vertices, _ in meshes]), np.concatenate(faces)
@@ -76,7 +76,7 @@ def box(low: object, high: object) -> MeshArrays:
     creation = _creation()
     corners = np.array([low, high], dtype=np.float64)
     mesh = creation.box(bounds=corners)
-    # Which corner a vertex is, rather than where the library's sums put it.
+    # Replace vertices, which trimesh computes with rounding, by the exact corners.
     nearest = mesh.vertices > corners.mean(axis=0)
     return np.where(nearest, corners[1], corners[0]), np.asarray(mesh.faces, dtype=np.int64)
 
@@ -92,7 +92,8 @@ def octasphere(n: int) -> MeshArrays:
     """Return a unit sphere of 8 · n² triangles: an octahedron with each face divided evenly."""
     rows = np.arange(-n, n + 1)
     x, y = (a.ravel() for a in np.meshgrid(rows, rows, indexing="ij"))
-    # The diamond |x| + |y| ≤ n holds one half of the octahedron; its rim belongs to both halves.
+    # One half of the octahedron lies over the diamond |x| + |y| ≤ n; its rim belongs to both
+    # halves.
     inside = np.abs(x) + np.abs(y) <= n
     x, y = x[inside], y[inside]
     height = n - np.abs(x) - np.abs(y)
@@ -110,7 +111,7 @@ def octasphere(n: int) -> MeshArrays:
 
 
 def _diamond_triangles(number: IndexArray, n: int) -> IndexArray:
-    """Return the triangles of a diamond grid; in each quadrant the diagonals follow its rim."""
+    """Return the triangles of a diamond-shaped grid; all diagonals are parallel to the rim."""
     parts = []
     for sx, sy in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
         i, j = (a.ravel() for a in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))
@@ -135,19 +136,19 @@ def _quadrant(
     triangles = np.column_stack(
         [number[signs[0] * i[kept] + n, signs[1] * j[kept] + n] for i, j in corners]
     )
-    # A mirrored quadrant turns its triangles around.
+    # Triangles of a mirrored quadrant are reversed.
     return triangles if signs[0] * signs[1] > 0 else triangles[:, ::-1]
 
 
 def cylinder(sides: int, radius: float, low: float, high: float) -> MeshArrays:
-    """Return a prism along z over a regular polygon."""
+    """Return a prism along z over a regular polygon with this number of sides."""
     angles = 2 * np.pi * np.arange(sides) / sides
     ring = np.column_stack([radius * np.cos(angles), radius * np.sin(angles)])
     return prism(ring, low, high)
 
 
 def prism(ring: FloatArray, low: float, high: float) -> MeshArrays:
-    """Return a prism along z over a convex polygon, its caps divided as fans from a corner."""
+    """Return a prism along z over a convex polygon, with its caps as fans around a corner."""
     sides = len(ring)
     points = np.concatenate([np.column_stack([ring, np.full(sides, z)]) for z in (low, high)])
     i = np.arange(sides)
@@ -162,22 +163,22 @@ def prism(ring: FloatArray, low: float, high: float) -> MeshArrays:
 
 
 def spheres_apart(ball: MeshArrays, number: int = 0) -> tuple[MeshArrays, MeshArrays]:
-    """Return a unit sphere and its copy, turned, with its centre on the first one's surface."""
+    """Return a unit sphere and a rotated copy with its centre on the first sphere's surface."""
     random = generator(number)
     return ball, moved(turned(ball, random_rotation(random)), unit_vector(random))
 
 
 def spheres_coincident(ball: MeshArrays) -> tuple[MeshArrays, MeshArrays]:
-    """Return a unit sphere and its copy that is 10⁻⁴ larger and turned by 0.01 radians."""
+    """Return a unit sphere, and a copy that is 10⁻⁴ larger and rotated by 0.01 radians."""
     matrix = rotation(unit_vector(generator()), 0.01)
     return ball, scaled(turned(ball, matrix), 1 + 1e-4)
 
 
 def needles(sides: int, length: float = 9450.0) -> tuple[MeshArrays, MeshArrays]:
-    """Return two rods askew, whose 4 · `sides` walls are needles, one shifted along its twin.
+    """Return two nearly parallel rods whose walls are 4 · `sides` needle triangles.
 
-    All boxes of walls overlap, since each wall runs along the whole rod, so that a search for
-    candidates by boxes finds every pair.
+    The bounding boxes of all walls overlap, since each wall runs along the whole rod, so that a
+    search by boxes finds every pair of walls.
     """
     rod = cylinder(sides, 25.0, 0.0, length)
     askew = rotation((1, -2, 0.5), 0.7)
@@ -186,14 +187,14 @@ def needles(sides: int, length: float = 9450.0) -> tuple[MeshArrays, MeshArrays]
 
 
 def drilled_cube(count: int) -> tuple[MeshArrays, list[MeshArrays]]:
-    """Return a unit cube and spheres of 128 triangles at random places in it."""
+    """Return a unit cube, and spheres of 128 triangles at random points in it."""
     ball = scaled(octasphere(4), 0.03)
     places = generator().random((count, 3))
     return box((0, 0, 0), (1, 1, 1)), [moved(ball, at) for at in places]
 
 
 def drilled_plate(rows: int) -> tuple[MeshArrays, list[MeshArrays]]:
-    """Return a plate and `rows` · `rows` cylinders of 32 sides through it, none touching."""
+    """Return a plate, and `rows` · `rows` disjoint cylinders of 32 sides through it."""
     drill = cylinder(32, 0.35, -1.0, 2.0)
     places = [(x + 0.5, y + 0.5, 0.0) for x in range(rows) for y in range(rows)]
     return box((0, 0, 0), (rows, rows, 1)), [moved(drill, at) for at in places]
@@ -208,9 +209,9 @@ def random_boxes(count: int) -> list[MeshArrays]:
 
 
 def menger(depth: int) -> tuple[MeshArrays, list[list[MeshArrays]]]:
-    """Return the cube of a Menger sponge, and its holes along x, y and z.
+    """Return the cube of a Menger sponge, and its holes along x, along y and along z.
 
-    The side is 3^depth, so that all coordinates are whole numbers.
+    The side of the cube is 3^depth, so that all coordinates are integers.
     """
     side = 3**depth
     squares = list(_squares(0, 0, side))
@@ -225,7 +226,7 @@ def menger(depth: int) -> tuple[MeshArrays, list[list[MeshArrays]]]:
 
 
 def _squares(u: int, v: int, side: int) -> Iterator[tuple[int, int, int]]:
-    """Yield corner and width of the holes in a square, the middle one first."""
+    """Yield corner and width of the square holes in a Menger sponge's face, the largest first."""
     third = side // 3
     if third == 0:
         return
@@ -237,9 +238,10 @@ def _squares(u: int, v: int, side: int) -> Iterator[tuple[int, int, int]]:
 
 
 def milled_by_cylinders(count: int) -> tuple[MeshArrays, list[MeshArrays]]:
-    """Return a block, and what a flat mill of 32 sides clears on a spiral down into it.
+    """Return a block, and the solids that a flat mill of 32 sides removes on a spiral downwards.
 
-    Each step is a prism over a slot; neighbours share half a cylinder, and floors lie in planes.
+    Each solid is a prism over a slot; neighbours have half a cylinder in common, and many floors
+    are coplanar.
     """
     radius, windings = 0.08, 8
     turns = np.linspace(0, 2 * np.pi * windings, count + 1)
@@ -254,7 +256,7 @@ def milled_by_cylinders(count: int) -> tuple[MeshArrays, list[MeshArrays]]:
 
 
 def _slot(start: FloatArray, end: FloatArray, radius: float, sides: int) -> FloatArray:
-    """Return the convex polygon that a regular polygon sweeps along a straight segment."""
+    """Return the convex polygon that a regular polygon sweeps along a segment."""
     along = end - start
     angles = np.arctan2(along[1], along[0]) + np.pi * (0.5 + np.arange(sides // 2 + 1) * 2 / sides)
     half = radius * np.column_stack([np.cos(angles), np.sin(angles)])
@@ -262,19 +264,19 @@ def _slot(start: FloatArray, end: FloatArray, radius: float, sides: int) -> Floa
 
 
 def milled_by_balls(count: int) -> tuple[MeshArrays, list[MeshArrays]]:
-    """Return a block, and what a ball clears in each step of a curve through it: capsules."""
+    """Return a block, and the capsules that a ball sweeps along a curve through it."""
     t = np.linspace(0, 2 * np.pi, count + 1)
     path = 0.42 * np.column_stack([np.sin(5 * t), np.sin(7 * t + 1), np.sin(4 * t + 2)])
     tools = [_capsule(a, b, 0.1) for a, b in pairwise(path)]
     return box((-0.5, -0.5, -0.5), (0.5, 0.5, 0.5)), tools
 
 
-#: Sides and rings of the halves of a capsule, which has 360 triangles then.
+#: The numbers of sides and of rings of each half of a capsule, which give 360 triangles.
 _CAPSULE_SIDES, _CAPSULE_RINGS = 18, 5
 
 
 def _capsule(start: FloatArray, end: FloatArray, radius: float) -> MeshArrays:
-    """Return the hull of two balls; vertices lie on them."""
+    """Return a triangulated capsule, the hull of two balls; its vertices lie on the balls."""
     length = float(np.linalg.norm(end - start))
     rise = np.pi / 2 * np.arange(_CAPSULE_RINGS) / _CAPSULE_RINGS
     upper = np.column_stack([np.cos(rise), np.sin(rise)]) * radius
@@ -288,7 +290,7 @@ def _capsule(start: FloatArray, end: FloatArray, radius: float) -> MeshArrays:
 
 
 def _frame(axis: FloatArray) -> FloatArray:
-    """Return a rotation that takes z to a direction."""
+    """Return a rotation matrix that maps the z axis to a unit vector."""
     least = np.eye(3)[np.argmin(np.abs(axis))]
     x = np.cross(least, axis)
     x /= np.linalg.norm(x)
@@ -296,7 +298,7 @@ def _frame(axis: FloatArray) -> FloatArray:
 
 
 def _lathe_faces(rings: int) -> IndexArray:
-    """Return the triangles between rings from below to above, and to a pole at each end."""
+    """Return the triangles between consecutive rings, and from the end rings to the poles."""
     i = np.arange(_CAPSULE_SIDES)
     j = (i + 1) % _CAPSULE_SIDES
     below, above = rings * _CAPSULE_SIDES, rings * _CAPSULE_SIDES + 1
@@ -309,15 +311,15 @@ def _lathe_faces(rings: int) -> IndexArray:
     return np.concatenate(parts)
 
 
-#: Steps of the whole dome; a shorter run carves the beginning of the same spiral.
+#: The number of steps of the whole dome; a shorter run is the beginning of the same spiral.
 DOME_STEPS = 100_000
 
 
 def dome(steps: int) -> tuple[MeshArrays, Iterator[MeshArrays]]:
-    """Return a block, and the balls that carve a flat dome into its top, one after the other.
+    """Return a block, and an iterator of balls that carve a flat dome into its top.
 
-    The balls follow a spiral outwards. Their distance along it equals that of its windings, and
-    each overlaps its neighbours, so a step meets the surfaces of about eight earlier ones.
+    The balls follow a spiral outwards, as far apart along it as its windings are, so that each ball
+    overlaps about eight earlier ones.
     """
     spacing = np.sqrt(np.pi / DOME_STEPS)
     radius = 1.2 * spacing
@@ -329,7 +331,7 @@ def _dome_balls(steps: int, spacing: float, radius: float) -> Iterator[MeshArray
     ball = scaled(octasphere(4), radius)
     random = generator()
     for k in range(steps):
-        # An area of spacing² for each step; the angle follows from dθ = spacing / r.
+        # Each step covers an area of spacing²; the angle follows from dθ = spacing / r.
         r = spacing * np.sqrt((k + 0.5) / np.pi)
         angle = 2 * np.sqrt(np.pi * (k + 0.5))
         depth = radius * (0.4 - r * r)

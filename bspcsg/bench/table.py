@@ -1,4 +1,4 @@
-"""Tables of a record: the targets, the results, and the times of the engines."""
+"""Tables of a benchmark record: targets, results, and the times of all engines."""
 
 from typing import Any
 
@@ -8,24 +8,24 @@ from .times import seconds_text
 
 Row = dict[str, Any]
 
-#: A median of fewer runs than this is shown with their number.
+#: A median of fewer runs than this is printed with the number of runs.
 _MIN_RUNS_FOR_MEDIAN = 5
 
-#: Stands for a missing figure.
+#: The text for a missing figure.
 _NOTHING = "—"
 
 _MET = {True: "yes", False: "no", None: _NOTHING}
 
 
 def lines_of(record: dict[str, Any], titles: bool) -> list[list[str]]:
-    """Return the table: a line of columns' names, and one for each target of each case.
+    """Return the result table: a row of column names, and a row for each target of each case.
 
     Parameters
     ----------
     record : dict
-        As `bspcsg.bench.record.read` returns it.
+        The record, as from `bspcsg.bench.record.read`.
     titles : bool
-        True to show the titles of cases instead of their names.
+        True for the titles of cases instead of their names.
     """
     engines = _engines_of(record)
     lines = [["case", "to reach", "reached", "met", *engines, "memory", "answers"]]
@@ -36,7 +36,7 @@ def lines_of(record: dict[str, Any], titles: bool) -> list[list[str]]:
 
 
 def detail_lines(record: dict[str, Any]) -> list[list[str]]:
-    """Return a table of all figures: a line of columns' names, and one for each item and engine."""
+    """Return a table of all figures: a row of column names, and a row for each item and engine."""
     head = ["case", "item", "engine", "first", "wall", "processor", "page faults", "peak"]
     found = [
         [row["case"], item["item"], name, *_figures(result)]
@@ -62,7 +62,7 @@ def _or_nothing(seconds: float | None) -> str:
 
 
 def remarks(record: dict[str, Any]) -> list[str]:
-    """Return sentences about the whole: targets reached and missed, and items left out."""
+    """Return sentences about the record: targets reached and missed, and items left out."""
     met = [
         (row["case"], target.reached(row["items"]).met)
         for row in record["cases"]
@@ -90,7 +90,7 @@ def _counted(met: list[tuple[str, bool | None]]) -> str:
 
 
 def _of_dense_places(rows: list[Row]) -> list[str]:
-    """Say which dense places cost more than they should, by name."""
+    """Return a sentence that names the dense cases that are too slow or grow too fast."""
     slow = [row["case"] for row in rows if _least_ratio(row) is False]
     grown = [row["case"] for row in rows if has_cliff(row)]
     return [
@@ -104,7 +104,7 @@ def _named(names: list[str]) -> str:
 
 
 def _least_ratio(row: Row) -> bool | None:
-    """Say whether each item of a row takes us no longer than the main rival."""
+    """Return whether we are at least as fast as the main rival on each item; None if unknown."""
     return Faster(1).reached(row["items"]).met
 
 
@@ -114,13 +114,13 @@ def _doubling(row: Row) -> DoublingTarget | None:
 
 
 def has_cliff(row: Row) -> bool:
-    """Say whether our cost grows too fast in a row of full size that bounds its growth."""
+    """Return true if a full-size row has a target for the growth of our cost, and misses it."""
     target = _doubling(row)
     return bool(target and not row.get("small") and target.reached(row["items"]).met is False)
 
 
 def _engines_of(record: dict[str, Any]) -> list[str]:
-    """Return all engines that took part, ours first."""
+    """Return the names of all engines in the record, ours first."""
     engines = (name for row in record["cases"] for i in row["items"] for name in i["engines"])
     return list(dict.fromkeys([OURS, *engines]))
 
@@ -131,14 +131,14 @@ def _title(row: Row) -> str:
 
 
 def _lines_of_row(row: Row, name: str, engines: list[str]) -> list[list[str]]:
-    """Return one line for each target; only the first shows what they have in common."""
+    """Return one row for each target of a case; only the first has the columns of the case."""
     if "left_out" in row:
         return [[name, "", "left out", "", *[""] * len(engines), "", row["left_out"]]]
     described = [*(_times(row, engine) for engine in engines), _memory(row), _answers(row)]
     lines = []
     for target in CASES[row["case"]].targets:
         reached = target.reached(row["items"])
-        # Targets are meant for the full size.
+        # Targets do not apply to small items.
         met = None if row.get("small") else reached.met
         head = [name, target.text, reached.text, _MET[met]]
         lines.append([*head, *described])
@@ -147,7 +147,7 @@ def _lines_of_row(row: Row, name: str, engines: list[str]) -> list[list[str]]:
 
 
 def markdown(record: dict[str, Any]) -> str:
-    """Return the table as Markdown, with a line about the machine."""
+    """Return the result table as Markdown, with the machine, the versions and remarks."""
     head, *lines = lines_of(record, titles=True)
     drawn = [f"| {' | '.join(line)} |" for line in [head, ["---"] * len(head), *lines]]
     said = [line for remark in remarks(record) for line in ("", remark)]
@@ -155,7 +155,7 @@ def markdown(record: dict[str, Any]) -> str:
 
 
 def counter_lines(record: dict[str, Any]) -> list[list[str]]:
-    """Return a table of our counters: a line of columns' names, and one for each item."""
+    """Return a table of our engine's counters: a row of column names, and a row for each item."""
     counted = [
         (row["case"], item["item"], found)
         for row in record["cases"]
@@ -168,7 +168,7 @@ def counter_lines(record: dict[str, Any]) -> list[list[str]]:
 
 
 def about(record: dict[str, Any]) -> str:
-    """Return a sentence about machine and versions."""
+    """Return a sentence about the machine and the versions of a record."""
     machine = record["machine"]
     versions = ", ".join(f"{name} {found}" for name, found in record["versions"].items())
     return (
@@ -180,7 +180,7 @@ def about(record: dict[str, Any]) -> str:
 
 
 def _times(row: Row, engine: str) -> str:
-    """Return the median of an engine, or from the least to the greatest of several items."""
+    """Return the median time of an engine as text, or the range of medians of several items."""
     found = [item["engines"].get(engine) for item in row["items"]]
     known = [result for result in found if result and result["median"]]
     if len(found) < 2 or not known:
@@ -207,14 +207,14 @@ def _time(found: Row | None) -> str:
 
 
 def _memory(row: Row) -> str:
-    """Return the peak of our process where it did nothing else."""
+    """Return the peak memory of our process as text, if the case runs each engine alone."""
     peaks = [item["engines"].get(OURS, {}).get("peak_mb") for item in row["items"]]
     known = [peak for peak in peaks if peak]
     return f"{max(known):.0f} MB" if known and CASES[row["case"]].alone else ""
 
 
 def _answers(row: Row) -> str:
-    """Say whether all other answers equal ours within rounding, and which differ if not."""
+    """Return "agree" if all results equal ours within rounding, or which differ."""
     words = {name for item in row["items"] for name in _differing(item)}
     compared = any("agrees" in found for item in row["items"] for found in _all_answers(item))
     if not compared:
@@ -239,6 +239,6 @@ def _differing(item: Row) -> list[str]:
 
 
 def _all_answers(item: Row) -> list[Row]:
-    """Return everything that may say whether an answer agrees."""
+    """Return all parts of an item that may have the key "agrees"."""
     proof = item["engines"].get(OURS, {}).get("proof", {})
     return [*item["engines"].values(), item.get("at_once", {}), proof]

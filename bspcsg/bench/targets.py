@@ -1,4 +1,4 @@
-"""The targets of a row, and the figures that the row reached."""
+"""The targets of benchmark cases, and the values that a row reached."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,27 +11,27 @@ import numpy as np
 
 from .times import seconds_text
 
-#: The engine that the others are measured against.
+#: The name of this package's engine.
 OURS = "bspcsg"
 
-#: The engine to match where a row names none.
+#: The engine that targets refer to by default.
 MAIN_RIVAL = "manifold3d"
 
-#: Results by item and engine, as in the records.
+#: The items of a row, with the results of each engine, as in records.
 Items = Sequence[dict[str, Any]]
 
 
 @dataclass(frozen=True)
 class Reached:
-    """The share of one target that a row reached.
+    """The value that a row reached for one target, and whether it meets the target.
 
     Parameters
     ----------
     value : float or None
-        None if an engine that it needs has no time.
+        The value; None if a necessary time is missing.
     text : str
     met : bool or None
-        None if that is unknown.
+        Whether the target is met; None if unknown.
     """
 
     value: float | None
@@ -40,30 +40,30 @@ class Reached:
 
 
 class Goal(Protocol):
-    """One figure to reach."""
+    """A protocol: one target of a case."""
 
     @property
     def text(self) -> str:
-        """The target in words."""
+        """The target as text."""
 
     def reached(self, items: Items) -> Reached:
-        """Compare the target with what was measured."""
+        """Return the value that the items reached, and whether it meets the target."""
 
 
 @dataclass(frozen=True)
 class Faster:
-    """So many times faster than another engine, on each item."""
+    """The target to be `factor` times as fast as another engine, on each item."""
 
     factor: float
     engine: str = MAIN_RIVAL
 
     @property
     def text(self) -> str:
-        """The target in words."""
+        """The target as text."""
         return f"≥ {self.factor:g} × {self.engine}"
 
     def reached(self, items: Items) -> Reached:
-        """Compare the target with what was measured."""
+        """Return the least ratio of times, and whether it meets the target."""
         ratios = [found for item in items if (found := ratio(item, self.engine)) is not None]
         if not ratios:
             return Reached(None, "—", None)
@@ -74,18 +74,18 @@ class Faster:
 
 @dataclass(frozen=True)
 class MeanFaster:
-    """So many times faster in the geometric mean over all items."""
+    """The target to be `factor` times as fast as another engine, in the geometric mean of items."""
 
     factor: float
     engine: str = MAIN_RIVAL
 
     @property
     def text(self) -> str:
-        """The target in words."""
+        """The target as text."""
         return f"mean ≥ {self.factor:g} × {self.engine}"
 
     def reached(self, items: Items) -> Reached:
-        """Compare the target with what was measured."""
+        """Return the geometric mean of the ratios of times, and whether it meets the target."""
         ratios = [found for item in items if (found := ratio(item, self.engine)) is not None]
         if not ratios:
             return Reached(None, "—", None)
@@ -102,17 +102,17 @@ def _geometric_mean(numbers: list[float]) -> float:
 
 @dataclass(frozen=True)
 class Within:
-    """The median of each item is at most so many seconds."""
+    """The target that the median wall-clock time of each item is below `seconds`."""
 
     seconds: float
 
     @property
     def text(self) -> str:
-        """The target in words."""
+        """The target as text."""
         return f"< {seconds_text(self.seconds)}"
 
     def reached(self, items: Items) -> Reached:
-        """Compare the target with what was measured."""
+        """Return the largest median time, and whether it meets the target."""
         times = [result_of(item, OURS).get("median") for item in items]
         known = [value for value in times if value is not None]
         if not known:
@@ -122,17 +122,17 @@ class Within:
 
 @dataclass(frozen=True)
 class WorkWithin:
-    """The median processor time of each item, of all threads and processes, is limited."""
+    """The target that the median processor time of each item is at most `seconds`."""
 
     seconds: float
 
     @property
     def text(self) -> str:
-        """The target in words."""
+        """The target as text."""
         return f"≤ {seconds_text(self.seconds)} of processors"
 
     def reached(self, items: Items) -> Reached:
-        """Compare the target with what was measured."""
+        """Return the largest median processor time, and whether it meets the target."""
         known = [value for item in items if (value := result_of(item, OURS).get("cpu"))]
         if not known:
             return Reached(None, "unfinished", False)
@@ -141,17 +141,17 @@ class WorkWithin:
 
 @dataclass(frozen=True)
 class StepWithin:
-    """The steps of a chain take so many seconds in the mean."""
+    """The target that a step of a chain takes at most `seconds` on average."""
 
     seconds: float
 
     @property
     def text(self) -> str:
-        """The target in words."""
+        """The target as text."""
         return f"≤ {seconds_text(self.seconds)} a step"
 
     def reached(self, items: Items) -> Reached:
-        """Compare the target with what was measured."""
+        """Return the largest average time of a step, and whether it meets the target."""
         found = [result_of(item, OURS) for item in items]
         times = [one["parts"]["steps"] / one["steps"] for one in found if one.get("steps")]
         if not times:
@@ -161,17 +161,20 @@ class StepWithin:
 
 @dataclass(frozen=True)
 class ScratchWithin:
-    """Scratch memory in bytes per triangle of the operands, without operands and answer."""
+    """The target for scratch memory in bytes per triangle of the operands.
+
+    Scratch memory is the memory besides operands and result.
+    """
 
     bytes_each: float
 
     @property
     def text(self) -> str:
-        """The target in words."""
+        """The target as text."""
         return f"≤ {self.bytes_each:g} bytes a triangle beside operands and answer"
 
     def reached(self, items: Items) -> Reached:
-        """Compare the target with what was measured."""
+        """Return the largest scratch memory per triangle, and whether it meets the target."""
         found = [(item["triangles"], result_of(item, OURS)) for item in items]
         each = [
             (one["memory_mb"] - one["answer_mb"]) * 1e6 / triangles
@@ -186,17 +189,17 @@ class ScratchWithin:
 
 @dataclass(frozen=True)
 class MemoryWithin:
-    """The memory of the whole process is limited."""
+    """The target that the peak memory of the whole process is below `megabytes`."""
 
     megabytes: float
 
     @property
     def text(self) -> str:
-        """The target in words."""
+        """The target as text."""
         return f"< {self.megabytes:g} MB"
 
     def reached(self, items: Items) -> Reached:
-        """Compare the target with what was measured."""
+        """Return the largest peak memory, and whether it meets the target."""
         peaks = [result_of(item, OURS).get("peak_mb") for item in items]
         known = [value for value in peaks if value is not None]
         if not known:
@@ -206,17 +209,17 @@ class MemoryWithin:
 
 @dataclass(frozen=True)
 class SteadySteps:
-    """The last steps of a chain take at most so many times as long as the thousandth."""
+    """The target that the last steps of a chain take at most `factor` times the thousandth step."""
 
     factor: float
 
     @property
     def text(self) -> str:
-        """The target in words."""
+        """The target as text."""
         return f"last steps ≤ {self.factor:g} × step 1 000"
 
     def reached(self, items: Items) -> Reached:
-        """Compare the target with what was measured."""
+        """Return the largest ratio of the last to the thousandth step, and if it is low enough."""
         windows = [result_of(item, OURS).get("windows") or {} for item in items]
         pairs = [(w["thousandth"], w["last"]) for w in windows if "thousandth" in w]
         if not pairs:
@@ -227,17 +230,17 @@ class SteadySteps:
 
 @dataclass(frozen=True)
 class GrowthTarget:
-    """Processor time grows at most with this power of the number of triangles."""
+    """The target that processor time grows at most with this power of the number of triangles."""
 
     exponent: float
 
     @property
     def text(self) -> str:
-        """The target in words."""
+        """The target as text."""
         return f"∝ n^{self.exponent:g}"
 
     def reached(self, items: Items) -> Reached:
-        """Compare the target with what was measured."""
+        """Return the fitted exponent of growth, and whether it meets the target."""
         value = exponent(items, OURS, "cpu")
         if value is None:
             return Reached(None, "—", None)
@@ -246,26 +249,26 @@ class GrowthTarget:
 
 
 def _of_all(met: bool, measured: int, items: Items) -> bool | None:
-    """Return whether a target is met; None if it is met but some items were not measured."""
+    """Return whether a target is met; None if it is met but not all items were measured."""
     return None if met and measured < len(items) else met
 
 
 @dataclass(frozen=True)
 class DoublingTarget:
-    """From each item to the next, about twice as large, cost grows no faster than the sizes."""
+    """The target that processor time grows no faster than input and result, from item to item."""
 
-    #: The factor by which processor time may outgrow the triangles read and written.
+    #: The fraction by which processor time may grow more than the triangles read and written.
     share: float = 0.15
 
     @property
     def text(self) -> str:
-        """The target in words."""
+        """The target as text."""
         return f"cost ≤ {1 + self.share:g} × growth of input and answer"
 
     def reached(self, items: Items) -> Reached:
-        """Compare the target with what was measured."""
+        """Return the largest growth of time relative to size, and whether it meets the target."""
         if any(result_of(item, OURS).get("state") == "stopped" for item in items):
-            # An item that finishes at one size and times out at the next has grown too fast.
+            # A larger item that times out has grown too fast.
             return Reached(None, "unfinished", False)
         grown = [_growth(a, b) for a, b in pairwise(items)]
         known = [found for found in grown if found is not None]
@@ -277,9 +280,10 @@ class DoublingTarget:
 
 
 def _growth(less: dict[str, Any], more: dict[str, Any]) -> tuple[float, float] | None:
-    """Return the growth of processor time, and of the triangles read and written.
+    """Return the factors by which processor time, and triangles read and written, grow; or None.
 
-    An answer that grew less than the operands is ignored, because all operands have to be read.
+    If the result grows less than the operands, the growth of the operands counts, because all
+    operands must be read.
     """
     ours = [result_of(item, OURS) for item in (less, more)]
     if not all(found.get("cpu") and "facts" in found for found in ours):
@@ -291,24 +295,24 @@ def _growth(less: dict[str, Any], more: dict[str, Any]) -> tuple[float, float] |
 
 
 def result_of(item: dict[str, Any], engine: str) -> dict[str, Any]:
-    """Return what an engine reached on an item; empty if it did not take part."""
+    """Return the results of an engine on an item; empty if the engine was not timed."""
     found: dict[str, Any] = item["engines"].get(engine, {})
     return found
 
 
 @dataclass(frozen=True)
 class Ratio:
-    """How many times we are faster.
+    """How many times as fast as another engine we are.
 
     Parameters
     ----------
     value : float
-        Of the medians of wall time.
+        The ratio of the medians of wall-clock time.
     cpu : float or None
-        Of the medians of processor time of all threads, which other users of the machine disturb
-        less.
+        The ratio of the medians of processor time of all threads, which other users of the machine
+        disturb less.
     is_bound : bool
-        True if the other engine was stopped before its end, so that the ratio is this or more.
+        True if the other engine was stopped, so that `value` is a lower bound.
     """
 
     value: float
@@ -317,13 +321,13 @@ class Ratio:
 
     @property
     def text(self) -> str:
-        """The ratio in words."""
+        """The ratio as text."""
         worked = "" if self.cpu is None else f" (processor {self.cpu:.3g} ×)"
         return f"{'> ' if self.is_bound else ''}{self.value:.3g} ×{worked}"
 
 
 def ratio(item: dict[str, Any], engine: str) -> Ratio | None:
-    """Compare our time with another engine's; None if a time is missing, or the answers differ."""
+    """Return the ratio of another engine's time to ours; None without both or if results differ."""
     ours, theirs = result_of(item, OURS), result_of(item, engine)
     if theirs.get("agrees") is False or not ours.get("median"):
         return None
@@ -336,14 +340,14 @@ def ratio(item: dict[str, Any], engine: str) -> Ratio | None:
 
 
 def exponent(items: Items, engine: str, time: str = "median") -> float | None:
-    """Fit the exponent by which an engine's time grows with the number of triangles.
+    """Return the fitted exponent with which an engine's time grows with the number of triangles.
 
     Parameters
     ----------
     items : sequence of dict
     engine : str
     time : {"median", "cpu"}
-        Wall time or processor time.
+        Wall-clock time or processor time.
     """
     points = [
         (item["triangles"], found) for item in items if (found := result_of(item, engine).get(time))

@@ -1,4 +1,4 @@
-"""The work that is timed: one thing to do for any engine, prepared outside the clock."""
+"""The kinds of work that are timed: each prepares its operands outside the timed part."""
 
 import time
 from abc import ABC, abstractmethod
@@ -16,25 +16,25 @@ from .facts import area, mesh_volume, size_of
 from .meter import Usage
 from .shapes import generator
 
-#: Called with the number of steps that are done; for chains only.
+#: A function that is called with the number of finished steps of a chain.
 Tell = Callable[[int], None]
 
 
 @dataclass
 class Outcome:
-    """The result of one run.
+    """The result of one timed run.
 
     Parameters
     ----------
     mesh : (vertices, faces)
     parts : dict
-        Seconds of the parts of the run, by name; parts that are not timed separately are left out.
+        The seconds of the parts of the run that are timed separately, by name.
     step_seconds : list of float
-        Of each step of a chain.
+        The seconds of each step of a chain.
     solid : object
-        The engine's, for its counters; None if it made none.
+        The engine's solid, which has its counters; None if there is none.
     process : Usage, optional
-        The use of resources by a process that did the work instead of this one.
+        The time and memory of a process that did the work instead of this one.
     """
 
     mesh: MeshArrays
@@ -46,7 +46,7 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Evidence:
-    """The agreement of something other than an engine with an answer."""
+    """Whether a check without another engine confirms a result, and the check as text."""
 
     agrees: bool
     text: str
@@ -54,7 +54,10 @@ class Evidence:
 
 @dataclass(frozen=True)
 class SurfaceExtent:
-    """The area, size and triangles of the operands; area and size bound the errors of volumes."""
+    """The operands' total area, largest coordinate and number of triangles.
+
+    Area and coordinate bound the errors of volumes.
+    """
 
     area: float
     size: float
@@ -62,47 +65,47 @@ class SurfaceExtent:
 
 
 class Work(ABC):
-    """One thing to do."""
+    """The base class of the kinds of work that are timed."""
 
     @abstractmethod
     def extent(self) -> SurfaceExtent:
-        """Measure the operands."""
+        """Return the total extent of the operands."""
 
     def prepare(self, engine: Engine) -> Any:
-        """Prepare a run, outside the clock."""
+        """Return what a run needs, prepared outside the timed part."""
         return None
 
     @abstractmethod
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
-        """Do the work."""
+        """Do the work with an engine and return the outcome."""
 
     def counted(self, engine: Engine, outcome: Outcome) -> dict[str, int]:
-        """Return the engine's counters of a run, if it has any."""
+        """Return the engine's counters of a run; empty if it has none."""
         return {} if outcome.solid is None else engine.counters(outcome.solid)
 
     def proof(self, answer: MeshArrays) -> Evidence | None:
-        """Check an answer where other engines cannot; None if they can."""
+        """Check a result without another engine; None if other engines can be compared."""
         return None
 
 
 @dataclass(frozen=True)
 class Pair(Work):
-    """Two meshes, arrays in to arrays out."""
+    """An operation on two meshes, from arrays to arrays."""
 
     first: MeshArrays
     second: MeshArrays
     operation: Operation = "difference"
 
     def extent(self) -> SurfaceExtent:
-        """Add the operands up."""
+        """Return the total extent of both operands."""
         return extent_of([self.first, self.second])
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
-        """Do the work."""
+        """Combine both meshes with an engine."""
         return Outcome(engine.boolean(self.first, self.second, self.operation))
 
     def counted(self, engine: Engine, outcome: Outcome) -> dict[str, int]:
-        """Repeat the work on solids, since arrays have no counters."""
+        """Return the counters of the same work on solids, since arrays have no counters."""
         if not engine.counts:
             return {}
         operands = [engine.solid(self.first), engine.solid(self.second)]
@@ -111,28 +114,28 @@ class Pair(Work):
 
 @dataclass(frozen=True)
 class PairAsBalls(Pair):
-    """Two meshes close to balls, so large that few engines answer.
+    """A pair of meshes close to balls, too large for most engines.
 
     Parameters
     ----------
     volume : float
-        The volume of the answer if both were their circumscribed balls.
+        The volume of the result if both meshes were their circumscribed balls.
     depth : float
-        The greatest depth of the meshes' faces below the surfaces of those balls.
+        The greatest distance of the meshes' faces from the surfaces of the balls.
     """
 
     volume: float = 0.0
     depth: float = 0.0
 
     def counted(self, engine: Engine, outcome: Outcome) -> dict[str, int]:
-        """Return nothing, so that the work is not repeated."""
+        """Return no counters, so that the work is not repeated."""
         return {}
 
     def proof(self, answer: MeshArrays) -> Evidence:
-        """Compare the volume with that of the balls, whose surfaces are at most `depth` away."""
+        """Compare the volume with the difference of two balls, at most `depth` off the meshes."""
         found = mesh_volume(answer)
         apart = abs(found.value - self.volume)
-        # Between a mesh and its ball is at most the ball's area times the depth.
+        # The volume between a mesh and its ball is at most the ball's area times the depth.
         balls = self.extent().area / (1 - self.depth) ** 2
         allowed = balls * self.depth + found.error
         return Evidence(apart <= allowed, f"of balls {apart:.1e}, {allowed:.1e} allowed")
@@ -140,45 +143,45 @@ class PairAsBalls(Pair):
 
 @dataclass(frozen=True)
 class OverlappingPair(Pair):
-    """Two meshes that may overlap themselves: inside is where faces wind around at least once."""
+    """A pair of meshes that may overlap themselves, with the rule "positive"."""
 
-    #: The number of random points at which the answer is checked against its operands.
+    #: The number of random points at which the result is checked against the operands.
     samples: int = 100
 
     def proof(self, answer: MeshArrays) -> Evidence:
-        """Count crossings of rays from random points in the first operand's box."""
+        """Check the result at random points, by exact counts of crossings."""
         wrong, settled = wrong_points(self.first, self.second, answer, self.samples)
         return Evidence(wrong == 0 < settled, f"wrong at {wrong} of {settled} points")
 
 
 @dataclass(frozen=True)
 class BuiltPair(Pair):
-    """A pair whose operands are built anew for each run, before the clock starts."""
+    """A pair whose operands are made into solids before the timed part of each run."""
 
     def prepare(self, engine: Engine) -> Any:
-        """Build both operands."""
+        """Return both operands as solids of the engine."""
         return [engine.solid(self.first), engine.solid(self.second)]
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
-        """Do the work."""
+        """Combine both solids with an engine."""
         made = engine.combine(self.operation, prepared)
         return Outcome(engine.arrays(made), solid=made)
 
 
 @dataclass(frozen=True)
 class Expression(Work):
-    """A mesh and groups of others, in one expression: each group is united, then all combined."""
+    """One expression: groups of meshes are united, then combined with a base mesh."""
 
     base: MeshArrays
     groups: Sequence[Sequence[MeshArrays]]
     operation: Operation = "difference"
 
     def extent(self) -> SurfaceExtent:
-        """Add the operands up."""
+        """Return the total extent of all operands."""
         return extent_of([self.base, *(mesh for group in self.groups for mesh in group)])
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
-        """Do the work."""
+        """Evaluate the expression with an engine."""
         laps = Laps()
         operands = [engine.solid(self.base)]
         for group in self.groups:
@@ -193,38 +196,38 @@ class Expression(Work):
 
 @dataclass(frozen=True)
 class OneMesh(Work):
-    """Overlapping meshes in one file; engines that do not accept these unite the parts."""
+    """Overlapping parts in one mesh; engines that do not accept this unite the parts."""
 
     parts: Sequence[MeshArrays]
 
     def extent(self) -> SurfaceExtent:
-        """Add the parts up."""
+        """Return the total extent of all parts."""
         return extent_of(self.parts)
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
-        """Do the work."""
+        """Unite the parts with an engine."""
         made = engine.united(self.parts)
         return Outcome(engine.arrays(made), solid=made)
 
 
 @dataclass(frozen=True)
 class Chain(Work):
-    """A mesh and others one after the other; the volume is read after each step."""
+    """A chain of operations on a base mesh, with the volume read after each step."""
 
     base: MeshArrays
     tools: Sequence[MeshArrays]
     operation: Operation = "difference"
 
     def extent(self) -> SurfaceExtent:
-        """Add the operands up."""
+        """Return the total extent of all operands."""
         return extent_of([self.base, *self.tools])
 
     def at_once(self) -> Expression:
-        """Return the same set as one expression."""
+        """Return the work of computing the same set as one expression."""
         return Expression(self.base, [[tool] for tool in self.tools], self.operation)
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
-        """Do the work."""
+        """Carry out the chain with an engine."""
         laps = Laps()
         solid = engine.solid(self.base)
         tools = [engine.solid(tool) for tool in self.tools]
@@ -238,13 +241,13 @@ class Chain(Work):
 
 @dataclass(frozen=True)
 class Carving(Work):
-    """A chain so long that its tools are made one at a time, outside the clock."""
+    """A chain whose tools are too many to store; each is made outside the timed part."""
 
     base: MeshArrays
     tools: Callable[[], Iterable[MeshArrays]]
 
     def extent(self) -> SurfaceExtent:
-        """Add the operands up."""
+        """Return the total extent of all operands."""
         total = extent_of([self.base])
         for tool in self.tools():
             more = extent_of([tool])
@@ -256,11 +259,11 @@ class Carving(Work):
         return total
 
     def at_once(self) -> Expression:
-        """Return the same set as one expression."""
+        """Return the work of computing the same set as one expression."""
         return Expression(self.base, [[tool] for tool in self.tools()])
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
-        """Do the work."""
+        """Carry out the chain with an engine."""
         solid = engine.solid(self.base)
         steps = []
         for done, tool in enumerate(self.tools(), start=1):
@@ -276,14 +279,14 @@ class Carving(Work):
 
 
 class Laps:
-    """A clock that is read at the end of each part."""
+    """A stopwatch that records the seconds of each part of a run."""
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = {}
         self._last = time.perf_counter()
 
     def end(self, name: str) -> None:
-        """Note the time since the last part ended."""
+        """Record the seconds since the end of the previous part under a name."""
         now = time.perf_counter()
         self.seconds[name] = now - self._last
         self._last = now
@@ -292,7 +295,10 @@ class Laps:
 def stepwise(
     engine: Engine, operation: Operation, solid: Any, tools: Iterable[Any], tell: Tell
 ) -> tuple[Any, list[float]]:
-    """Combine a solid with others one after the other and read each volume."""
+    """Return the solid after combining it with all tools in turn, and the seconds of each step.
+
+    The volume is read after each step, which forces deferred work.
+    """
     steps = []
     for done, tool in enumerate(tools, start=1):
         began = time.perf_counter()
@@ -306,7 +312,7 @@ def stepwise(
 def wrong_points(
     first: MeshArrays, second: MeshArrays, answer: MeshArrays, samples: int
 ) -> tuple[int, int]:
-    """Return at how many random points a difference is wrong, and at how many that was decided."""
+    """Return at how many random points the difference `answer` is wrong, and the decided points."""
     meshes = [Columns(_mesh(arrays)) for arrays in (first, second, answer)]
     low, high = first[0].min(axis=0), first[0].max(axis=0)
     points = generator().uniform(low, high, (samples, 3))
@@ -325,7 +331,7 @@ def _mesh(arrays: MeshArrays) -> Mesh:
 
 
 def extent_of(meshes: Iterable[MeshArrays]) -> SurfaceExtent:
-    """Add up meshes."""
+    """Return the total area, the largest coordinate and the number of triangles of meshes."""
     listed = list(meshes)
     return SurfaceExtent(
         area=float(np.sum([area(mesh) for mesh in listed])),

@@ -1,6 +1,6 @@
-"""The child process: runs one item with all its engines in turn, and reports each figure at once.
+"""The worker process: times one item with all its engines in turn, and reports at once.
 
-It writes one JSON document per line to standard output, so that a crash loses no earlier figure.
+It writes one JSON document per line to standard output, so that a crash loses no earlier result.
 """
 
 import gc
@@ -23,42 +23,42 @@ from .facts import facts_of
 from .targets import OURS
 from .work import Carving, Chain, Outcome, Tell, Work
 
-#: The shortest time between two reports of steps, in seconds.
+#: The least time between two reports of steps, in seconds.
 _REPORT_INTERVAL = 0.5
 
-#: The shortest run, in seconds. A shorter call is repeated, and its cost is its share of the run.
+#: The least time of a run, in seconds. A shorter call is repeated, and its cost is the mean.
 _MIN_RUN_SECONDS = 0.02
 
-#: The time of a step is the median over this many steps at the beginning and at the end, and over
-#: twice as many around the thousandth.
+#: The number of first and of last steps over which the median is taken; around step 1000 it is
+#: twice that.
 _WINDOW_STEPS = 100
 
 
 @dataclass(frozen=True)
 class Task:
-    """The work of a worker.
+    """The item that a worker times, with its engines and limits.
 
     Parameters
     ----------
     case, item : str
     small : bool
-        True for the small forms of the case's items.
+        True for a small item of the case.
     engines : list of str
-        In the order in which they take turns.
+        The names of the engines, in the order of their turns.
     runs : int
-        Timed runs of each engine, after one that warms up.
+        The number of timed runs of each engine, after a warm-up run.
     budget : float
-        Seconds that an engine may use for all its runs; if it needs more, fewer runs are timed.
+        The time for all runs of an engine, in seconds; fewer runs are timed if it is too short.
     shared : str
-        Folder of the shared data.
+        The folder of shared data.
     cores : int
         The number of cores that the process may use; 0 for no limit.
     memory_gb : float
-        Address space beyond which an allocation fails.
+        The limit of the address space, in 2^30 bytes; 0 for none.
     steps : int
-        Steps of the dome; 0 for all.
+        The number of steps of the case "dome"; 0 for all.
     at_once : bool
-        Only compute the set as one expression.
+        True to compute a chain's set as one expression instead.
     """
 
     case: str
@@ -75,12 +75,12 @@ class Task:
 
 
 def main(task: str) -> None:
-    """Do the task that a JSON document describes."""
+    """Perform the task that a JSON document describes, and report to standard output."""
     perform(Task(**json.loads(task)), _say)
 
 
 def perform(task: Task, say: Callable[[dict[str, Any]], None]) -> None:
-    """Do a task; report each figure as soon as it is known."""
+    """Perform a task, and report each result to `say` as soon as it is known."""
     _confine(task)
     work = _work_of(task)
     extent = work.extent()
@@ -124,14 +124,14 @@ class _Turns:
         self._calls = 1
 
     def take(self) -> None:
-        """Do one run and report the result; an engine that fails gets no further runs."""
+        """Do one run and report its result; after a failure there are no further runs."""
         name = self.engine.name
         self.say({"say": "begin", "engine": name})
         try:
             measured, outcome = self._timed()
         except MemoryError:
             self._fail("out of memory")
-        except Exception as error:  # whatever an engine raises, the others go on
+        except Exception as error:  # the other engines continue
             self._fail(f"{type(error).__name__}: {error}")
         else:
             first = not self._warm
@@ -140,7 +140,7 @@ class _Turns:
             self.say(said | self._details(outcome, first))
 
     def _timed(self) -> tuple[dict[str, Any], Outcome]:
-        """Do one run of some calls and return the cost of a call."""
+        """Do one run of several calls, and return the mean cost of a call with the last outcome."""
         gc.collect()
         held = held_mb()
         counted = forget_peak()
@@ -151,7 +151,7 @@ class _Turns:
         return {**costs, "memory_mb": memory, "peak_mb": peak_mb(), **_of_process(outcome)}, outcome
 
     def _call(self) -> dict[str, float]:
-        """Make one call and return its cost; the answer is freed."""
+        """Make one call and return its cost; the result is freed."""
         return self._called()[0]
 
     def _called(self) -> tuple[dict[str, float], Outcome]:
@@ -167,7 +167,7 @@ class _Turns:
         return cost, outcome
 
     def _plan(self, seconds: float) -> None:
-        """Plan after the first run how many more fit into the budget, and how many calls each."""
+        """After the first run, set the number of runs that fit the budget, and of calls in each."""
         if self._warm:
             self.left -= 1
             return
@@ -188,7 +188,7 @@ class _Turns:
         return details
 
     def _proof(self, outcome: Outcome) -> dict[str, Any]:
-        """Check our own answer where no other engine can."""
+        """Return the check of our own result without another engine, if the work has one."""
         found = self.work.proof(outcome.mesh) if self.engine.name == OURS else None
         return {} if found is None else {"proof": asdict(found)}
 
@@ -210,12 +210,12 @@ class _Turns:
 
 
 def _faults() -> int:
-    """Return the number of minor page faults of the process so far."""
+    """Return the number of minor page faults of this process."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_minflt
 
 
 def _of_process(outcome: Outcome) -> dict[str, float]:
-    """Return the resources used by a process that did the work instead of this one."""
+    """Return the time and memory of a process that did the work, or an empty dict."""
     used = outcome.process
     if used is None:
         return {}
@@ -224,7 +224,7 @@ def _of_process(outcome: Outcome) -> dict[str, float]:
 
 
 def _windows(steps: list[float]) -> dict[str, float]:
-    """Return the median times of the first, the thousandth and the last steps."""
+    """Return the median times of the first, of the thousandth and of the last steps."""
     found = {"first": median(steps[:_WINDOW_STEPS]), "last": median(steps[-_WINDOW_STEPS:])}
     if len(steps) >= 1000 + _WINDOW_STEPS:
         found["thousandth"] = median(steps[1000 - _WINDOW_STEPS : 1000 + _WINDOW_STEPS])

@@ -17,13 +17,13 @@ from typing import Any, Literal, NotRequired, Self, TypedDict, cast
 from ..errors import FormatError, unreadable
 from ..machine import Machine
 
-#: The name for standard input.
+#: The path that stands for standard input.
 STREAM = "-"
 
-#: Version of the lines.
+#: The version of the format of the lines.
 SCHEMA = 1
 
-#: Verdicts that fail a campaign.
+#: The verdicts with which a case, and so its campaign, fails.
 FAILURES = frozenset({"DISAGREE", "subject failed", "timeout", "crash"})
 
 #: All verdicts, the most serious first.
@@ -44,7 +44,7 @@ Kind = Literal["pair", "csg", "pose"]
 
 
 class RunRecord(TypedDict):
-    """The header of a run."""
+    """The line at the start of a run: command, seed, time, versions and machine."""
 
     schema: int
     type: Literal["run"]
@@ -58,8 +58,8 @@ class RunRecord(TypedDict):
 class FactsRecord(TypedDict):
     """The facts about a mesh; lengths in model units, inertia about the centroid at density 1.
 
-    ``self_intersections`` is 0 if no two faces cross or touch except in shared edges and corners,
-    exactly; None if some do, or if this was not checked.
+    ``self_intersections`` is 0 if it is certain that no two faces cross or touch except in common
+    edges and corners; otherwise, or if this was not checked, None.
     """
 
     vertices: int
@@ -75,7 +75,7 @@ class FactsRecord(TypedDict):
 
 
 class OperandRecord(TypedDict):
-    """An operand; `pose` has the rows of an affine map, or None."""
+    """An operand of a case; `pose` has the three rows of an affine map, or is None."""
 
     name: str
     file: str | None
@@ -86,7 +86,7 @@ class OperandRecord(TypedDict):
 
 
 class OracleRecord(TypedDict):
-    """The answer of another engine; `agrees` is None if that could not be decided."""
+    """The opinion of another engine; `agrees` is None if its result could not be compared."""
 
     name: str
     version: str
@@ -97,7 +97,7 @@ class OracleRecord(TypedDict):
 
 
 class DifferenceRecord(TypedDict):
-    """The symmetric difference of our result and the first oracle's."""
+    """The symmetric difference of our result and manifold3d's."""
 
     volume: float
     exact: str | None
@@ -107,7 +107,7 @@ class DifferenceRecord(TypedDict):
 
 
 class HausdorffRecord(TypedDict):
-    """Lower bounds of the distances from ours to theirs and back, and the number of points."""
+    """Lower bounds of the distances from our boundary to manifold3d's and back, from samples."""
 
     forward: float
     backward: float
@@ -115,21 +115,21 @@ class HausdorffRecord(TypedDict):
 
 
 class BoundsRecord(TypedDict):
-    """Thicknesses up to which sets count as the same, and as within rounding."""
+    """The thicknesses up to which sets count as equal, and as equal within rounding."""
 
     same_set: float
     rounding: float
 
 
 class IdentityRecord(TypedDict):
-    """The check whether exact volumes satisfy the equation."""
+    """An equation between exact volumes, and whether it holds."""
 
     equation: str
     holds: bool
 
 
 class SecondsRecord(TypedDict):
-    """Wall time of the parts of a case."""
+    """The wall-clock time of each part of a case, in seconds."""
 
     load: float
     ours: float
@@ -138,7 +138,7 @@ class SecondsRecord(TypedDict):
 
 
 class CaseRecord(TypedDict):
-    """The result of one case."""
+    """The line of one finished case: its input, its verdict and everything that was measured."""
 
     schema: int
     type: Literal["case"]
@@ -164,22 +164,22 @@ class CaseRecord(TypedDict):
 
 
 def is_failure(case: CaseRecord) -> bool:
-    """Say whether a case fails its campaign."""
+    """Return true if a case's verdict makes its campaign fail."""
     return case["verdict"] in FAILURES
 
 
 @dataclass
 class Results:
-    """The lines of one or several files.
+    """The runs and cases of one or several results files.
 
     Parameters
     ----------
     runs : list of RunRecord
-        In the order of the files.
+        The runs in the order of the files and of their lines.
     cases : dict of str to CaseRecord
-        By key, the latest line of each.
+        The last record of each case, by its key.
     folders : dict of str to Path
-        By key, the folder that the path of the case's meshes is relative to.
+        The folder to which the path of a case's meshes is relative, by the case's key.
     """
 
     runs: list[RunRecord] = field(default_factory=list)
@@ -188,7 +188,7 @@ class Results:
 
 
 def read_results(paths: Iterable[str | os.PathLike[str]]) -> Results:
-    """Read results files, such as the shards of one campaign; ``-`` is standard input.
+    """Return the records of results files, such as parts of one campaign; ``-`` is standard input.
 
     Raises
     ------
@@ -210,7 +210,7 @@ def read_results(paths: Iterable[str | os.PathLike[str]]) -> Results:
 
 def _lines(path: Path) -> list[dict[str, Any]]:
     try:
-        # For a results file from a stream, meshes are looked for in the current folder.
+        # For standard input, the paths of meshes are relative to the current folder.
         data = sys.stdin.buffer.read() if str(path) == STREAM else path.read_bytes()
     except OSError as error:
         raise unreadable(path, error) from error
@@ -239,17 +239,17 @@ def _parsed(line: str, path: Path, number: int) -> dict[str, Any]:
     return cast(dict[str, Any], found)
 
 
-#: The beginning of every line.
+#: The bytes with which every line begins.
 _START = b'{"schema": '
 
 
 class Journal:
-    """A results file that is being written, possibly by several threads.
+    """A results file to which records are appended, possibly by several threads.
 
     Parameters
     ----------
     path : path-like
-        Lines are appended if it exists.
+        The path of the file; if it exists, lines are appended to it.
 
     Raises
     ------
@@ -267,7 +267,7 @@ class Journal:
             raise self._unwritable(error) from error
 
     def append(self, record: RunRecord | CaseRecord) -> None:
-        """Add a line, and hand it to the operating system before returning."""
+        """Append a record as a line, and flush it to the operating system."""
         line = json.dumps(record, allow_nan=False, ensure_ascii=True) + "\n"
         try:
             with self._lock:
@@ -277,14 +277,14 @@ class Journal:
             raise self._unwritable(error) from error
 
     def close(self) -> None:
-        """Close the file; its last line may have to wait for room on the disk."""
+        """Close the file, or raise an error if its last line cannot be written."""
         try:
             self._file.close()
         except OSError as error:
             raise self._unwritable(error) from error
 
     def __enter__(self) -> Self:
-        """Return the journal."""
+        """Return the journal itself."""
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -292,7 +292,7 @@ class Journal:
         self.close()
 
     def _closed_torn_line(self) -> None:
-        """Remove the incomplete last line of a killed writer."""
+        """Remove the incomplete last line that a killed writer has left."""
         if not self.path.exists():
             return
         with self.path.open("r+b") as file:

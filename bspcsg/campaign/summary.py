@@ -1,4 +1,4 @@
-"""A campaign in numbers."""
+"""Summarise a campaign in numbers."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -29,13 +29,13 @@ def summary_of(cases: Sequence[CaseRecord]) -> dict[str, Any]:
 
 
 def counts_by_verdict(cases: Sequence[CaseRecord]) -> dict[str, int]:
-    """Return the number of cases of each verdict, the most serious first."""
+    """Return the number of cases of each verdict, the most serious verdict first."""
     counts = Counter(case["verdict"] for case in cases)
     return {verdict: counts[verdict] for verdict in VERDICTS if counts[verdict]}
 
 
 def conclusion(cases: Sequence[CaseRecord]) -> str:
-    """Return the concluding sentence."""
+    """Return a sentence with the number of cases that failed."""
     failed = sum(map(is_failure, cases))
     if len(cases) == 1:
         return "The one case failed." if failed else "The one case did not fail."
@@ -55,7 +55,7 @@ def _counts_within(cases: Sequence[CaseRecord], field: str) -> dict[str, dict[st
 
 
 def _identities(cases: Sequence[CaseRecord]) -> dict[str, int]:
-    """Return how many sums of exact volumes were checked, and how many were wrong."""
+    """Return the numbers of equations of exact volumes that were checked and that were wrong."""
     found = [case.get("identity") for case in cases]
     known = [identity for identity in found if identity is not None]
     broken = sum(not identity["holds"] for identity in known)
@@ -63,7 +63,7 @@ def _identities(cases: Sequence[CaseRecord]) -> dict[str, int]:
 
 
 def _thickest(cases: Sequence[CaseRecord]) -> float:
-    """Return the thickest difference among the cases that agree, in model units."""
+    """Return the thickness, in model units, of the thickest difference among cases that agree."""
     agreeing = [case for case in cases if case["verdict"] not in FAILURES]
     known = [
         case["set_difference"]["thickness"]

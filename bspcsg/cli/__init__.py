@@ -1,1 +1,1 @@
-"""The command line: the same operations on files, with exit codes that scripts can trust."""
+"""The command line: set operations, checks and conversions of mesh files, with exit codes."""

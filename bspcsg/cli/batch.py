@@ -1,4 +1,4 @@
-"""Process files one by one: find the output of each, and collect the results."""
+"""Processing of files one by one: finding the output of each, and collecting the results."""
 
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -14,10 +14,10 @@ from .console.output import Output
 from .inputs.files import STREAM, Target, expanded, is_dropped
 from .inputs.scripts import SUFFIXES
 
-#: A bar shows the progress if there are at least this many files.
+#: The smallest number of files for which a progress bar is shown.
 _MIN_FILES_FOR_BAR = 4
 
-#: What is done with one file: its document, and the exit code.
+#: A function that processes an input file; it returns a JSON document and the exit code.
 Doing = Callable[[Path, Target], tuple[dict[str, Any], int]]
 
 
@@ -29,19 +29,19 @@ def targets_of(
     *,
     keeps_format: bool = False,
 ) -> list[tuple[Path, Path]]:
-    """Return pairs of each input file and its output path.
+    """Return each input file with its output path.
 
     Parameters
     ----------
     files : sequence of Path
     target : Path or None
-        With several files, a name in which % stands for the name of each.
+        The output path; for several files, its name has a % for the name of each input.
     outdir : Path or None
-        The folder for the outputs, which keep the names of the inputs.
+        The folder for the outputs, which have the names of the inputs.
     suffix : str or None
-        The suffix of the output format in that folder.
+        The suffix of the outputs in `outdir`.
     keeps_format : bool
-        True if a file in that folder keeps its own format when no suffix is given.
+        True if outputs in `outdir` have the suffix of the input when `suffix` is None.
 
     Raises
     ------
@@ -70,7 +70,7 @@ def targets_of(
 
 
 def _own(path: Path, keeps_format: bool) -> str:
-    """Return the suffix of a file's own format."""
+    """Return the suffix of an input for its output; raise a usage error if it cannot be used."""
     if not keeps_format or str(path) == STREAM or path.suffix.lower() in SUFFIXES:
         raise click.UsageError("--outdir needs the output format, such as --to glb.")
     return path.suffix
@@ -101,17 +101,19 @@ def _refuse_twins(pairs: Sequence[tuple[Path, Path]]) -> None:
 def each(
     pairs: Sequence[tuple[Path, Target]], out: Output, doing: Doing, word: str
 ) -> tuple[list[dict[str, Any]], int]:
-    """Apply a function to each file; return the documents and the worst exit code.
+    """Apply a function to each file; return the JSON documents and the largest exit code.
 
-    A bad file does not stop the others: the error is printed, and the document of the file has it.
+    If one of several files fails, the error is printed and becomes the file's document, and the
+    next file is processed.
 
     Parameters
     ----------
     pairs : sequence of (Path, Target)
+        Inputs and their outputs.
     out : Output
     doing : callable
     word : str
-        The word that describes the work on a terminal.
+        The label of the progress bar.
     """
     documents, worst = [], output.DONE
     with _progress(pairs, out, word) as shown:
@@ -133,7 +135,7 @@ def each(
 def _progress(
     pairs: Sequence[tuple[Path, Target]], out: Output, word: str
 ) -> Iterator[Iterator[tuple[Path, Target]]]:
-    """Yield the pairs, under a bar on the terminal if there are many."""
+    """Yield an iterator over the pairs; for four or more it updates a progress bar."""
     if len(pairs) < _MIN_FILES_FOR_BAR or not sys.stderr.isatty() or out.verbosity < 0:
         yield iter(pairs)
         return

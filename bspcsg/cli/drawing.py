@@ -1,4 +1,4 @@
-"""One drawing of one file, from reading the file to reporting the result."""
+"""The base class of verbs that make a drawing: it checks, writes and reports."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -17,17 +17,16 @@ if TYPE_CHECKING:
 
 
 class Drawing(ABC):
-    """A file, and where its drawing goes.
-
-    Subclasses say what to draw.
+    """A verb's work of making a drawing from a file and writing it; subclasses implement `drawn`.
 
     Parameters
     ----------
     file, target : Path
+        The input and the output.
     suffixes : sequence of str
-        Of the formats that can be written.
+        The suffixes of the formats that can be written.
     **settings
-        The other options, by their names.
+        All other options of the verb, by name.
     """
 
     def __init__(self, file: Path, target: Path, suffixes: Sequence[str], **settings: Any) -> None:
@@ -41,14 +40,14 @@ class Drawing(ABC):
 
     @abstractmethod
     def drawn(self) -> tuple[bytes, str, dict[str, Any]]:
-        """Return the bytes of the drawing, a line about it, and its part of the JSON document."""
+        """Make the drawing: return its bytes, a text for the result line, and JSON values."""
 
     def sources(self) -> Sequence[Path]:
-        """Return the files that are read."""
+        """Return the input files."""
         return [self.file]
 
     def run(self) -> int:
-        """Make the drawing, and return the exit code."""
+        """Make, write and report the drawing, and return the exit code."""
         from ..parameters import set_threads
 
         set_threads(self.settings["threads"])
@@ -63,7 +62,7 @@ class Drawing(ABC):
         return output.DONE
 
     def data(self, region: "Region") -> bytes:
-        """Return a region as a drawing in the requested format, SVG or DXF."""
+        """Return a region as the bytes of a drawing in the requested format, SVG or DXF."""
         from ..bsp.drawings.dxf import dxf_data
         from ..bsp.drawings.svg import svg_data
 
@@ -74,7 +73,7 @@ class Drawing(ABC):
         return str(self.target) == STREAM
 
     def _suffix(self, form: str | None) -> str:
-        """Return the suffix of the format, as --to or the name says it."""
+        """Return the suffix of the output format, from ``--to`` or from the output's name."""
         known = " or ".join(self._suffixes)
         if form is not None:
             suffix = f".{form.lower().removeprefix('.')}"

@@ -1,15 +1,15 @@
-"""The start of the command line, which handles Ctrl-C before the slow imports begin."""
+"""The start of the command line: it installs handlers of Ctrl-C before the slow imports begin."""
 
 import os
 
-#: As `output.INTERRUPTED`, which is not imported yet.
+#: The exit code `output.INTERRUPTED`, which is not imported yet.
 _INTERRUPTED = 130
 
-#: The file that Python's own code for imports says it is from, and numpy's for a question whose
-#: every exception numpy takes for a no.
+#: A file name and a function name in whose frames an interrupt would be lost: Python's own code for
+#: imports, and a test in numpy that takes every exception for “no”.
 _BAD_MOMENTS = ("<frozen importlib._bootstrap>", "npy_ctypes_check")
 
-#: An interrupt that came at a bad moment is repeated after this many seconds.
+#: The number of seconds after which an interrupt is repeated that would have been lost.
 _REPEAT_DELAY = 0.01
 
 try:
@@ -24,15 +24,15 @@ except KeyboardInterrupt:
 
 
 def _end_quietly(*_: object) -> None:
-    """End the process at once, before the work has begun or after it is done."""
+    """Handle Ctrl-C while no files are open: end the process at once, without a traceback."""
     os._exit(_INTERRUPTED)
 
 
 def _end_in_order(number: int, frame: FrameType | None) -> None:
-    """Raise `KeyboardInterrupt`, so that files are closed; postpone it where it would be lost.
+    """Handle Ctrl-C during the work: raise `KeyboardInterrupt`, so that files are closed.
 
-    During imports, an exception is lost in a lock's callback, and it ends the process while a
-    compiled module starts.
+    During imports the interrupt is postponed: an exception would be lost in the callback of a lock,
+    and would end the process while a compiled module is initialized.
     """
     if _is_bad_moment(frame) and hasattr(signal, "setitimer"):
         _come_again()
@@ -54,10 +54,10 @@ def _come_again() -> None:
 
 
 def _end_for_good() -> None:
-    """Act on a postponed interrupt before Python shuts down, and ignore later ones."""
+    """Obey a postponed interrupt before Python shuts down, and ignore all later ones."""
     _replace(_end_quietly, signal.SIG_IGN)
     if hasattr(signal, "setitimer") and any(signal.setitimer(signal.ITIMER_REAL, 0)):
-        # It would have come again.
+        # An interrupt was still postponed.
         _end_quietly()
 
 
@@ -70,16 +70,19 @@ def _catch_lost(lost: "sys.UnraisableHookArgs") -> None:
 
 
 def _replace(old: object, new: object) -> None:
-    """Replace one Ctrl-C handler with another; keep one that the parent process chose."""
+    """Replace the Ctrl-C handler `old` with `new`; do nothing if another handler is installed."""
     if signal.getsignal(signal.SIGINT) is old:
         signal.signal(signal.SIGINT, new)  # type: ignore[arg-type]
 
 
 class Quietly:
-    """Lets Ctrl-C end the process quietly while the package is imported for the command line."""
+    """A context in which Ctrl-C ends the process quietly, if `sys.argv` names the command line.
+
+    It surrounds the imports of the package.
+    """
 
     def __enter__(self) -> None:
-        # While a package is imported for `-m`, this stands for the name of the program.
+        # While `python -m` imports a package, `sys.argv[0]` is "-m".
         program = os.path.basename((getattr(sys, "argv", None) or [""])[0])
         if program == "-m" or program.removesuffix(".exe") == "bspcsg":
             _replace_in_main_thread(signal.default_int_handler, _end_quietly)
@@ -89,7 +92,7 @@ class Quietly:
 
 
 def _replace_in_main_thread(old: object, new: object) -> None:
-    """Call `_replace` in the main thread; do nothing in others, which may not set handlers."""
+    """Call `_replace`; do nothing outside the main thread, where handlers cannot be set."""
     with contextlib.suppress(ValueError):
         _replace(old, new)
 
@@ -104,13 +107,13 @@ def main() -> None:
 
 def _run() -> None:
     began = time.perf_counter()
-    # What is registered first is called last.
+    # The function that is registered first is called last.
     atexit.register(_end_for_good)
     _replace(signal.default_int_handler, _end_quietly)
     from . import main as command_line
 
     try:
-        # From here on files may be open; an exception closes and removes them.
+        # During the work files may be open; an exception closes them and removes incomplete ones.
         sys.unraisablehook = _catch_lost
         _replace(_end_quietly, _end_in_order)
         command_line.main(began=began)

@@ -1,4 +1,4 @@
-"""One set operation on files, from reading the files to reporting the result."""
+"""The base class of verbs that make a solid: it reads, checks, writes and reports."""
 
 import dataclasses
 import time
@@ -17,27 +17,26 @@ if TYPE_CHECKING:
     from ..solid.solid import Solid
     from ..verify.check import CheckReport
 
-#: The exact volume is printed for at most this many triangles and bits; of more its digits fill
-#: pages.
+#: The exact volume is printed for at most this many triangles, and bits of numerator or
+#: denominator: otherwise its digits fill pages.
 _MAX_EXACT_FACES, _MAX_EXACT_BITS = 500, 10_000
 
 
-#: The largest number of crossings that a certificate names.
+#: The largest number of crossings that the JSON document lists.
 _MAX_CROSSINGS_NAMED = 8
 
 
 class Job(ABC):
-    """One operation on files.
-
-    Subclasses say what to combine, and how.
+    """A verb's work of making a solid from files and writing it; subclasses implement `combined`.
 
     Parameters
     ----------
     op : str
         The name of the operation.
     target : Path
+        The output.
     **settings
-        The other options, by their names.
+        All other options of the verb, by name.
     """
 
     def __init__(self, op: str, target: Path, **settings: Any) -> None:
@@ -56,7 +55,7 @@ class Job(ABC):
         """Read the files and return the result of the operation."""
 
     def compared(self, result: "Solid") -> "CheckReport | None":
-        """Return the comparison with manifold3d, or None if there is nothing to compare."""
+        """Compare the result with manifold3d's; return None if no set operation made the result."""
         from ..verify.check import check_result
 
         if result.last_operation is None:
@@ -65,20 +64,20 @@ class Job(ABC):
 
     @abstractmethod
     def paths(self) -> Sequence[Path]:
-        """Return the files that are read."""
+        """Return the input files."""
 
     def refuse_inputs(self) -> None:
-        """Raise foreseeable errors before anything is read, and print assumptions about units."""
+        """Raise an error if reading is certain to fail, and print a note about missing units."""
         self.inputs.refuse_early(self.paths())
         self.inputs.tell_units((path, self.target) for path in self.paths())
 
     @property
     def name(self) -> str:
-        """The name of the result."""
+        """The name of the output in messages."""
         return shown(self.target.path)
 
     def run(self) -> int:
-        """Do it, and return the exit code."""
+        """Read, combine, check and write; report the result and return the exit code."""
         from ..parameters import set_threads
 
         set_threads(self.settings["threads"])
@@ -108,11 +107,11 @@ class Job(ABC):
         return output.DONE if report is None or report.ok else output.FOUND
 
     def cutters(self) -> "Sequence[Solid]":
-        """Return the subtracted solids, whose objects give the result no names."""
+        """Return the subtracted solids; the names of their objects are not given to the result."""
         return ()
 
     def _write(self, result: "Solid", mesh: "Mesh") -> "tuple[Finding, ...]":
-        """Write a result, in parts if the files have named objects, and return what was lost."""
+        """Write a result, as named parts if inputs and output have names; return the losses."""
         if self.target.names_objects and len(mesh.faces):
             target = self.target
             parted = self.inputs.objects.parted(result, self.cutters(), target.is_single)
@@ -121,7 +120,7 @@ class Job(ABC):
         return self.target.write(mesh)
 
     def _simplified(self, result: "Solid", mesh: "Mesh") -> "tuple[Solid, Mesh]":
-        """Return a result without short edges and slivers."""
+        """Return a result without short edges and slivers, as a solid and as a mesh."""
         self._noticed = result.normalized().findings
         simple = result.simplify(self.settings["tolerance"])
         if simple is result:
@@ -136,7 +135,7 @@ class Job(ABC):
         return simple, mesh
 
     def _findings(self, result: "Solid") -> "tuple[Finding, ...]":
-        """Return the findings about a result, also those from before it was simplified."""
+        """Return the findings about a result, including those about it before simplification."""
         return self._noticed + result.normalized().findings
 
     def _mesh_of(self, result: "Solid") -> "Mesh":
@@ -188,7 +187,7 @@ class Job(ABC):
         }
 
     def lap(self, name: str) -> None:
-        """Record the time since the last call under a name."""
+        """Record and print the seconds since the previous call as the time of the step `name`."""
         now = time.perf_counter()
         self.seconds[name] = round(now - self._last, 4)
         self._last = now
@@ -209,7 +208,7 @@ def mesh_values(mesh: "Mesh") -> dict[str, Any]:
 
 
 def certificate_values(mesh: "Mesh") -> dict[str, Any]:
-    """Return the certificate of a mesh as JSON values: counts, and the first crossings."""
+    """Return the exact check of a mesh as JSON values: counts of defects, and first crossings."""
     proof = mesh.certificate
     return {
         "ok": proof.ok,
@@ -223,7 +222,7 @@ def certificate_values(mesh: "Mesh") -> dict[str, Any]:
 
 
 def _exact_volume(result: "Solid", mesh: "Mesh") -> str | None:
-    """Return a fraction like ``"1/3"``, unless it is unwieldy."""
+    """Return the exact volume as a fraction like ``"1/3"``; None if it has too many digits."""
     if len(mesh.faces) > _MAX_EXACT_FACES:
         return None
     volume = result.volume_exact
@@ -232,7 +231,7 @@ def _exact_volume(result: "Solid", mesh: "Mesh") -> str | None:
 
 
 def summary(name: str, mesh: "Mesh", timed: bool) -> str:
-    """Return one line about a written mesh, with its time if `timed`."""
+    """Return one line about a written mesh, with the running time of the command if `timed`."""
     words = [name, "empty"]
     if len(mesh.faces):
         triangles, surfaces = (

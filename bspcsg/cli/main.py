@@ -1,4 +1,4 @@
-"""The entry point: it runs a verb and turns each failure into a message and an exit code."""
+"""The command line: it runs a verb and turns each error into a message and an exit code."""
 
 import codecs
 import errno
@@ -38,7 +38,7 @@ Example:
   bspcsg difference plate.stl hole.obj -o part.ply
 """
 
-#: The verbs in the order of the help, each with the module that has it and its name there.
+#: The verbs in the order of the help, each with the names of its module and of its function.
 _VERBS = {
     "union": ("combine", "union"),
     "difference": ("combine", "difference"),
@@ -67,20 +67,20 @@ _VERBS = {
     "doctor": ("doctor", "doctor"),
 }
 
-#: Other names of verbs, which the help leaves out.
+#: Other names of verbs, which the help does not list.
 _ALIASES = {"cut": "difference", "explode": "split", "validate": "crosscheck"}
 
-#: Those of them that verbs had before, which are to go.
+#: Former names of verbs, which will be removed.
 _FORMER = frozenset({"explode", "validate"})
 
-#: The errors of writing to a file or stream that is full, broken or closed.
+#: The system's error numbers of writing to a file or stream that is full, broken or closed.
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
 
 _COMPLETE = "_BSPCSG_COMPLETE"
 
 
 class _Verbs(click.Group):
-    """The verbs; the module of a verb is imported when the verb is used."""
+    """The group of all verbs; it imports the module of a verb when the verb is used."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(_VERBS)
@@ -124,16 +124,20 @@ def commands() -> None:
 
 
 def main(arguments: Sequence[str] | None = None, began: float | None = None) -> None:
-    """Run the command line, and end the process with its exit code; `began` is the start time."""
+    """Run the command line, and end the process with its exit code.
+
+    `began` is the start time of the process, as `time.perf_counter` measures it.
+    """
     _fill_closed_streams()
     standard.take_over(_ERRORS)
     sys.exit(run(sys.argv[1:] if arguments is None else arguments, began))
 
 
 def _fill_closed_streams() -> None:
-    """Open a file for each closed standard stream, so that no other file gets its number.
+    """Open the null device for each closed standard stream.
 
-    Reading yields nothing, and writing to standard output fails as on a full disk.
+    Otherwise another file would get the descriptor of the stream. Reading then yields nothing, and
+    writing to standard output fails as on a full disk.
     """
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:
@@ -144,7 +148,7 @@ def _fill_closed_streams() -> None:
 
 
 def run(arguments: Sequence[str], began: float | None = None) -> int:
-    """Run the command line and return its exit code; raise exceptions only with ``--debug``."""
+    """Run the command line and return its exit code; with ``--debug``, raise errors."""
     clock.start(began)
     try:
         code = _answered(list(arguments))
@@ -160,7 +164,10 @@ def run(arguments: Sequence[str], began: float | None = None) -> int:
 
 
 def _answered(arguments: list[str]) -> int:
-    """Run the command line and report its errors, except those of standard output."""
+    """Run the command line, print its errors and return the exit code.
+
+    Errors of writing to standard output are raised.
+    """
     try:
         return _invoked(arguments)
     except (BrokenPipeError, standard.FullOutputError):
@@ -181,13 +188,16 @@ def _answered(arguments: list[str]) -> int:
 
 
 def _unwritable(error: OSError) -> FormatError:
-    """Return the error that names the file that could not be written."""
+    """Return a `FormatError` that names the file which could not be written."""
     name = "a file" if error.filename is None else os.fsdecode(error.filename)
     return FormatError(f"{name}: cannot write: {error.strerror}.", "unwritable")
 
 
 def _as_it_came(error: UnicodeError) -> tuple[str | bytes, int]:
-    """Write the bytes of a file name unchanged; characters that the terminal lacks become ``?``."""
+    """Handle encoding errors of printed text, as a codec's error handler.
+
+    Bytes of file names that are no Unicode stay unchanged; other characters become ``?``.
+    """
     if not isinstance(error, UnicodeEncodeError):
         raise error
     letters = error.object[error.start : error.end]

@@ -1,8 +1,8 @@
-"""OpenSCAD's `.csg` scripts: read, evaluated and written.
+"""OpenSCAD's `.csg` scripts: reading, evaluating and writing.
 
 A script is a tree of primitives, transforms and operations, which `parse` reads and `dumps`
-writes. `evaluate` makes it a solid or a region of the plane with the corners that OpenSCAD gives
-it; `load` and `loads` do both. `to_json` and `from_json` hold the same tree as JSON.
+writes. `evaluate` turns the tree into a solid or a region with the same corners as in OpenSCAD;
+`load` and `loads` read and evaluate. `to_json` and `from_json` convert a tree to and from JSON.
 
 Examples
 --------

@@ -1,4 +1,4 @@
-"""The evaluation of trees to solids and regions."""
+"""The evaluation of script trees to solids and regions."""
 
 import os
 from collections.abc import Callable, Hashable, Iterable
@@ -28,7 +28,7 @@ from .scope import Scope, inherited, with_scope
 from .syntax.source import error_at
 from .syntax.tree import CsgTree, Node
 
-#: The modules that register nodes when they are imported.
+#: The modules that register the functions for nodes when they are imported.
 MAKERS = (
     nodes_file, nodes_hull, nodes_letters, nodes_move, nodes_plane,
     nodes_project, nodes_set, nodes_solid, nodes_sweep,
@@ -36,7 +36,7 @@ MAKERS = (
 
 
 def node_names() -> tuple[str, ...]:
-    """Return the names of the nodes that can be evaluated, sorted."""
+    """Return the sorted names of the script nodes that can be evaluated."""
     return tuple(sorted(RECIPES))
 
 
@@ -50,47 +50,48 @@ def evaluate(
     allow_paths: Iterable[str | os.PathLike[str]] = (),
     lenient: bool = False,
 ) -> Geometry:
-    """Evaluate a tree to a solid, a region of the plane, or None if it makes nothing.
+    """Evaluate a script tree to a solid, a region of the plane, or None if it has no geometry.
 
     Parameters
     ----------
     tree : CsgTree
     polish : bool
-        Undo OpenSCAD's rounding to six digits. Matrices within 1e-5 of a rotation become that
-        rotation. The parts that the outermost unions, differences and intersections combine move to
-        the finest lattice on which the most corners and axis-aligned faces of different parts
-        coincide. Its step is at most a unit of the sixth digit of the largest coordinate. Each
-        corner moves once, by at most half a step along each axis. Nothing moves if no lattice
-        helps, and a part stays if one of its pieces would lose more than half its size. Faces of
-        rotated bodies may break where their corners move.
+        True to undo OpenSCAD's rounding to six digits. Matrices within 1e-5 of a rotation become
+        that rotation. The parts that the outermost unions, differences and intersections combine
+        are snapped to the finest lattice on which the most corners and axis-aligned faces of
+        different parts coincide. Its step is at most a unit of the sixth digit of the largest
+        coordinate. Each corner moves once, by at most half a step along each axis. Nothing moves if
+        no lattice makes more of them coincide, and a part is unchanged if one of its pieces would
+        lose more than half its volume or area. Faces of rotated solids may break where their
+        corners move.
     on_polish : callable, optional
-        Called with a `Polish`: the lattice, and how far corners moved.
+        Called with a `Polish`: the lattice, and the largest distance that a corner moved.
     on_invalid : {"error", "warn", "repair"}
-        The treatment of polyhedra and imported meshes that are not closed: raise an error, leave
-        them out with a warning, as OpenSCAD does, or close them by `bspcsg.repair` with a warning.
-        Direct children of ``hull`` need not be closed: only their corners count.
+        The treatment of polyhedra and imported meshes that are not closed: raise an error, omit
+        them with a warning, as OpenSCAD does, or close them by `bspcsg.repair` with a warning.
+        Direct children of ``hull`` need not be closed, since only their corners matter.
     allow_paths : iterable of path
-        Folders that ``import`` and ``surface`` may read in addition to the script's own. Links are
-        resolved first.
+        Folders that ``import`` and ``surface`` may read in addition to the script's own folder.
+        Links are resolved first.
     lenient : bool
-        Leave out nodes that cannot be made, with a warning that names the place; meshes that are
-        not closed as well, unless `on_invalid` is "repair".
+        True to omit nodes that cannot be evaluated, with a warning that names line and column; also
+        meshes that are not closed, unless `on_invalid` is "repair".
 
     Raises
     ------
     FormatError
-        For a node that is not supported (code "unsupported"), an argument of a wrong kind
-        ("bad_argument"), or a file outside those folders ("forbidden_path"). The message names
-        script, line and column; `where` holds line and column.
+        For a node that is not supported (code "unsupported"), an argument of a wrong type
+        ("bad_argument"), or a file outside the allowed folders ("forbidden_path"). The message
+        names script, line and column; `where` contains line and column.
     InvalidMeshError, LimitError
-        If a node makes no solid; the message names the place as well.
+        If no solid can be made for a node; the message names script, line and column.
 
     Warns
     -----
     CsgWarning
-        If something is left out, as OpenSCAD does: missing files, numbers that are not finite,
+        For everything that is omitted, as by OpenSCAD: missing files, numbers that are not finite,
         missing points, children of the other dimension, parts of drawings that are not outlines,
-        and arguments that a node does not know or that others override.
+        and arguments that a node does not have or that other arguments override.
     """
     word(get_args(OnInvalid), on_invalid, "on_invalid")
     polishes, skips = truth_value(polish, "polish"), truth_value(lenient, "lenient")
@@ -128,7 +129,10 @@ def _folders(given: Any) -> tuple[Path, ...]:
 
 
 def _polished(tree: CsgTree, run: Evaluation) -> tuple[Geometry, Polish]:
-    """Evaluate a tree, a second time if polishing needs a coarser lattice."""
+    """Evaluate a tree; if polishing needs a coarser lattice, evaluate it again on that lattice.
+
+    Return the geometry, and what polishing changed.
+    """
     root = Node("union", (), tree.roots())
     if not run.polish:
         return _Cache(run).geometry(root), Polish()
@@ -142,7 +146,7 @@ def _polished(tree: CsgTree, run: Evaluation) -> tuple[Geometry, Polish]:
 
 
 def _wanted_pitch(parts: list[Solid | Region]) -> int | None:
-    """Return the lattice on which nearly coincident parts of a model meet; None if none helps."""
+    """Return the pitch of the lattice on which nearly coincident parts meet; None if none helps."""
     there = [part for part in parts if not part.is_empty]
     finest = min((pitch_of(part) for part in there), default=0)
     return polished_pitch(corners_and_levels(there), finest)
@@ -150,18 +154,18 @@ def _wanted_pitch(parts: list[Solid | Region]) -> int | None:
 
 @dataclass
 class _Cache:
-    """The geometry of each node, made once for equal nodes.
+    """The geometry of each node of a tree, computed once for equal nodes.
 
-    Nodes are equal if their names, arguments and children are. So repeated parts share one solid,
-    which is evaluated once.
+    Nodes are equal if their names, arguments and children are equal. So repeated parts share one
+    solid, which is evaluated once.
 
     Parameters
     ----------
     run : Evaluation
     pitch : int, optional
-        The lattice that corners of parts move to; parts are the operands of the outermost
-        operations.
+        The pitch of the lattice to which the corners of parts are snapped, if any.
     parts : list of Solid or Region
+        The operands of the outermost operations.
     moved : float
         The largest distance that a corner of a part moved.
     """
@@ -174,7 +178,7 @@ class _Cache:
     moved: float = 0.0
 
     def geometry(self, root: Node) -> Geometry:
-        """Return the geometry of a node; nodes may nest to any depth."""
+        """Return the geometry of a node, whose children may be nested to any depth."""
         waiting: list[tuple[Node, Scope | None, bool, bool]] = [(root, (), True, False)]
         done: list[int] = []
         while waiting:
@@ -195,8 +199,8 @@ class _Cache:
         return self.made[done[0]]
 
     def _number(self, node: Node, children: tuple[int, ...], is_part: bool) -> int:
-        """Return the number of the node's geometry, made if it is new."""
-        # An equal node ignores the same arguments, and warns of its own place.
+        """Return the position in `made` of a node's geometry, which is computed if it is new."""
+        # Warn at each of several equal nodes, since the warning names line and column.
         self.run.tell_of_arguments(node)
         key = (node.name, node.arguments, children, is_part, self.run.in_hull)
         if key in self.numbers:
@@ -206,7 +210,7 @@ class _Cache:
             self.made.append(self._make(node, [self.made[child] for child in children], is_part))
             self.numbers[key] = number
         except BspcsgError as error:
-            # Not cached: an equal node is left out as well, with a warning of its own place.
+            # Do not cache it: an equal node must warn with its own line and column.
             self.made.append(self._nothing_for(node, error))
         return number
 
@@ -220,7 +224,10 @@ class _Cache:
         return self._part(made) if is_part and self.run.polish else made
 
     def _nothing_for(self, node: Node, error: BspcsgError) -> Geometry:
-        """Return the empty set for a node that is left out, and warn; otherwise raise the error."""
+        """Return the empty set for a node that fails, with a warning.
+
+        If the error is not one for which nodes are omitted, raise it.
+        """
         placed = _placed(error, node, self.run.script)
         if not is_left_out(error, lenient=self.run.lenient):
             raise placed from error
@@ -228,7 +235,7 @@ class _Cache:
         return nothing_of(node)
 
     def _part(self, body: Geometry) -> Geometry:
-        """Return a part, moved to the lattice `pitch` if that is coarser."""
+        """Record a part of the model; snap it to the lattice of `self.pitch` if that is coarser."""
         if body is None or body.is_empty:
             return body
         if self.pitch is not None and self.pitch > pitch_of(body):
@@ -239,13 +246,16 @@ class _Cache:
 
 
 def unsupported(node: Node, script: str) -> FormatError:
-    """Return the error for a node that cannot be evaluated."""
+    """Return the error for a node whose name is not supported."""
     message = f"{node.name}() is not supported. Supported: {' '.join(node_names())}."
     return error_at(script, node.place, message, "unsupported")
 
 
 def _placed(error: BspcsgError, node: Node, script: str) -> BspcsgError:
-    """Return the error with the node's place in its message, unless its line is there already."""
+    """Return the error with script, line and column of a node at the front of its message.
+
+    It is unchanged if the message already begins with that line.
+    """
     if error.message.startswith(f"{script}:{node.place.line}:"):
         return error
     message = f"{script}:{node.place.line}:{node.place.column}: {node.name}(): {error.message}"

@@ -1,10 +1,9 @@
-"""Converts solids to trees: the expression that made a solid, as far as the solid stores it.
+"""Conversion of solids to script trees: the expression that made a solid, as far as it is stored.
 
-A solid that has not been evaluated stores its whole expression. After evaluation it stores the last
-operation and its operands only (see `Solid.last_operation`). Leaves become polyhedra, transforms
-multmatrix nodes. The language has no complement: where a complement is smaller to write than the
-set, it stands for the set, with a flag, until an intersection with a bounded set turns
-it into a difference.
+A solid that has not been evaluated stores its whole expression. After evaluation it stores only the
+last operation and its operands (see `Solid.last_operation`). Leaves become polyhedra, transforms
+multmatrix nodes. The language has no complement: an unbounded set is represented by its complement
+and a flag, until an intersection with a bounded set turns it into a difference.
 """
 
 from collections.abc import Iterable, Sequence
@@ -23,23 +22,23 @@ from ..solid.leaf import ConstantLeaf, PlaneLeaf, TreeLeaf
 from ..solid.solid import Solid, expression_of, from_node
 from .syntax.tree import Argument, CsgTree, Node, Value
 
-#: The largest number of corners and triangles of an expression that is written out; a larger one
-#: becomes one polyhedron. Each takes some 60 bytes; this many fill half of the largest script that
-#: is read.
+#: The largest number of corners and triangles of an expression that is written; a larger expression
+#: becomes one polyhedron. Each takes about 60 bytes, so this many fill half of the largest script
+#: that can be read.
 _MAX_BODY_SIZE = 2_000_000
 
 
 class _Body(NamedTuple):
-    """A set as nodes.
+    """A set as a script node, or as the complement of a node.
 
     Parameters
     ----------
     node : Node or None
-        None for the empty set.
+        The node; None for the empty set.
     negated : bool
-        True if it is everything outside the node.
+        True if the set is the complement of the node.
     size : int
-        Number of corners and triangles that it takes when it is written out.
+        The number of corners and triangles in the written node.
     """
 
     node: Node | None
@@ -52,13 +51,14 @@ _NOTHING = _Body(None)
 
 @uncounted
 def tree_of(solid: Solid, *, flat: bool = False) -> CsgTree:
-    """Return a tree that evaluates to a solid; an empty one has no nodes.
+    """Return a script tree that evaluates to a given solid; for the empty solid, without nodes.
 
     Parameters
     ----------
     solid : Solid
     flat : bool
-        Write one polyhedron, the reduced boundary, instead of the expression that made the solid.
+        True for one polyhedron, the reduced boundary, instead of the expression that made the
+        solid.
 
     Raises
     ------
@@ -67,9 +67,9 @@ def tree_of(solid: Solid, *, flat: bool = False) -> CsgTree:
 
     Notes
     -----
-    A polyhedron replaces the expression where the language has no counterpart, as for half-spaces,
-    and where the expression would take more than two million corners and triangles: repeated parts
-    are written out each time, and symmetric differences repeat both operands.
+    A polyhedron replaces the expression if the language cannot represent it, as for half-spaces, or
+    if it would have more than two million corners and triangles: repeated parts are written each
+    time, and symmetric differences repeat both operands.
     """
     of_kind(Solid, solid, "solid")
     body = (
@@ -87,9 +87,9 @@ def tree_of(solid: Solid, *, flat: bool = False) -> CsgTree:
 
 
 def lost_attributes(solids: Iterable[Solid]) -> tuple[Finding, ...]:
-    """Return the finding about attributes of solids, which scripts cannot store.
+    """Return the finding that scripts cannot store the attributes of solids, if they have any.
 
-    This evaluates nothing.
+    No solid is evaluated.
     """
     names: set[str] = set()
     waiting = [expression_of(solid).node for solid in solids]
@@ -121,20 +121,20 @@ def _polyhedron(solid: Solid) -> _Body | None:
         return _Body(None, negated)
     mesh = inner.normalized().to_mesh()
     points = tuple(tuple(point) for point in mesh.vertices.tolist())
-    # Polyhedra list their corners clockwise, numbers are all doubles.
+    # Faces of polyhedra are clockwise in scripts, and all numbers are doubles.
     faces = tuple(tuple(face) for face in mesh.faces[:, ::-1].astype(np.float64).tolist())
     node = Node("polyhedron", (Argument("points", points), Argument("faces", faces)))
     return _Body(node, negated, len(points) + len(faces))
 
 
 class _Reading:
-    """The bodies of an expression's nodes, each made once; expressions may have any depth."""
+    """Converter of an expression to script nodes; each node of the expression is converted once."""
 
     def __init__(self) -> None:
         self._known: dict[expression.ExpressionNode, _Body | None] = {}
 
     def body(self, root: expression.ExpressionNode, factors: FactorChain) -> _Body | None:
-        """Return the body of a node under a transform; None if it cannot be written."""
+        """Return the set of an expression node under a transform; None if it cannot be written."""
         waiting: list[tuple[expression.ExpressionNode, Plan | None]] = [(root, None)]
         while waiting:
             node, plan = waiting.pop()
@@ -166,7 +166,7 @@ class _Reading:
 
 
 def _plan_of(node: expression.ExpressionNode) -> Plan | None:
-    """Return how a node was made; None for a leaf."""
+    """Return the operations and operands that made an expression node; None for a leaf."""
     content = node.content
     if isinstance(content, Pending):
         return make_plan(node)
@@ -215,7 +215,7 @@ def _operation(operator: str, operands: Sequence[_Body | None]) -> _Body | None:
 
 
 def _common(bodies: Sequence[_Body]) -> _Body:
-    """Return the intersection of bodies."""
+    """Return the intersection of sets: the plain nodes minus the nodes of negated sets."""
     positive = [body for body in bodies if not body.negated]
     negative = [body for body in bodies if body.negated]
     if not positive:
@@ -226,7 +226,7 @@ def _common(bodies: Sequence[_Body]) -> _Body:
 
 
 def _odd(bodies: Sequence[_Body]) -> _Body:
-    """Return the symmetric difference of bodies; each complement among them inverts the result."""
+    """Return the symmetric difference of sets; each negated set inverts the result."""
     made = _NOTHING
     for body in bodies:
         plain = body._replace(negated=False)
@@ -238,7 +238,7 @@ def _odd(bodies: Sequence[_Body]) -> _Body:
 
 
 def _joined(name: str, bodies: Sequence[_Body]) -> _Body:
-    """Return the operation on the bodies' nodes, simplified where bodies are empty."""
+    """Return the node of a set operation, without empty operands that do not change the result."""
     nodes = [body.node for body in bodies if body.node is not None]
     size = sum(body.size for body in bodies)
     if not nodes or (name == "intersection" and len(nodes) < len(bodies)):

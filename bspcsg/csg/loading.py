@@ -1,4 +1,4 @@
-"""Reads scripts as solids, and writes solids as scripts."""
+"""Reading of scripts as solids, and writing of solids as scripts."""
 
 import os
 from collections.abc import Callable, Iterable
@@ -34,7 +34,7 @@ def load(
     lenient: bool = False,
     **options: Any,
 ) -> Solid:
-    """Read a script as a solid.
+    """Read a script file and evaluate it to a solid.
 
     Parameters
     ----------
@@ -42,15 +42,15 @@ def load(
         A `.csg` file, a `.json` file of such a tree, or a `.scad` file, which the program openscad
         converts first (see `bspcsg.csg.read_tree`).
     polish : bool
-        Undo OpenSCAD's rounding to six digits (see `bspcsg.csg.evaluate`).
+        True to undo OpenSCAD's rounding to six digits (see `bspcsg.csg.evaluate`).
     on_polish : callable, optional
-        Called with a `Polish`, which says how far corners moved.
+        Called with a `Polish`, which contains the largest distance that a corner moved.
     on_invalid : {"error", "warn", "repair"}
         The treatment of meshes that are not closed (see `bspcsg.csg.evaluate`).
     allow_paths : iterable of path
-        Folders whose files it may read, in addition to the script's own.
+        Folders whose files the script may read, in addition to its own folder.
     lenient : bool
-        Leave out nodes that cannot be made, with a warning that names the place.
+        True to omit nodes that cannot be evaluated, with a warning that names line and column.
     **options
         For `.scad`: ``defines``, a dict of variables.
 
@@ -60,12 +60,12 @@ def load(
         If the file cannot be read or evaluated; the message names file, line and column. A model
         of the plane is refused with the code "not_3d"; `evaluate` returns it as a region.
     InvalidMeshError, LimitError
-        If a node makes no solid.
+        If no solid can be made for a node.
 
     Warns
     -----
     CsgWarning
-        If something is left out, as OpenSCAD does.
+        For everything that is omitted, as by OpenSCAD.
     """
     tree = read_tree(path, **options)
     body = evaluate(
@@ -92,7 +92,7 @@ def loads(
     name: str = "<csg>",
     form: Literal["csg", "json"] = "csg",
 ) -> Solid:
-    """Return the solid of a script's text (see `load`), in its own language or as JSON.
+    """Evaluate the text of a script, in its own language or as JSON, to a solid (see `load`).
 
     Examples
     --------
@@ -114,12 +114,12 @@ def loads(
 
 
 def read_tree(path: str | os.PathLike[str], **options: Any) -> CsgTree:
-    """Read a script's tree: `.csg`, `.json`, or `.scad` through the program openscad.
+    """Read the tree of a script: `.csg`, `.json`, or `.scad` by means of the program openscad.
 
     Raises
     ------
     FormatError
-        If the file cannot be read or is not such a script; an empty file is an empty model.
+        If the file cannot be read or is not a script. An empty file is an empty model.
     """
     name = file_path(path)
     file = Path(name)
@@ -155,7 +155,7 @@ def _solid(body: Geometry, name: str) -> Solid:
     if body is None:
         return Solid.empty()
     try:
-        # Build it here, so that errors come from this call and not from the first query.
+        # Build the tree here, so that this call raises its errors, not the first query.
         body.tree  # noqa: B018  builds it
     except BspcsgError as error:
         raise type(error)(f"{name}: {error.message}", error.code, error.where) from error
@@ -166,14 +166,14 @@ def dumps(model: Solid | CsgTree, *, flat: bool = False) -> str:
     """Return a solid or a tree as the text of a `.csg` script.
 
     A solid becomes the expression that made it, as far as the solid stores it (see `tree_of`), with
-    polyhedra as leaves: corners in double precision, which reading snaps to the lattice. Reading a
-    written tree gives an equal tree.
+    polyhedra as leaves. Their corners are doubles, which are snapped to the lattice when the script
+    is read. Reading a written tree gives an equal tree.
 
     Parameters
     ----------
     model : Solid or CsgTree
     flat : bool
-        Write a solid as one polyhedron, its reduced boundary.
+        True to write a solid as one polyhedron, its reduced boundary.
 
     Raises
     ------
@@ -198,7 +198,7 @@ def _tree(model: Solid | CsgTree, flat: bool) -> CsgTree:
 
 
 def dump(model: Solid | CsgTree, path: str | os.PathLike[str], *, flat: bool = False) -> None:
-    """Write a `.csg` file (see `dumps`), or the same as JSON if the name ends in `.json`.
+    """Write a solid or a tree as a `.csg` file (see `dumps`), or as JSON if the suffix is `.json`.
 
     The file is written completely or not at all.
 

@@ -1,4 +1,4 @@
-"""OpenSCAD's own language, through the program openscad."""
+"""Reading of OpenSCAD's own language by means of the program openscad."""
 
 import os
 import shutil
@@ -18,7 +18,7 @@ from .syntax.parser import parse
 from .syntax.tree import CsgTree, Value
 from .syntax.writer import value_text
 
-#: Longest time for a conversion, in seconds.
+#: The default time limit of a conversion, in seconds.
 TIMEOUT = 300.0
 
 
@@ -34,16 +34,17 @@ def read_scad(
     ----------
     path : path
     defines : mapping of str to value, optional
-        Variables of the script, as ``openscad -D name=value`` sets them.
+        Values of the script's variables, as ``openscad -D name=value`` sets them.
     timeout : float, optional
-        In seconds, up to a million; None and infinity wait forever.
+        The time limit in seconds, up to a million; None or infinity for no limit.
 
     Raises
     ------
     FormatError
         If openscad is not on the PATH (code "missing_program"), takes too long ("timeout") or
-        refuses the file; the message ends in its output. Errors in the `.csg` text that it made
-        quote a line of that text, and name the script's line if only one can be meant.
+        refuses the file ("refused"); the message ends with its output. Errors in the `.csg` text
+        that openscad writes quote a line of that text, and name the script's line if it is
+        unique.
     """
     name, limit = file_path(path), seconds(timeout, "timeout")
     values = values_by_name(defines, "defines")
@@ -74,7 +75,7 @@ def _convert(path: Path, output: Path, values: dict[str, Any], timeout: float | 
         )
         raise FormatError(message, "missing_program")
     options = [f"-D{name}={value_text(value)}" for name, value in values.items()]
-    # Scripts can ask whether they are previewed; here they are not.
+    # With --render, the variable $preview of a script is false.
     command = [program, "--render", "-o", str(output), *options, "--", str(path.absolute())]
     try:
         done = run_program(command, timeout, {**os.environ, "QT_QPA_PLATFORM": "offscreen"})
@@ -91,7 +92,7 @@ def _convert(path: Path, output: Path, values: dict[str, Any], timeout: float | 
 
 
 def _refuse_no_values(found: tuple[Any, ...]) -> None:
-    """Raise `InvalidParameterError` for values that no variable of a script can have."""
+    """Raise `InvalidParameterError` for values that variables of a script cannot have."""
     for one in found:
         if isinstance(one, tuple):
             _refuse_no_values(one)
@@ -104,7 +105,7 @@ def _refuse_no_values(found: tuple[Any, ...]) -> None:
 
 
 def _complaint(text: str) -> str:
-    """Return the line of openscad's output that describes the error."""
+    """Return the last line of openscad's output that contains "ERROR", or else the last line."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     errors = [line for line in lines if "ERROR" in line.upper()]
     return (errors or lines or ["it printed no message"])[-1]

@@ -1,7 +1,7 @@
-"""Special variables, which nodes pass down to the nodes inside them.
+"""Inheritance of special variables, such as ``$fn``, by the nodes inside a node.
 
-OpenSCAD's own dumps write ``$fn``, ``$fa`` and ``$fs`` at every node that needs a number of sides.
-In a script written by hand a node without them inherits those of the nodes around it.
+OpenSCAD writes ``$fn``, ``$fa`` and ``$fs`` at every node that needs a number of sides. In a script
+written by hand, a node without them inherits the values of the nodes around it.
 """
 
 from dataclasses import replace
@@ -9,10 +9,10 @@ from typing import TypeAlias
 
 from .syntax.tree import SPECIAL, Argument, Node
 
-#: The special variables that apply inside a node, at most one argument of each name.
+#: The special variables that apply inside a node, as arguments with different names.
 Scope: TypeAlias = tuple[Argument, ...]
 
-#: Nodes whose number of sides depends on them.
+#: The names of nodes whose number of sides depends on special variables.
 _SIDED = frozenset(
     {
         "circle", "sphere", "cylinder", "text", "offset", "linear_extrude", "rotate_extrude",
@@ -22,13 +22,13 @@ _SIDED = frozenset(
 
 
 def inherited(scope: Scope, node: Node) -> Scope:
-    """Return the scope inside a node, given the scope around it."""
+    """Return the special variables that apply inside a node, given the ones around it."""
     own = tuple(argument for argument in node.arguments if argument.name in SPECIAL)
     return own + _missing(scope, node) if own else scope
 
 
 def with_scope(node: Node, scope: Scope) -> Node:
-    """Return the node with the special variables that it inherits."""
+    """Return a node with inherited special variables as arguments, if it depends on them."""
     missing = _missing(scope, node) if scope and node.name in _SIDED else ()
     return replace(node, arguments=node.arguments + missing) if missing else node
 

@@ -1,7 +1,8 @@
 """Atomic writing: a file is either complete or does not exist.
 
-A file is written under a temporary name. If the process is killed, the temporary file stays; the
-next process that writes into the folder removes it, since the writer's lock on it has ended.
+A file is written under a temporary name, locked, and renamed when it is complete. If the process is
+killed, the temporary file stays, but its lock ends: the next process that writes into the folder
+removes it.
 """
 
 import contextlib
@@ -22,36 +23,36 @@ from ..parameters import file_path
 if sys.platform != "win32":
     import fcntl
 
-#: The largest number of characters of a file's name that begin the name of its unfinished file.
-#: File systems allow 255 bytes for a name, and a character takes up to four.
+#: The name of a temporary file begins with at most this number of characters of the final name:
+#: file systems allow 255 bytes for a name, and UTF-8 takes up to four for a character.
 _MAX_NAME_CHARACTERS = 57
 
-#: The names of unfinished files, but for their first letters: they tell the machine, as locks may
-#: not reach others that write into the same folder.
+#: The end of a temporary file's name: a hash of the machine's name, a random number and ".part".
+#: A machine removes only its own files, as it may not see the locks of other machines.
 _PART = re.compile(r"\.[0-9a-f]{8}-[0-9a-f]{8}\.part\Z")
 
-#: The folders from which this process has taken what others had left.
+#: The folders from which this process has removed the temporary files of killed processes.
 _swept: set[Path] = set()
 
-#: Takes the file that was written, and raises an error if it is not what it should be.
+#: A function that reads the written file, and raises an error if its content is wrong.
 Proof: TypeAlias = Callable[[BinaryIO], None]
 
 
 def write_file(
     path: str | os.PathLike[str], chunks: Iterable[bytes], prove: Proof | None = None
 ) -> None:
-    """Write the chunks to a new file beside `path`, then give it that name in one step.
+    """Write the chunks to a temporary file in the folder of `path`, then rename it to `path`.
 
-    If anything fails, an existing file stays unchanged. Output to the null device is made and
-    proved, but not kept.
+    If anything fails, an existing file stays unchanged. If `path` is the null device, the chunks
+    are passed to `prove`, but not written.
 
     Parameters
     ----------
     path : str or path
     chunks : iterable of bytes
     prove : callable, optional
-        Called with the new file, at its beginning, before the file gets its name. The file is
-        written while `prove` reads it, always ahead of the reader.
+        Called before the renaming with the new file, at its beginning; raises an error if the
+        content is wrong. The file is written while `prove` reads it, always ahead of the reader.
 
     Raises
     ------
@@ -74,7 +75,7 @@ def write_file(
 
 
 def refuse_target(path: str | os.PathLike[str]) -> None:
-    """Raise a `FormatError` if a path cannot be that of a file, or is not that of a file."""
+    """Raise a `FormatError` if `path` is a folder or a device, or its folder does not exist."""
     name = file_path(path)
     with _writing(name):
         _check_target(name)
@@ -82,7 +83,7 @@ def refuse_target(path: str | os.PathLike[str]) -> None:
 
 @contextlib.contextmanager
 def _writing(name: str) -> Iterator[None]:
-    """Turn errors of the block into a `FormatError` that the file cannot be written."""
+    """Turn an `OSError` of the block into a `FormatError`: the file `name` cannot be written."""
     try:
         yield
     except OSError as error:
@@ -91,14 +92,14 @@ def _writing(name: str) -> Iterator[None]:
 
 
 def _drop(chunks: Iterable[bytes], prove: Proof | None) -> None:
-    """Make the output and prove it, without keeping it."""
+    """Make all chunks and pass them to `prove`, without writing a file."""
     data = b"".join(chunks)
     if prove is not None:
         prove(io.BytesIO(data))
 
 
 def _check_target(name: str) -> None:
-    # Do not resolve the path: that of an open pipe, such as /dev/stdout, resolves to no file.
+    # Do not resolve the path: if /dev/stdout is a pipe, it resolves to a file that does not exist.
     path = Path(name)
     if path.is_dir():
         raise IsADirectoryError(21, "it is a folder")
@@ -109,13 +110,13 @@ def _check_target(name: str) -> None:
         raise FileNotFoundError(2, f"the folder {folder} does not exist")
 
 
-#: The number of bytes that are buffered before they are written. A smaller buffer takes more time,
-#: and longer chunks go out as they are.
+#: The number of bytes that are buffered before they are written. A smaller buffer takes more time;
+#: chunks longer than the buffer bypass it.
 _BUFFER_BYTES = 1 << 18
 
 
 def _sweep(folder: Path) -> None:
-    """Remove the unfinished files that killed processes of this machine left in a folder."""
+    """Remove the temporary files that killed processes of this machine left in a folder."""
     if sys.platform == "win32" or folder in _swept:
         return
     _swept.add(folder)
@@ -127,11 +128,11 @@ def _sweep(folder: Path) -> None:
 
 
 def _take_away(part: str) -> None:
-    """Remove an unfinished file unless its writer lives."""
+    """Remove the temporary file `part` unless the process that writes it still runs."""
     if sys.platform == "win32":
         return
     with contextlib.suppress(OSError):
-        # Skip links, and do not block on pipes, that have the name of an unfinished file.
+        # Skip links, and do not block on pipes, that have the name of a temporary file.
         handle = os.open(part, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
         try:
             if stat.S_ISREG(os.fstat(handle).st_mode):
@@ -146,19 +147,19 @@ def _machine() -> str:
 
 
 class _TakenAwayError(Exception):
-    """Another process removed the unfinished file just before it was locked."""
+    """Another process removed the temporary file just before it was locked."""
 
 
 @contextlib.contextmanager
 def _locked(handle: int, part: Path) -> Iterator[None]:
-    """Hold the lock on an unfinished file, which tells other processes that its writer lives."""
+    """Lock a temporary file, so that no other process removes it while it is written."""
     if sys.platform == "win32":
         yield
         return
-    # The file may be closed before it gets its name.
+    # Lock a duplicate of the handle: the file is closed before it is renamed.
     lock = os.dup(handle)
     try:
-        # On a file system without locks, nobody removes unfinished files.
+        # On a file system without locks, no process removes temporary files.
         with contextlib.suppress(OSError):
             fcntl.flock(lock, fcntl.LOCK_EX)
         if not part.exists():
@@ -196,7 +197,7 @@ def _write_new(target: Path, chunks: Iterable[bytes], prove: Proof | None) -> No
 
 
 def _flushed(handle: int) -> bool:
-    """Flush a file to the disk; say whether its content stayed the same."""
+    """Flush a file to the disk; return True if its size and time of change stayed the same."""
     before = os.fstat(handle)
     os.fsync(handle)
     after = os.fstat(handle)
@@ -216,10 +217,10 @@ def _write_and_prove(part: Path, stream: BinaryIO, chunks: Iterable[bytes], prov
 
 
 class _Growing(io.RawIOBase):
-    """A file that is written while it is read.
+    """A binary file whose chunks are written only when a reader needs them.
 
     When a block is read back, both the block and the arrays it came from are still in the
-    processor's cache. This is faster than a second pass over both.
+    processor's cache. This is faster than writing the whole file and then reading it.
 
     Parameters
     ----------
@@ -233,7 +234,7 @@ class _Growing(io.RawIOBase):
     def __init__(self, stream: BinaryIO, chunks: Iterator[bytes], back: io.FileIO) -> None:
         self._stream, self._chunks, self._back = stream, chunks, back
         self._size = 0
-        # : The error of making or writing the chunks, if any.
+        #: The exception that making or writing the chunks raised, if any.
         self.failure: Exception | None = None
 
     def readable(self) -> bool:
@@ -251,7 +252,7 @@ class _Growing(io.RawIOBase):
         return self._back.tell()
 
     def read(self, size: int = -1, /) -> bytes:
-        """Return `size` bytes, or all that are left."""
+        """Return the next `size` bytes, or all remaining bytes if `size` is negative."""
         if size < 0:
             self.finish()
         elif self._size < (end := self._back.tell() + size):
@@ -259,13 +260,13 @@ class _Growing(io.RawIOBase):
         return self._back.read(size)
 
     def finish(self) -> None:
-        """Write all remaining chunks."""
-        # Chunks may be single lines: a loop over them takes as long as making them.
+        """Write all remaining chunks to the file."""
+        # Chunks may be single lines: a Python loop over them would double the time.
         self._watched(lambda: self._stream.writelines(self._chunks))
         self._size = sys.maxsize
 
     def _write(self, end: int) -> None:
-        """Write the file at least up to byte `end`, or to its end."""
+        """Write chunks until the file has at least `end` bytes, or no chunks remain."""
 
         def write() -> None:
             while self._size < end and (chunk := next(self._chunks, None)) is not None:
@@ -275,7 +276,7 @@ class _Growing(io.RawIOBase):
         self._watched(write)
 
     def _watched(self, write: Callable[[], None]) -> None:
-        """Call `write`, and remember its error."""
+        """Call `write` and flush the file; store an exception in `failure`, then raise it."""
         try:
             write()
             self._stream.flush()

@@ -1,4 +1,4 @@
-"""Reading and writing files by their suffixes."""
+"""Reading and writing mesh files; the suffix of the file's name chooses the format."""
 
 import itertools
 import os
@@ -27,7 +27,7 @@ _BREP = (
 )
 _NO_LIBRARY = "{} files cannot be read; export {} instead."
 
-#: Advice on formats that people try to read, and that are not for us.
+#: Advice, by suffix, on formats that users try to read, but that are not supported.
 _REFUSALS = {
     **dict.fromkeys((".step", ".stp"), _BREP.format("STEP")),
     **dict.fromkeys((".iges", ".igs"), _BREP.format("IGES")),
@@ -45,7 +45,7 @@ _CURVED = (
     "{} files describe curved surfaces, so meshes cannot be written to them; write 3MF or STL."
 )
 
-#: Advice on formats that people try to write.
+#: Advice, by suffix, on formats that users try to write, but that are not supported.
 _UNWRITTEN = {
     **dict.fromkeys((".step", ".stp"), _CURVED.format("STEP")),
     **dict.fromkeys((".iges", ".igs"), _CURVED.format("IGES")),
@@ -57,7 +57,7 @@ _UNWRITTEN = {
 
 
 def format_of(path: str | os.PathLike[str]) -> Format:
-    """Return the format that the suffix names.
+    """Return the mesh format that the suffix of a path names.
 
     Raises
     ------
@@ -80,7 +80,9 @@ def _format_of(path: str | os.PathLike[str], refusals: Mapping[str, str]) -> For
 
 
 def form_of(path: str | os.PathLike[str], text: bool = False) -> Form:
-    """Return the form in which the format of the suffix is written.
+    """Return the form, text or binary, in which a file with the suffix of `path` is written.
+
+    This is text if `text` is true or the format has no binary form.
 
     Raises
     ------
@@ -103,9 +105,10 @@ def read(path: str | os.PathLike[str]) -> RawMesh:
 
     Several objects in one file become one mesh, in the order of the file. Polygons become
     triangles. STL corners are joined where their coordinates are exactly equal. Nothing else is
-    joined, dropped or repaired, with one exception: where a file places meshes and rounding would
-    open them, they are mended, and findings count the dropped triangles. A file that equals, byte
-    for byte, one that `write` made without triangles is the empty set, with the finding "empty".
+    joined, dropped or repaired, with one exception: where a file transforms meshes and rounding
+    would open them, they are mended, and findings count the dropped triangles. A file that equals,
+    byte for byte, the file that `write` makes of the empty set is read as the empty set, with the
+    finding "empty".
 
     Parameters
     ----------
@@ -116,8 +119,8 @@ def read(path: str | os.PathLike[str]) -> RawMesh:
     ------
     FormatError
         If the file cannot be opened, has no bytes or is cut off, is not of its format, or holds
-        numbers that are not finite or vertex numbers out of range. The message names file and line
-        (or byte), `where` holds that number.
+        numbers that are not finite or vertex numbers out of range. The message names the file and
+        the line (or byte); the attribute `where` has the number of that line or byte.
     MissingPartError
         If the format needs a library that is not installed.
     """
@@ -125,7 +128,7 @@ def read(path: str | os.PathLike[str]) -> RawMesh:
 
 
 def read_as(path: str | os.PathLike[str], suffix: str) -> RawMesh:
-    """Read a mesh file in the format of a given suffix, whatever its own; see `read`."""
+    """Read a mesh file in the format that `suffix` names, not its own suffix; see `read`."""
     name = file_path(path)
     if text_value(suffix, "suffix").lower() not in FORMATS:
         format_of(name)
@@ -135,7 +138,7 @@ def read_as(path: str | os.PathLike[str], suffix: str) -> RawMesh:
 def decoded(
     name: str, data: bytes, suffix: str, files: Mapping[str, bytes] | None = None
 ) -> RawMesh:
-    """Return the mesh in the bytes of a file, in the format of a suffix.
+    """Return the mesh that the bytes of a file contain, in the format that `suffix` names.
 
     Parameters
     ----------
@@ -144,7 +147,7 @@ def decoded(
     data : bytes
     suffix : str
     files : dict of str to bytes, optional
-        The companion files, instead of those on the disk.
+        The content of companion files by name; if absent, they are read from the disk.
 
     Raises
     ------
@@ -169,7 +172,7 @@ def decoded(
 
 
 def _nothing(form: Form) -> bytes:
-    """Return the bytes of a file of the empty set."""
+    """Return the bytes of the file that represents the empty set in a form."""
     return b"".join(form.encode(empty_set()))
 
 
@@ -178,11 +181,11 @@ def write(
 ) -> tuple[Finding, ...]:
     """Write a mesh; the suffix names the format.
 
-    The file appears complete or not at all: before it gets its name it is read back, and every
-    corner of every triangle of every object in it is compared with the mesh. Files beside it, such
-    as the materials of an OBJ, are written just before that. Every format but
-    binary STL and GLB keeps each coordinate's double; what single precision changes is returned as
-    findings.
+    The file appears complete or not at all: it is written under a temporary name and read back, and
+    every corner of every triangle of every object is compared with the mesh before the file is
+    renamed. Companion files, such as the materials of an OBJ, are written just before the renaming.
+    Binary STL and GLB round coordinates to single precision, and the returned findings list what
+    this changes; all other formats store each coordinate as the same double.
 
     Parameters
     ----------
@@ -213,17 +216,17 @@ def write(
 
 @dataclass(frozen=True, eq=False)
 class Encoded:
-    """A file to be written.
+    """The content of a file that is to be written, and the function that checks the written file.
 
     Parameters
     ----------
     chunks : iterator of bytes
     findings : tuple of Finding
-        Findings about data that the format cannot keep.
+        Findings about data that the format cannot store.
     prove : callable
-        Takes the written file, and raises FormatError if it does not hold the mesh.
+        Takes the written file, and raises FormatError if its content differs from the mesh.
     files : dict of str to bytes
-        The companion files: materials and pictures.
+        The companion files by name: materials and pictures.
     """
 
     chunks: Iterator[bytes]
@@ -233,7 +236,10 @@ class Encoded:
 
 
 def places_beside(path: str | os.PathLike[str], files: Mapping[str, bytes]) -> dict[Path, bytes]:
-    """Return companion files by their paths; they lie beside the target if the path is a link."""
+    """Return the content of companion files by path, in the folder of `path`.
+
+    If `path` is a link, this is the folder of the link's target.
+    """
     folder = Path(path).parent
     if os.path.islink(path):
         folder = Path(os.path.realpath(path)).parent
@@ -241,7 +247,7 @@ def places_beside(path: str | os.PathLike[str], files: Mapping[str, bytes]) -> d
 
 
 def write_beside(path: str | os.PathLike[str], files: Mapping[str, bytes]) -> None:
-    """Write the companion files of a file, before the file itself gets its name."""
+    """Write companion files, given as content by name, into the folder of the file `path`."""
     places = places_beside(path, files)
     for place in places:
         refuse_target(place)
@@ -252,7 +258,7 @@ def write_beside(path: str | os.PathLike[str], files: Mapping[str, bytes]) -> No
 def encoded(
     mesh: Mesh | RawMesh, path: str | os.PathLike[str], suffix: str, text: bool = False
 ) -> Encoded:
-    """Return the bytes of a file, the findings about losses, and the proof, as for `write`."""
+    """Return the bytes that `write` writes for a mesh, the findings, and the check of the file."""
     name = file_path(path)
     form = form_of(f"mesh{text_value(suffix, 'suffix')}", text)
     if not isinstance(mesh, (Mesh, RawMesh)):
@@ -278,7 +284,7 @@ def encoded(
         proof = partial(prove, name, bare, form.scan, form.called, form.repeats)
         return Encoded(form.encode(bare), findings, proof)
     full = saying(mesh, kept)
-    # Companions of a link are named after its target.
+    # If the path is a link, companion files are named after its target.
     stem = Path(os.path.realpath(name)).stem
     head, files = form.beside(full, stem) if form.beside is not None else (b"", {})
     reader = partial(_read_back, suffix, files)
@@ -291,7 +297,11 @@ def _read_back(suffix: str, files: Mapping[str, bytes], name: str, data: bytes) 
 
 
 def _refuse_unwritable(name: str, mesh: Mesh | RawMesh, form: Form) -> None:
-    """Raise an error for a mesh that no file, or no file of this form, can hold."""
+    """Raise a `FormatError` if a mesh cannot be written in a form.
+
+    It cannot if a coordinate is not finite, a triangle names a missing vertex, the form needs
+    vertices and there are none, or the mesh is too large for the form.
+    """
     count = len(mesh.vertices)
     if not np.isfinite(mesh.vertices).all():
         raise FormatError(f"{name}: a coordinate is not a finite number.", "non_finite")

@@ -1,4 +1,4 @@
-"""MTL: the materials of an OBJ file, in a companion file; pictures are companions, too."""
+"""MTL, the companion file with an OBJ file's materials; their pictures are companion files, too."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -10,10 +10,10 @@ from ..attributes.material import Material
 from ..errors import InvalidMeshError
 from .source import Source, as_text
 
-#: The colour of materials that say none.
+#: The colour of a material whose colour is not given.
 _PLAIN = (0.8, 0.8, 0.8)
 
-#: Statements after which names follow.
+#: Keywords of statements that a name follows.
 _NAMING = frozenset({b"newmtl", b"map_Kd"})
 
 #: The largest number of words in the name of a file: file systems allow 255 bytes.
@@ -22,15 +22,15 @@ _MAX_NAME_WORDS = 128
 
 @dataclass
 class Libraries:
-    """The content of the libraries that an OBJ names.
+    """The content of the material libraries (MTL files) that an OBJ file names.
 
     Parameters
     ----------
     materials : dict of str to Material
     missing : list of str
-        The files that are not there.
+        The names of files that do not exist.
     dropped : set of str
-        Kinds of data that `Material` cannot hold.
+        Kinds of data that `Material` cannot store.
     """
 
     materials: dict[str, Material] = field(default_factory=dict)
@@ -39,12 +39,15 @@ class Libraries:
 
 
 def name_of(words: Sequence[bytes]) -> str:
-    """Return the name that consists of some words."""
+    """Return words of a statement as one name, joined by spaces."""
     return as_text(b" ".join(words))
 
 
 def materials_in(source: Source, libraries: Sequence[Sequence[bytes]]) -> Libraries:
-    """Return the content of the libraries; their words are one name, or one name each."""
+    """Return the content of the material libraries that statements of an OBJ name.
+
+    The words of a statement are the name of one file if that file exists, else one name each.
+    """
     found = Libraries()
     for words in libraries:
         whole = name_of(words)
@@ -60,7 +63,7 @@ def materials_in(source: Source, libraries: Sequence[Sequence[bytes]]) -> Librar
 
 
 def _sections(library: Source) -> list[tuple[str, dict[bytes, list[bytes]]]]:
-    """Return the statements of each material, as words by keyword."""
+    """Return each material's name and its statements, as lists of words by keyword."""
     found: list[tuple[str, dict[bytes, list[bytes]]]] = []
     for _, words in library.text_lines(b"#", _NAMING):
         if words[0] == b"newmtl":
@@ -71,7 +74,7 @@ def _sections(library: Source) -> list[tuple[str, dict[bytes, list[bytes]]]]:
 
 
 def _material(source: Source, said: Mapping[bytes, list[bytes]], found: Libraries) -> Material:
-    """Return a material; invalid colours are ignored."""
+    """Return the material of some statements; an invalid colour or picture is left out."""
     color = _color(said.get(b"Kd"))
     if color is None:
         found.dropped.add("colours of materials that are not three numbers")
@@ -85,7 +88,10 @@ def _material(source: Source, said: Mapping[bytes, list[bytes]], found: Librarie
 
 
 def _color(words: Sequence[bytes] | None) -> tuple[float, ...] | None:
-    """Return red, green and blue of three numbers or of one grey; None for anything else."""
+    """Return red, green and blue, given as three numbers or one grey; None for invalid words.
+
+    Without words the colour is `_PLAIN`.
+    """
     if words is None:
         return _PLAIN
     numbers = [_number(word) for word in words]
@@ -95,7 +101,7 @@ def _color(words: Sequence[bytes] | None) -> tuple[float, ...] | None:
 
 
 def _opacity(said: Mapping[bytes, list[bytes]]) -> float:
-    """Return the opacity, 1 if no number gives it."""
+    """Return the opacity that a statement `d` or `Tr` gives, 1 if there is no valid number."""
     if b"d" in said:
         told = _number(said[b"d"][-1]) if said[b"d"] else math.nan
     else:
@@ -112,7 +118,10 @@ def _number(word: bytes) -> float:
 
 
 def _picture(source: Source, words: Sequence[bytes], found: Libraries) -> bytes | None:
-    """Return the picture whose name, which may be of several words, ends a statement."""
+    """Return the content of the picture file whose name ends a statement; None if there is none.
+
+    The name may have several words.
+    """
     for start in range(max(0, len(words) - _MAX_NAME_WORDS), len(words)):
         data = source.beside(name_of(words[start:]))
         if data is not None:
@@ -125,7 +134,10 @@ def _picture(source: Source, words: Sequence[bytes], found: Libraries) -> bytes 
 
 
 def written(materials: Mapping[str, Material], stem: str) -> tuple[str, dict[str, bytes]]:
-    """Return the name of the library of an OBJ file, and all companion files."""
+    """Return the name of the MTL file for an OBJ file called `stem`, and all companion files.
+
+    The companion files are a dictionary of name to content.
+    """
     library = f"{stem}.mtl"
     lines, files = [], {}
     for number, (name, material) in enumerate(materials.items()):

@@ -1,4 +1,4 @@
-"""Wavefront OBJ: vertices and polygons, texture coordinates, normals, colours and materials.
+"""Reading and writing OBJ: polygons, texture coordinates, normals, colours and materials.
 
 Groups, lines and curves are skipped.
 """
@@ -22,31 +22,32 @@ from .raw import EMPTY_SET, IndexPolygons, RawMesh, on_one_line, parts_of, says_
 from .said import chosen, said_of
 from .source import Source, as_text, quoted, whole
 
-#: Statements about what a mesh of triangles has no room for.
+#: Keywords of statements that are not read, and what they define.
 _DROPPED = {
     b"l": "lines",
     b"p": "points",
 }
 
-#: Statements that would add surface which is not in the polygons.
+#: Keywords of free-form curves and surfaces, which are surface besides the polygons.
 _SURFACES = frozenset({b"surf", b"curv", b"cstype", b"bmat"})
 
-#: Statements after which names follow, which may end in a backslash, as paths do.
+#: Keywords that names follow. Such names may end in a backslash, as paths do.
 _NAMING = frozenset(
     {b"o", b"g", b"usemtl", b"mtllib", b"usemap", b"maplib", b"shadow_obj", b"trace_obj"}
 )
 
-#: Statements of numbers, and all those that follow names.
+#: Keywords that numbers follow, and all keywords that may begin the line after a line of names.
 _NUMBERS = frozenset({b"v", b"vt", b"vn", b"f", b"l", b"p"})
 _FOLLOWING = frozenset({*_NAMING, *_NUMBERS, b"s"})
 
 
 @dataclass
 class _Found:
-    """The content of the statements, in file order; `lines` has the line number of each row.
+    """The content of an OBJ's statements, in file order.
 
-    `corners` has the rows of textures and normals that the corners of polygons name, from 0, or -1
-    for none.
+    `row_lines` and `face_lines` have the line number of each vertex and polygon. For each polygon
+    that names texture coordinates or normals, `corners` has the indices of these at each corner,
+    from 0, or -1 for none.
     """
 
     rows: list[list[bytes]] = field(default_factory=list)
@@ -64,12 +65,13 @@ class _Found:
 
 
 def read(source: Source) -> RawMesh:
-    """Read all objects and groups as one mesh.
+    """Read all objects and groups of an OBJ file as one mesh.
 
     Raises
     ------
     FormatError
-        If a line is no valid statement, or names a vertex that does not exist; names the line.
+        If a line is no valid statement, or names a vertex that does not exist; the message has the
+        number of the line.
     """
     source = source.without_mark()
     found = _collected(source)
@@ -98,7 +100,7 @@ def read(source: Source) -> RawMesh:
 def _attributes_of(
     source: Source, found: _Found, polygons: IndexPolygons, positions: IndexArray
 ) -> tuple[Attributes, list[str]]:
-    """Return the attributes, and the names of missing files."""
+    """Return the attributes of an OBJ's triangles, and the names of missing companion files."""
     faces = polygons.corners[positions]
     vertex: dict[str, Values] = {}
     if found.rows and all(len(row) == 6 for row in found.rows):
@@ -112,7 +114,7 @@ def _attributes_of(
     ):
         if rows and found.corners:
             numbers = _references_at(found, place, len(rows))[positions]
-            # The last row is for corners that name no row.
+            # The last row of the table is for corners without texture coordinates or normal.
             table = np.concatenate([_numbers(rows, width), np.full((1, width), np.nan)])
             corner[name] = table[numbers]
     if not found.materials:
@@ -125,7 +127,7 @@ def _attributes_of(
 
 
 def _numbers(rows: list[list[bytes]], width: int) -> FloatArray:
-    """Return the first `width` numbers of each row, NaN for other words."""
+    """Return the first `width` words of each row as numbers, NaN if a word is none or missing."""
     return np.array([[_number(row, k) for k in range(width)] for row in rows])
 
 
@@ -137,7 +139,10 @@ def _number(row: list[bytes], place: int) -> float:
 
 
 def _references_at(found: _Found, place: int, count: int) -> IndexArray:
-    """Return the row that each corner of each polygon names, -1 for none."""
+    """Return the index of the texture coordinates or normal of each polygon corner, -1 for none.
+
+    `place` is 0 for texture coordinates, 1 for normals; indices from `count` on become -1.
+    """
     numbers = []
     for polygon, corners in enumerate(found.polygons):
         named = found.corners.get(polygon)
@@ -147,7 +152,10 @@ def _references_at(found: _Found, place: int, count: int) -> IndexArray:
 
 
 def _row(parts: list[bytes], place: int, known: int) -> int:
-    """Return the row that a corner names; negative numbers count back from the last known row."""
+    """Return the index, from 0, that the part `place` of a corner names, -1 for none.
+
+    Negative numbers count back from the last of `known` entries.
+    """
     try:
         number = whole(parts[place])
     except (ValueError, IndexError):
@@ -156,7 +164,7 @@ def _row(parts: list[bytes], place: int, known: int) -> int:
 
 
 def _material_names(found: _Found) -> Values:
-    """Return the name of each polygon's material."""
+    """Return the material name of each polygon, empty if it has none."""
     starts = [start for _, start in found.materials]
     ends = [*starts[1:], len(found.polygons)]
     counts = [starts[0], *(end - start for start, end in zip(starts, ends, strict=True))]
@@ -208,8 +216,11 @@ def _collected(source: Source) -> _Found:
 def _objects(
     begun: list[tuple[bytes, int]], triangles: list[int], total: int
 ) -> tuple[tuple[str, int], ...]:
-    """Return names and triangle counts of objects, given the polygons at which they begin."""
-    if sum(triangles) != total:  # a polygon without area has fewer
+    """Return name and triangle count of each object, given its name and first polygon.
+
+    Return an empty tuple if the triangle counts of the polygons do not add up to `total`.
+    """
+    if sum(triangles) != total:  # a polygon without area has fewer triangles
         return ()
     if not begun or begun[0][1] > 0:
         begun = [(b"", 0), *begun]
@@ -223,9 +234,10 @@ def _objects(
 
 
 def _statements(source: Source) -> Iterator[tuple[int, list[bytes]]]:
-    """Yield number and words of each line; a backslash at the end continues the line.
+    """Yield line number and words of each statement; a backslash at a line's end continues it.
 
-    A line of names continues only if no statement follows; else the backslash belongs to a name.
+    A line of names is continued only if the next line begins no statement; else the backslash
+    belongs to the last name.
     """
     held: list[bytes] = []
     start, is_in_word = 0, False
@@ -252,19 +264,26 @@ def _statements(source: Source) -> Iterator[tuple[int, list[bytes]]]:
 
 
 def _is_statement(words: list[bytes], is_after_word: bool) -> bool:
-    """Say whether words begin a statement; after a lone backslash, only numbers count."""
+    """Say whether the words after a line of names and a backslash begin a statement of their own.
+
+    If the backslash ended a word, any known keyword begins one; if it stood alone, only a keyword
+    of numbers with at least two words does.
+    """
     if is_after_word:
         return words[0] in _FOLLOWING
     return words[0] in _NUMBERS and len(words) > 2
 
 
 def _ended(names: list[bytes], is_in_word: bool) -> list[bytes]:
-    """Return a line of names with the backslash at its end, as part of the last name."""
+    """Return a line of names with its final backslash, in the last word or as a separate word."""
     return [*names[:-1], names[-1] + b"\\"] if is_in_word else [*names, b"\\"]
 
 
 def _references(source: Source, number: int, words: list[bytes], known: int) -> list[int]:
-    """Return the vertices of a face, from 0; negative numbers count back from the last vertex."""
+    """Return the vertex indices of a face, from 0.
+
+    Negative numbers in the file count back from the last of `known` vertices.
+    """
     try:
         references = [whole(word.partition(b"/")[0]) for word in words[1:]]
     except ValueError:
@@ -306,15 +325,15 @@ def _curved(count: int) -> tuple[Finding, ...]:
 
 
 def called(name: str) -> str:
-    """Return an object's name without characters that end or continue a line."""
+    """Return a name with “_” instead of characters that end or continue a line of OBJ."""
     return on_one_line(name).replace("#", "_").replace("\\", "_")
 
 
 def kept(said: Attributes) -> Attributes:
-    """Return the attributes that OBJ can hold.
+    """Return the attributes that OBJ can store.
 
-    Colours of vertices, without opacity, and materials of faces, or else their colours; texture
-    coordinates and normals of corners.
+    These are colours of vertices, without opacity; materials of faces, or else colours of faces;
+    texture coordinates and normals.
     """
     said = _with_colors_of_vertices(said.without_empty_material())
     given = _named_materials(said)
@@ -342,7 +361,10 @@ def kept(said: Attributes) -> Attributes:
 
 
 def _with_colors_of_vertices(said: Attributes) -> Attributes:
-    """Return the attributes; opaque face colours become vertex colours where faces agree."""
+    """Return the attributes, with opaque face colours made vertex colours.
+
+    If faces at a vertex have different colours, the attributes stay unchanged.
+    """
     said = with_even_faces(said, COLOR)
     colors = said.face.get(COLOR)
     if colors is None or not is_color(COLOR, colors, 1) or not is_opaque(colors):
@@ -356,12 +378,15 @@ def _with_colors_of_vertices(said: Attributes) -> Attributes:
     return replace(rest, vertex={**rest.vertex, COLOR: found})
 
 
-#: The names of materials that are colours of faces: opacity comes last.
+#: Names of materials that stand for colours of faces: red, green, blue and opacity, hexadecimal.
 _COLORED = re.compile("color_([0-9a-f]{8})")
 
 
 def _with_colors(said: Attributes) -> Attributes:
-    """Return the attributes with colours in place of materials, if colours are their names."""
+    """Return the attributes with face colours instead of materials, if all are named after colours.
+
+    If another material is used, the attributes stay unchanged.
+    """
     names = said.face.get("material")
     if names is None or COLOR in said.names:
         return said
@@ -375,7 +400,10 @@ def _with_colors(said: Attributes) -> Attributes:
 
 
 def _color_called(name: str, material: Material | None) -> bytes:
-    """Return the colour that a material is named after; None if it has another or a picture."""
+    """Return the four bytes of the colour that a material is named after.
+
+    Return no bytes if the name is no colour, or if the material has another colour or a picture.
+    """
     match = _COLORED.fullmatch(name)
     if match is None:
         return b""
@@ -388,7 +416,7 @@ _BYTE = 255
 
 
 def with_materials(said: Attributes | None) -> Attributes | None:
-    """Return the attributes with face colours as materials, the only form that OBJ has for them."""
+    """Return the attributes with materials instead of face colours, which OBJ does not have."""
     if said is None or COLOR not in said.face:
         return said
     kinds, numbers = np.unique(said.face[COLOR], axis=0, return_inverse=True)
@@ -400,7 +428,7 @@ def with_materials(said: Attributes | None) -> Attributes | None:
 
 
 def _named_materials(said: Attributes) -> Values:
-    """Return the material name of each face, or None if faces have no materials."""
+    """Return the material name of each face; an empty array if faces have no materials."""
     names = said.face.get("material")
     if names is not None and names.dtype.kind == "U" and names.ndim == 1:
         return names
@@ -408,17 +436,17 @@ def _named_materials(said: Attributes) -> Values:
 
 
 def _whole_rows(values: Values) -> Values | None:
-    """Return rows with NaN in place of incomplete ones; None if no row is complete."""
+    """Return rows of numbers, where a row with a NaN becomes all NaN; None if every row has one."""
     is_known = ~np.isnan(values).any(axis=-1, keepdims=True)
     rows: Values = np.where(is_known, values, np.nan).astype(np.float64)
     return rows if is_known.any() else None
 
 
 def _held_names(names: set[str]) -> dict[str, str]:
-    """Return the names of materials in a form that lines can hold, by name; all are distinct."""
+    """Return a distinct name that OBJ can store for each of the given material names."""
     held = {"": ""}
     taken = {""}
-    # First come the names that need no change.
+    # Names that need no change come first, so that they stay as they are.
     for name in sorted(names - {""}, key=lambda name: (called(name) != name, name)):
         fit = called(name) or "_"
         # A material whose name looks like a colour must not be read back as a colour.
@@ -432,12 +460,15 @@ def _held_names(names: set[str]) -> dict[str, str]:
     return held
 
 
-#: Attributes of corners that OBJ has statements for, and how many numbers each has.
+#: Attributes of corners that OBJ can store, and the number of their components.
 _CORNERS = {"uv": 2, "normal": 3}
 
 
 def beside(mesh: RawMesh, stem: str) -> tuple[bytes, dict[str, bytes]]:
-    """Return the statement that names the material library, and the companion files."""
+    """Return an OBJ's statement that names the material library, and the companion files by name.
+
+    Both are empty if there are no materials.
+    """
     said = with_materials(said_of(mesh))
     if said is None or not said.materials:
         return b"", {}
@@ -446,9 +477,9 @@ def beside(mesh: RawMesh, stem: str) -> tuple[bytes, dict[str, bytes]]:
 
 
 def _as_word(stem: str) -> str:
-    """Return the stem of a file as one word, distinct for each stem.
+    """Return the stem of a file with blanks and special characters escaped.
 
-    Many readers take a name with a blank for two names.
+    Other programs take a name with a blank for two names. Distinct stems stay distinct.
     """
     return "".join(
         letter if letter.isprintable() and letter not in " #\\~" else f"~{ord(letter):02x}"
@@ -457,7 +488,7 @@ def _as_word(stem: str) -> str:
 
 
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
-    """Yield the file; every coordinate reads back as the same double."""
+    """Yield the bytes of an OBJ file; every coordinate reads back as the same double."""
     said = with_materials(said_of(mesh))
     if says_empty_set(mesh):
         yield EMPTY_SET
@@ -503,7 +534,7 @@ def _text_with_attributes(mesh: Mesh | RawMesh, said: Attributes) -> Iterator[by
 
 
 def _corner(numbers: Mapping[str, IndexArray], row: int, corner: int, vertex: int) -> str:
-    """Return the text of a corner in a face: numbers of vertex, texture coordinates and normal."""
+    """Return a corner as OBJ writes it: the numbers of its vertex, texture coordinates, normal."""
     uv, normal = (_at(numbers.get(name), row, corner) for name in ("uv", "normal"))
     if normal:
         return f"{vertex + 1}/{uv}/{normal}"

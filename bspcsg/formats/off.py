@@ -1,4 +1,4 @@
-"""OFF and its kin with colours, normals or texture coordinates, in text."""
+"""Reading and writing OFF as text; variants have colours, normals or texture coordinates."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -15,20 +15,20 @@ from .raw import EMPTY_SET, IndexPolygons, RawMesh, says_empty_set
 from .said import chosen, said_of
 from .source import Source, integral, quoted, whole
 
-#: The keyword; the number of vertices may follow it without a blank.
+#: The keyword of an OFF file; the number of vertices may follow it without a blank.
 _KEYWORD = re.compile(rb"((?:ST)?C?N?(4?)(n?)(?i:OFF))(\d*)")
 
 _Line = tuple[int, list[bytes]]
 
 
 def read(source: Source) -> RawMesh:
-    """Read the file.
+    """Read an OFF file.
 
     Raises
     ------
     FormatError
-        If it is cut off, names a vertex that does not exist, or is not of this family; names the
-        line.
+        If the file is cut off, names a vertex that does not exist, or is no OFF; the message has
+        the number of the line.
     """
     source = source.without_mark()
     keyword, lines = _body(source)
@@ -38,18 +38,18 @@ def read(source: Source) -> RawMesh:
     except FormatError:
         number, words = lines[0]
         spread = _spread(vertex_count, face_count, [(number, words[3:]), *rest])
-        # Related formats give more of a vertex than its position.
+        # Variants of OFF have more than three numbers for each vertex.
         if spread is None or (keyword.isalpha() and keyword != b"OFF"):
             raise
         return _mesh(source, keyword, vertex_count, face_count, spread)
 
 
 def _spread(vertex_count: int, face_count: int, lines: list[_Line]) -> list[_Line] | None:
-    """Return a line for each vertex and face if the numbers are complete, but on other lines.
+    """Return a line for each vertex and face of a file whose line breaks are elsewhere.
 
-    If there are additional numbers, nothing is returned: a colour needs the end of its line.
+    Return None if numbers are missing, or additional: a colour is found only at the end of a line.
     """
-    # If the number of lines is right, one of the lines must be wrong.
+    # If the number of lines is right, the error is in a line, not in the line breaks.
     is_spread = sum(bool(words) for _, words in lines) != vertex_count + face_count
     if not is_spread or sum(len(words) for _, words in lines) < 3 * vertex_count + face_count:
         return None
@@ -102,7 +102,7 @@ def _more_than_a_shape(
     vertex: dict[str, Values],
     face: dict[str, Values],
 ) -> tuple[str, ...]:
-    """Return the kinds of data besides the shape that are not kept."""
+    """Return the names of the data of vertices and faces that are not read."""
     found = []
     if not vertex and any(len(words) > 3 for _, words in points):
         found.append("data of vertices")
@@ -112,7 +112,7 @@ def _more_than_a_shape(
 
 
 def _colors(rows: Sequence[Sequence[bytes]]) -> Values | None:
-    """Return colours (k, 3 or 4) if every row is one: bytes, or floats from 0 to 1."""
+    """Return rows of text as colours, (k, 3) or (k, 4), uint8 or float64; None if any is none."""
     widths = {len(row) for row in rows}
     if len(widths) != 1 or not widths <= {3, 4}:
         return None
@@ -126,7 +126,7 @@ def _colors(rows: Sequence[Sequence[bytes]]) -> Values | None:
 
 
 def kept(said: Attributes) -> Attributes:
-    """Return the attributes that OFF can hold: colours of vertices, else of faces, in bytes."""
+    """Return the attributes that OFF can store: colours of vertices, else of faces, as bytes."""
     said = with_even_faces(said, COLOR)
 
     def keep(kind: Kind, name: str, values: Values) -> Values | None:
@@ -137,7 +137,7 @@ def kept(said: Attributes) -> Attributes:
 
 
 def _body(source: Source) -> tuple[bytes, list[_Line]]:
-    """Return the keyword, which may be absent, and the lines after it."""
+    """Return the first word in upper case, usually the keyword, and the lines after the keyword."""
     lines = list(_lines(source))
     first = next(source.text_lines(b"#"), (1, [b""]))[1][0]
     keyword = _KEYWORD.fullmatch(first)
@@ -145,7 +145,7 @@ def _body(source: Source) -> tuple[bytes, list[_Line]]:
 
 
 def _lines(source: Source) -> Iterator[_Line]:
-    """Yield the lines after the keyword; the counts may stand beside it."""
+    """Yield the lines after the keyword; the rest of the keyword's own line comes first."""
     lines = source.text_lines(b"#")
     number, words = next(lines, (1, [b""]))
     keyword = _KEYWORD.fullmatch(words[0])
@@ -171,7 +171,7 @@ def _lines(source: Source) -> Iterator[_Line]:
 
 
 def _counts(source: Source, lines: list[_Line]) -> tuple[int, int, list[_Line]]:
-    """Return the numbers of vertices and faces, and the lines after them."""
+    """Return the counts of vertices and faces from the first line, and the lines after it."""
     number, words = lines[0] if lines else (1, [])
     try:
         counts = [whole(word) for word in words[:2]]
@@ -186,7 +186,7 @@ def _counts(source: Source, lines: list[_Line]) -> tuple[int, int, list[_Line]]:
 
 
 def _corners(source: Source, number: int, words: list[bytes]) -> list[int]:
-    """Return the vertex indices of a face; a colour may follow them."""
+    """Return the vertex indices in the line of a face; a colour after them is ignored."""
     try:
         count = integral(words[0])
         indices = [integral(word) for word in words[1 : count + 1]]
@@ -216,7 +216,7 @@ def _extra_lines(lines: list[_Line]) -> tuple[Finding, ...]:
 
 
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
-    """Yield the file; every coordinate reads back as the same double."""
+    """Yield the bytes of an OFF file; every coordinate reads back as the same double."""
     said = said_of(mesh)
     keyword = b"COFF\n" if said and said.vertex else b"OFF\n"
     yield keyword + (EMPTY_SET if says_empty_set(mesh) else b"")
@@ -234,7 +234,7 @@ def _data(mesh: Mesh | RawMesh, points: Iterable[str], faces: Iterable[str]) -> 
 
 
 def _words(attributes: Mapping[str, Values], count: int) -> Iterable[str]:
-    """Return the colour at the end of each line, with a space before each number."""
+    """Return the end of each line: its colour, a space before each number, or an empty string."""
     if "color" not in attributes:
         return repeat("", count)
     return ("".join(f" {value}" for value in row) for row in listed(attributes["color"]))

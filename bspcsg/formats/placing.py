@@ -1,4 +1,4 @@
-"""Meshes that files place or units scale, with crossings from rounding mended."""
+"""Meshes that a file transforms or a unit scales; crossings that rounding causes are mended."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from ..solid.moving import AttributedMesh, Mended
 from ..solid.sewing import Sewn, sewn
 from .raw import RawMesh, compacted, joined
 
-#: Puts points, (n, 3) float64, in other places.
+#: A function that transforms points, (n, 3) float64.
 Image: TypeAlias = Callable[[FloatArray], FloatArray]
 
 SingleArray: TypeAlias = "np.ndarray[tuple[int, ...], np.dtype[np.float32]]"
@@ -21,18 +21,18 @@ SingleArray: TypeAlias = "np.ndarray[tuple[int, ...], np.dtype[np.float32]]"
 
 @dataclass(frozen=True, eq=False)
 class PlacedMesh:
-    """A mesh and its place in a file.
+    """A mesh of a file, and the transformation that the file applies to it.
 
     Parameters
     ----------
     mesh : RawMesh
-        In its own coordinates; its triangles and attributes are those of the mesh in its place.
+        The vertices before the transformation, but the triangles and attributes after it.
     image : callable
-        Takes and returns (n, 3) float64: it puts points in their places.
+        The transformation: takes and returns points, (n, 3) float64.
     keeps : bool
         True if `image` rounds no coordinate.
     map : bytes
-        A key of the image: meshes with equal keys are placed together.
+        A key of the transformation: meshes with equal keys are mended together.
     """
 
     mesh: RawMesh
@@ -41,12 +41,14 @@ class PlacedMesh:
     map: bytes = b""
 
     def in_place(self) -> RawMesh:
-        """Return the mesh in its place."""
+        """Return the mesh with its vertices transformed."""
         return replace(self.mesh, vertices=self.image(self.mesh.vertices))
 
 
 def is_exact(points: FloatArray | SingleArray, linear: FloatArray, shift: FloatArray) -> bool:
-    """Say whether an affine map of points rounds no coordinate; may return false negatives.
+    """Say whether `linear @ point + shift` rounds no coordinate of any point.
+
+    True is certain, False is not.
 
     Parameters
     ----------
@@ -68,7 +70,7 @@ def is_exact(points: FloatArray | SingleArray, linear: FloatArray, shift: FloatA
 def _are_products_exact(points: FloatArray | SingleArray, entries: FloatArray) -> bool:
     if (np.abs(entries) == 1).all():
         return True
-    # Two numbers of single precision have a product that doubles hold.
+    # The product of two numbers of single precision is exact as a double.
     return _are_single(entries) and _are_single(points)
 
 
@@ -78,17 +80,17 @@ def _are_single(values: FloatArray | SingleArray) -> bool:
 
 def _is_sum_exact(values: FloatArray, offset: float) -> bool:
     total = values + offset
-    # The difference to the larger of the two is exact, and so is the sum if it is the other one.
+    # Total minus the larger summand is exact; if it equals the smaller one, the total is exact.
     return bool((total - values == offset).all() and (total - offset == values).all())
 
 
 def placed(pieces: Sequence[PlacedMesh]) -> RawMesh:
-    """Return meshes in their places as one mesh; each is an object with its name.
+    """Return transformed meshes as one mesh, in which each is an object with its name.
 
-    If placing makes surfaces cross that did not cross before, they are mended by changes as small
-    as the rounding, within a mesh and among meshes placed by one map. A mesh that rounding could
-    open is first closed by index. Findings name what could not be mended, and count dropped
-    triangles.
+    If rounding makes surfaces cross that did not cross before, they are mended by changes as small
+    as the rounding, within a mesh and among meshes with equal transformations. A mesh that rounding
+    could open is first welded and split at T-junctions. Findings list triangles that still cross,
+    and count dropped triangles.
     """
     meshes = [piece.in_place() for piece in pieces]
     whole = joined(meshes)
@@ -113,10 +115,10 @@ def placed(pieces: Sequence[PlacedMesh]) -> RawMesh:
 
 
 def rescaled(raw: RawMesh, unit: float, new_unit: float = 1.0) -> RawMesh:
-    """Return a mesh with its coordinates in another unit; its objects stay apart.
+    """Return a mesh, with its objects, whose coordinates are in another unit.
 
-    If rounding makes surfaces cross that did not cross before, they are mended. Findings name what
-    could not be mended, and count dropped triangles.
+    If rounding makes surfaces cross that did not cross before, they are mended. Findings list
+    triangles that still cross, and count dropped triangles.
 
     Parameters
     ----------
@@ -159,7 +161,7 @@ def _with_mended(raw: RawMesh, found: Mended) -> RawMesh:
 
 
 def _pitch_of(whole: RawMesh) -> int | None:
-    """Return the pitch that suits a mesh, if one does."""
+    """Return the lattice's pitch that suits a mesh's coordinates; None if there is none."""
     try:
         return AttributedMesh(whole.vertices, whole.faces).suited_pitch()
     except LimitError:
@@ -167,7 +169,7 @@ def _pitch_of(whole: RawMesh) -> int | None:
 
 
 def _mended(raw: RawMesh, image: Image, pitch: int) -> Mended | None:
-    """Return a mesh in its place where that needs more than its image, if it does."""
+    """Return a transformed mesh, mended; None if transforming its vertices is enough."""
     mesh = AttributedMesh(raw.vertices, raw.faces, raw.attributes)
     divided = _sewn(mesh)
     if divided is not None:
@@ -182,7 +184,7 @@ def _mended(raw: RawMesh, image: Image, pitch: int) -> Mended | None:
 
 
 def _sewn(mesh: AttributedMesh) -> Sewn | None:
-    """Return a mesh closed by index, if moving could open it, and if it closes now."""
+    """Return a mesh welded and split at T-junctions; None if that is not needed or impossible."""
     try:
         with core_errors():
             tree = Tree.from_mesh(mesh.vertices, mesh.faces)
@@ -195,7 +197,11 @@ def _sewn(mesh: AttributedMesh) -> Sewn | None:
 def _take(
     found: Mended, members: list[int], meshes: list[RawMesh], crossing: dict[int, list[int]]
 ) -> None:
-    """Replace pieces by the parts of a mesh that was mended as a whole."""
+    """Replace some of `meshes` by their parts of a mesh into which they were joined and mended.
+
+    `members` are the indices of these meshes, and `crossing` receives their triangles that still
+    cross others.
+    """
     end = 0
     for number in members:
         start, end = end, end + len(meshes[number].faces)
@@ -220,12 +226,12 @@ def _with_findings(
 
 
 def _left_out(raw: RawMesh, found: Mended) -> int:
-    """Return the number of triangles of which a mended mesh has no part."""
+    """Return the number of triangles of `raw` of which the mended mesh has no part."""
     return len(raw.faces) - len(np.unique(found.kept))
 
 
 def _flat(count: int) -> tuple[Finding, ...]:
-    """Return the finding about dropped triangles."""
+    """Return the finding that `count` triangles were dropped, nothing if there are none."""
     if not count:
         return ()
     message = (
@@ -236,7 +242,7 @@ def _flat(count: int) -> tuple[Finding, ...]:
 
 
 def _crossing(places: list[int]) -> tuple[Finding, ...]:
-    """Return the finding about triangles that still cross others."""
+    """Return the finding that the triangles `places` still cross others, nothing without any."""
     if not places:
         return ()
     return (Finding("crossing", "warning", _CROSSING, tuple(places), len(places)),)

@@ -1,4 +1,4 @@
-"""The proof that a file equals the mesh, in every corner of every triangle of every object.
+"""The check that a written file equals the mesh, in each corner of each triangle of each object.
 
 Corners must be equal after one rounding of each coordinate to the file's precision. Then counts,
 bounds and volumes are equal too, so no tolerance is needed.
@@ -18,10 +18,10 @@ from .blocks import blocks
 from .held.layout import StoredMesh, StoredRows
 from .raw import RawMesh, parts_of
 
-#: Takes a file apart; raises an exception of any kind where it cannot.
+#: A function that returns the objects of a file; raises any exception if the file is not valid.
 Scan: TypeAlias = Callable[[BinaryIO], Sequence[StoredMesh | StoredRows]]
 
-#: Returns what an object's name becomes in a file.
+#: A function that returns the name that a file has for an object of a given name.
 Called: TypeAlias = Callable[[str], str]
 
 
@@ -33,7 +33,7 @@ def prove(
     repeats: bool,
     file: BinaryIO,
 ) -> None:
-    """Raise an error unless a file holds a mesh.
+    """Raise an error unless the content of a written file equals the mesh.
 
     Parameters
     ----------
@@ -42,8 +42,9 @@ def prove(
     mesh : Mesh or RawMesh
         The mesh that was written.
     scan : callable
+        Returns the objects of the file.
     called : callable, optional
-        None where files do not tell objects apart.
+        Returns the name that the file has for an object; None if the format has no objects.
     repeats : bool
         True if the format can store triangles that name a vertex twice.
     file : binary file
@@ -52,8 +53,8 @@ def prove(
     Raises
     ------
     FormatError
-        If it does not; code ``"write_mismatch"``. If the number of triangles is right, `where`
-        holds the first triangle that differs.
+        If the content differs; code ``"write_mismatch"``. If the number of triangles is right, the
+        attribute `where` has the number of the first triangle that differs.
     """
     with _reading(path):
         held = [one for one in scan(file) if one.count]
@@ -61,7 +62,7 @@ def prove(
     _compare_counts(path, expected, held)
     with _reading(path):
         rounded = _rounded(mesh, held)
-        # That a file has the very arrays is the fastest of all proofs.
+        # The fastest comparison: a file with one object may have exactly the arrays of the mesh.
         if len(held) == 1 and held[0].has(rounded, expected[0][1]):
             return
         loaded = [one.loaded() for one in held]
@@ -70,7 +71,7 @@ def prove(
 
 @contextmanager
 def _reading(path: str) -> Iterator[None]:
-    """Replace any error of the block by one that says that the file cannot be read back."""
+    """Replace any exception of the block by a `FormatError`: the file cannot be read back."""
     try:
         yield
     except MemoryError:
@@ -87,9 +88,9 @@ def prove_with_attributes(
     repeats: bool,
     file: BinaryIO,
 ) -> None:
-    """Raise an error unless a file holds a mesh and its attributes.
+    """Raise an error unless a written file has the triangles and the attributes of the mesh.
 
-    Files with attributes have many layouts, so the normal readers are used, which share no code
+    Files with attributes have various layouts, so the normal readers are used, which share no code
     with the writers.
 
     Parameters
@@ -98,14 +99,14 @@ def prove_with_attributes(
     mesh : RawMesh
         The mesh that was written.
     read : callable
-        Returns the mesh in the bytes of a file.
+        Returns the mesh that the bytes of a file contain.
     called, repeats, file
         As for `prove`.
 
     Raises
     ------
     FormatError
-        As for `prove`.
+        If the content differs; code ``"write_mismatch"``.
     """
     with _reading(path):
         found = read(path, file.read())
@@ -152,7 +153,7 @@ def _mismatch(path: str, reason: str, where: tuple[int, ...] = ()) -> FormatErro
 def _expected_objects(
     mesh: Mesh | RawMesh, called: Called | None, repeats: bool
 ) -> list[tuple[str, IndexArray]]:
-    """Return names and triangles of the objects that a file should hold."""
+    """Return name and triangles of each object that the written file must contain."""
     parts = [("", mesh.faces)] if called is None else parts_of(mesh)
     if called is not None:
         parts = [(called(name), faces) for name, faces in parts]
@@ -197,7 +198,7 @@ def _compare_corners(
 
 
 def _rounded(mesh: Mesh | RawMesh, held: Sequence[StoredMesh | StoredRows]) -> npt.NDArray[Any]:
-    """Return the vertices of a mesh in the precision of a file."""
+    """Return the vertices of a mesh in the precision of the file's objects."""
     if not held:
         return mesh.vertices
     return mesh.vertices.astype(held[0].vertices.dtype.newbyteorder("="), copy=False)
@@ -206,7 +207,10 @@ def _rounded(mesh: Mesh | RawMesh, held: Sequence[StoredMesh | StoredRows]) -> n
 def _first_difference(
     vertices: npt.NDArray[Any], faces: IndexArray, held: StoredMesh
 ) -> int | None:
-    """Return the first triangle whose corners are not those that a loaded file holds, if any."""
+    """Return the number of the first triangle whose corners differ from those in the file.
+
+    Return None if no triangle differs.
+    """
     for block in blocks(len(faces)):
         expected = vertices[faces[block]]
         differ = (expected != _corners(held, block.start, len(expected))).any(axis=(1, 2))

@@ -1,8 +1,8 @@
 """`RawMesh`: the content of a file, unprocessed, with polygons divided into triangles.
 
 Readers neither weld, orient, repair nor drop anything, with two exceptions: STL has no indices, so
-its corners with equal coordinates become one vertex; and where a file places a mesh, crossings from
-rounding are mended (`bspcsg/formats/placing.py`).
+its corners with equal coordinates become one vertex; and where a file transforms a mesh, crossings
+that rounding causes are mended (`bspcsg/formats/placing.py`).
 """
 
 from collections.abc import Callable, Sequence
@@ -17,7 +17,7 @@ from ..errors import Finding, FormatError
 from ..geometry.polygon import triangulate_face
 from ..mesh.mesh import Mesh
 
-#: The words for faces of more corners, which became triangles.
+#: The entry of `RawMesh.dropped` for faces that were divided into triangles.
 POLYGONS = "faces of more than three corners"
 
 
@@ -41,15 +41,15 @@ class RawMesh:
     unit : str
         ``"mm"`` if the format defines the unit of lengths, else empty.
     dropped : tuple of str
-        Kinds of data in the file that a mesh of triangles cannot hold, such as "colours".
+        Kinds of data in the file that were not read, such as "colours".
     is_empty_set : bool
         True if the file is one that this package writes for the empty set. Any other file without
         faces is not the empty set: its content may have been lost.
     attributes : Attributes, optional
         The values on vertices, corners and faces.
     is_mended : bool
-        True if placing made surfaces cross and they were mended in doubles. On the lattice they
-        touch, or may still cross.
+        True if transforming made surfaces cross and they were mended in doubles. On the lattice
+        they touch, or may still cross.
     """
 
     vertices: FloatArray
@@ -65,19 +65,22 @@ class RawMesh:
 
     @property
     def passed_by(self) -> tuple[str, ...]:
-        """The findings about data that the reader skipped."""
+        """The messages of the findings about data that the reader skipped."""
         return tuple(found.message for found in self.findings if found.code in _PASSED_BY)
 
 
 def says_empty_set(mesh: Mesh | RawMesh) -> bool:
-    """Say whether a file of this mesh must be marked as the empty set."""
+    """Say whether a mesh is the empty set, so that a file of it must be marked as such.
+
+    A `RawMesh` without triangles is the empty set only if `is_empty_set` is true.
+    """
     return len(mesh.faces) == 0 and (isinstance(mesh, Mesh) or mesh.is_empty_set)
 
 
-#: The comment in a text of the empty set, by which it is told from one that lost what it held.
+#: The comment that marks a text file as the empty set, not as a file that has lost its content.
 EMPTY_SET = b"# bspcsg: the empty set\n"
 
-#: The codes of findings of readers on parts of a file that they pass by.
+#: The codes of findings about parts of a file that a reader skipped.
 _PASSED_BY = frozenset({"ignored", "curves_ignored", "extra_data"})
 
 
@@ -91,7 +94,7 @@ def empty_set() -> RawMesh:
 
 
 def parts_of(mesh: Mesh | RawMesh) -> list[tuple[str, IndexArray]]:
-    """Return names and triangles of the objects of a mesh; a mesh without objects is one."""
+    """Return name and triangles of each object of a mesh; without objects, of the whole mesh."""
     objects = mesh.objects if isinstance(mesh, RawMesh) else ()
     if sum(count for _, count in objects) != len(mesh.faces):
         return [(mesh.name if isinstance(mesh, RawMesh) else "", mesh.faces)]
@@ -104,17 +107,20 @@ def parts_of(mesh: Mesh | RawMesh) -> list[tuple[str, IndexArray]]:
 
 
 def on_one_line(name: str) -> str:
-    """Return a name on one line: words separated by single spaces, valid in UTF-8."""
+    """Return a name with single spaces for line breaks and other blanks, valid in UTF-8."""
     words = " ".join("".join(" " if ord(letter) < _SPACE else letter for letter in name).split())
     return words.encode("utf-8", "replace").decode("utf-8")
 
 
-#: Below are the characters that control, such as line breaks and NUL.
+#: The code of the blank; lower codes are control characters, such as line breaks and NUL.
 _SPACE = 32
 
 
 def compacted(faces: IndexArray) -> tuple[IndexArray, IndexArray]:
-    """Return the vertices that triangles use, ascending, and the triangles renumbered for them."""
+    """Return the vertex indices that triangles use, ascending, and the triangles renumbered.
+
+    The renumbered triangles index the first array.
+    """
     if len(faces) == 0:
         return np.zeros(0, dtype=np.int64), faces
     low = int(faces.min())
@@ -125,7 +131,7 @@ def compacted(faces: IndexArray) -> tuple[IndexArray, IndexArray]:
 
 
 def joined(meshes: Sequence[RawMesh]) -> RawMesh:
-    """Return several meshes as one, each as a named object; nothing is welded."""
+    """Return one mesh in which each of several meshes is a named object; nothing is welded."""
     starts = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes]).tolist()
     vertices = [np.zeros((0, 3))] + [mesh.vertices for mesh in meshes]
     faces = [np.zeros((0, 3), dtype=np.int64)]
@@ -139,7 +145,7 @@ def joined(meshes: Sequence[RawMesh]) -> RawMesh:
 
 @dataclass(frozen=True, eq=False)
 class IndexPolygons:
-    """Polygons as index lists of different lengths.
+    """Polygons with various numbers of corners, as vertex indices.
 
     Parameters
     ----------
@@ -154,7 +160,7 @@ class IndexPolygons:
 
     @classmethod
     def from_lists(cls, polygons: list[list[int]]) -> "IndexPolygons":
-        """Return the polygons of a list of index lists.
+        """Return the polygons that are given as one list of vertex indices each.
 
         Raises
         ------
@@ -166,7 +172,10 @@ class IndexPolygons:
         return cls(np.array(flat, dtype=np.int64), counts)
 
     def of_strips(self) -> "tuple[IndexPolygons, IndexArray]":
-        """Return the triangles of these strips, and the strip of each; -1 restarts a strip."""
+        """Return the triangles of polygons that are triangle strips, and each triangle's polygon.
+
+        An index -1 ends a strip, and the next index begins a new one.
+        """
         corners, strips = self.corners, np.repeat(np.arange(len(self.counts)), self.counts)
         is_gap = corners == -1
         is_first = np.zeros(len(corners), dtype=bool)
@@ -183,22 +192,22 @@ class IndexPolygons:
 
     @property
     def dropped(self) -> tuple[str, ...]:
-        """The kinds of data that triangles do not keep of these polygons, for `RawMesh.dropped`."""
+        """The entries of `RawMesh.dropped`: a text if a polygon has more than three corners."""
         return (POLYGONS,) if self.counts.max(initial=0) > 3 else ()
 
     @classmethod
     def from_rows(cls, rows: IndexArray) -> "IndexPolygons":
-        """Return polygons with as many corners each as `rows` has columns."""
+        """Return a polygon for each row of vertex indices (p, n), all with n corners."""
         corners = np.ascontiguousarray(rows, dtype=np.int64).ravel()
         return cls(corners, np.full(len(rows), rows.shape[1], dtype=np.int64))
 
     def triangles(
         self, vertices: FloatArray, error_at: Callable[[int, str, str], FormatError]
     ) -> IndexArray:
-        """Return (m, 3) triangles, those of each polygon together, in the order of the polygons.
+        """Divide the polygons into triangles; return these, (m, 3), in the order of the polygons.
 
-        Polygons may be concave. Their edges stay, so a closed surface of polygons becomes a closed
-        surface of triangles.
+        Polygons may be concave. Every edge of a polygon is an edge of a triangle, so a closed
+        surface of polygons becomes a closed surface of triangles.
 
         Parameters
         ----------
@@ -226,7 +235,7 @@ class IndexPolygons:
     def positions(
         self, vertices: FloatArray, error_at: Callable[[int, str, str], FormatError]
     ) -> IndexArray:
-        """Return the triangles of `triangles` as (m, 3) positions in `corners`."""
+        """Divide the polygons into triangles; return these as positions in `corners`, (m, 3)."""
         self._check(len(vertices), error_at)
         if (self.counts == 3).all():
             return np.arange(len(self.corners)).reshape(-1, 3)
@@ -234,7 +243,7 @@ class IndexPolygons:
         return places.triangles(vertices[self.corners], error_at)
 
     def owners(self, positions: IndexArray) -> IndexArray:
-        """Return the polygon of each triangle, given as positions in `corners`."""
+        """Return the polygon number of each triangle, given as positions in `corners`, (m, 3)."""
         return np.searchsorted(np.cumsum(self.counts), positions[:, 0], side="right")
 
     def _check(self, vertex_count: int, error_at: Callable[[int, str, str], FormatError]) -> None:
@@ -256,7 +265,7 @@ class IndexPolygons:
 
 
 def _triangulated(rows: IndexArray, vertices: FloatArray) -> tuple[IndexArray, IndexArray]:
-    """Return triangles of (k, n) polygons, and the row that each comes from."""
+    """Return the triangles of k polygons with n corners, (k, n), and each triangle's polygon."""
     count = rows.shape[1]
     if count == 3:
         return rows, np.arange(len(rows))
@@ -279,7 +288,7 @@ def _fan(count: int) -> IndexArray:
 
 
 def _are_convex(corners: FloatArray) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
-    """Say whether (k, n, 3) polygons are strictly convex, so that the fan of corner 0 is inside."""
+    """Say for each polygon, (k, n, 3), whether it is strictly convex and a fan can divide it."""
     local = corners - corners[:, :1]
     with np.errstate(over="ignore", invalid="ignore"):
         normal = np.cross(local, np.roll(local, -1, axis=1)).sum(axis=1)

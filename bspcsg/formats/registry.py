@@ -1,4 +1,4 @@
-"""The table of formats by suffix; the modules of a format are imported on its first use."""
+"""The table of mesh formats by suffix; the modules of a format are imported on first use."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -22,28 +22,29 @@ Limit: TypeAlias = Callable[[Mesh | RawMesh], str]
 
 @dataclass(frozen=True)
 class Form:
-    """One way to write a format, and to prove the written file.
+    """The text or the binary form of a format: functions that write a file and check it.
 
     Parameters
     ----------
     encode : callable
+        Yields the bytes of a file.
     scan : callable
-        Returns the content of a written file.
+        Returns the objects of a written file, to check it.
     called : callable, optional
-        Returns the name of an object in the file; None if files have no separate objects.
+        Returns the name that a file has for an object; None if files have no separate objects.
     losses : callable, optional
-        Returns the findings about losses; raises OverflowError if the form cannot hold the numbers.
+        Returns the findings about losses; raises OverflowError if a number is too large.
     repeats : bool
-        True if it can store triangles that name a vertex twice.
+        True if the form can store triangles that name a vertex twice.
     is_single : bool
-        True if it stores single precision only.
+        True if the form stores single precision only.
     keeps : callable, optional
-        Returns the attributes that it can hold, as they read back; None if it can hold none.
+        Returns the attributes that the form can store, as they read back; None if it stores none.
     beyond : callable, optional
-        Returns why a mesh is too large for the form, or nothing if it fits.
+        Returns why a mesh is too large for the form, or an empty string if it fits.
     beside : callable, optional
-        Returns the beginning of a file, which names its companion files, and these files; takes the
-        mesh and the stem of the file.
+        Takes the mesh and the stem of the file; returns the beginning of the file, which names its
+        companion files, and these files.
     needs_vertices : bool
         True if the reader refuses files without vertices, except for the empty set.
     """
@@ -62,7 +63,7 @@ class Form:
 
 @dataclass(frozen=True)
 class Format:
-    """The reading and writing of one format; one of the written forms may be missing.
+    """A mesh format: the function that reads it, and the forms in which it is written.
 
     Parameters
     ----------
@@ -169,7 +170,7 @@ def _vtk(suffix: str) -> Format:
     return Format(vtk.reader(suffix), None, Form(vtk.writer(suffix), scan))
 
 
-#: The functions that make the formats.
+#: The function that makes the `Format` of each suffix.
 MAKERS: dict[str, Callable[[], Format]] = {
     ".stl": _stl,
     ".obj": _obj,
@@ -183,7 +184,7 @@ MAKERS: dict[str, Callable[[], Format]] = {
 
 
 class _Formats(Mapping[str, Format]):
-    """The formats by their suffixes."""
+    """A mapping from suffix to `Format`, which is made when it is looked up."""
 
     def __getitem__(self, suffix: str) -> Format:
         return MAKERS[suffix]()
@@ -199,4 +200,4 @@ class _Formats(Mapping[str, Format]):
 
 
 FORMATS: Mapping[str, Format] = _Formats()
-"""The formats of meshes by their suffixes, such as ``".stl"``, which `in` and `len` know."""
+"""The mesh formats by suffix, such as ``".stl"``; a mapping."""

@@ -1,4 +1,4 @@
-"""Meshes with coordinates of fewer digits."""
+"""Rounding of a mesh's coordinates to fewer digits."""
 
 from dataclasses import replace
 from typing import TypeVar
@@ -13,9 +13,10 @@ _Kind = TypeVar("_Kind", bound=Mesh | RawMesh)
 
 
 def rounded(mesh: _Kind, digits: int) -> tuple[_Kind, tuple[Finding, ...]]:
-    """Return a mesh with coordinates of so many significant digits, and a finding on the change.
+    """Round coordinates to significant digits; return the mesh, and a finding on the change.
 
-    Faces that are closer to each other than this change may cross or lose their area.
+    If no coordinate changes, there is no finding. Faces that are closer to each other than the
+    rounding may cross, and triangles thinner than the rounding may lose their area.
 
     Parameters
     ----------

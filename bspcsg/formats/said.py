@@ -1,4 +1,4 @@
-"""Attributes in files: those that a format keeps, and those that it drops."""
+"""Selection of the attributes that a file format can store, and findings about lost attributes."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -13,21 +13,24 @@ from .raw import RawMesh
 
 
 def said_of(mesh: Mesh | RawMesh) -> Attributes | None:
-    """Return the attributes of a mesh, or None if it has none or no triangles."""
+    """Return the attributes of a mesh; None if it has no attributes or no triangles."""
     has_none = isinstance(mesh, Mesh) and mesh.carried is None
     said = None if has_none or not len(mesh.faces) else mesh.attributes
     return None if said is None or said.is_empty else said
 
 
 def saying(mesh: Mesh | RawMesh, attributes: Attributes | None) -> RawMesh:
-    """Return a mesh with other attributes."""
+    """Return a mesh as a `RawMesh` whose attributes are replaced by `attributes`."""
     if isinstance(mesh, RawMesh):
         return replace(mesh, attributes=attributes)
     return RawMesh(mesh.vertices, mesh.faces, attributes=attributes)
 
 
 def chosen(said: Attributes, keep: Callable[[Kind, str, Values], Values | None]) -> Attributes:
-    """Return the kept attributes of a mesh, in the form in which they are kept."""
+    """Return the attributes for which `keep` returns values, with these values.
+
+    `keep` returns None for an attribute to drop.
+    """
     vertex, corner, face = (
         {
             name: values
@@ -42,7 +45,7 @@ def chosen(said: Attributes, keep: Callable[[Kind, str, Values], Values | None])
 
 
 def left_out(said: Attributes, kept: Attributes | None, suffix: str) -> tuple[Finding, ...]:
-    """Return the findings about attributes that a file does not hold."""
+    """Return findings about attributes of `said` that are missing or changed in `kept`."""
     held = Attributes(said.faces) if kept is None else kept
     lost = [name for name in said.names if name not in held.names]
     told = [f"“{name}” of {_PLURAL[said.kind_of(name) or 'face']}" for name in lost]
@@ -52,7 +55,10 @@ def left_out(said: Attributes, kept: Attributes | None, suffix: str) -> tuple[Fi
 
 
 def not_held(told: Sequence[str], suffix: str) -> tuple[Finding, ...]:
-    """Return the finding about attributes, given as words, that a format cannot hold."""
+    """Return the finding that a format cannot store the attributes which `told` describes.
+
+    Return nothing if `told` is empty.
+    """
     if not told:
         return ()
     were = "was" if len(told) == 1 else "were"
@@ -61,7 +67,7 @@ def not_held(told: Sequence[str], suffix: str) -> tuple[Finding, ...]:
 
 
 def _changed_color(said: Attributes, held: Attributes, suffix: str) -> tuple[Finding, ...]:
-    """Return the finding about colours that the file holds, but changed."""
+    """Return a finding if a file stores colours rounded or without opacity, else nothing."""
     if COLOR not in said.names or COLOR not in held.names:
         return ()
     given, kept = said.at_corners(COLOR), held.at_corners(COLOR)
@@ -81,7 +87,7 @@ def _changed_color(said: Attributes, held: Attributes, suffix: str) -> tuple[Fin
     return (Finding("colors_rounded", "note", message, (), 1),)
 
 
-#: Colours that differ by less are the same: single precision moves them so far.
+#: Colours that differ by at most this are equal: single precision rounds them by as much.
 _EQUAL = 2.0**-22
 
 _PLURAL: dict[Kind, str] = {"vertex": "vertices", "corner": "corners", "face": "faces"}

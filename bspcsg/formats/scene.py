@@ -1,4 +1,4 @@
-"""`SceneNode`: the tree of nested objects in a file, unprocessed."""
+"""`SceneNode`: a node in the tree of nested objects of a file, as read or to be written."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ class SceneNode:
     matrix : (4, 4) float64
         From this node to its parent, for column vectors; millimetres, z upwards.
     mesh : RawMesh or None
-        Instances share one object.
+        Nodes that show the same mesh have the same object.
     color : tuple of float or None
     children : tuple of SceneNode
     """
@@ -32,7 +32,7 @@ class SceneNode:
     children: "tuple[SceneNode, ...]" = ()
 
     def walk(self) -> "Iterator[SceneNode]":
-        """Yield this node and all in it, parents first."""
+        """Yield the node and all its descendants, parents before children."""
         waiting = [self]
         while waiting:
             node = waiting.pop()
@@ -41,7 +41,7 @@ class SceneNode:
 
 
 def are_alike(one: SceneNode, other: SceneNode) -> bool:
-    """Say whether two trees have equal names, matrices, colours, corners and shared meshes."""
+    """Say whether two trees have equal names, matrices, colours and meshes, shared equally."""
     pairs = list(zip(one.walk(), other.walk(), strict=False))
     if len(pairs) != sum(1 for _ in one.walk()) or len(pairs) != sum(1 for _ in other.walk()):
         return False
@@ -54,7 +54,7 @@ def are_alike(one: SceneNode, other: SceneNode) -> bool:
             return False
         if a.mesh is None or b.mesh is None:
             continue
-        # A mesh with two colours becomes two meshes in a file.
+        # A mesh that nodes show in two colours is stored as two meshes.
         known = shared.setdefault((id(a.mesh), a.color), id(b.mesh))
         if known != id(b.mesh) or not _same(a.mesh, b.mesh):
             return False
@@ -66,7 +66,10 @@ def _same(one: RawMesh, other: RawMesh) -> bool:
 
 
 def say_alike(one: SceneNode, other: SceneNode) -> bool:
-    """Say whether the meshes of two like trees have equal attributes, except node colours."""
+    """Say whether the meshes of two trees of one structure have equal attributes.
+
+    Meshes of nodes with a colour are not compared.
+    """
     pairs = zip(one.walk(), other.walk(), strict=False)
     return all(
         _equal_attributes(a.mesh.attributes, b.mesh.attributes)

@@ -1,4 +1,4 @@
-"""The changes of a mesh by single precision, the precision of binary STL and GLB."""
+"""Rounding of a mesh to single precision, the precision of binary STL and GLB."""
 
 import numpy as np
 
@@ -19,11 +19,11 @@ _MAX_TRIANGLES_NAMED = 8
 
 
 def losses(mesh: Mesh | RawMesh, format_name: str) -> tuple[Finding, ...]:
-    """Return the findings about changes of a mesh by single precision.
+    """Return findings about what rounding to single precision changes in a mesh.
 
     Vertices that merge, triangles that lose their area and triangles that turn over are counted
     exactly. A triangle turns over if its normals before and after are more than a right angle
-    apart; a triangle without area before counts as neither.
+    apart. A triangle that had no area before is not counted.
 
     Parameters
     ----------
@@ -59,18 +59,18 @@ def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
     """Return a solid's mesh in single precision, with crossings mended where possible.
 
     Rounding moves every corner, so close surfaces may cross and thin triangles may lose their area.
-    Both are mended by changes as small as the rounding. If nothing would be left, surfaces are
+    Both are mended by changes as small as the rounding. If no triangle would remain, surfaces are
     first moved outwards by one spacing of single precision.
 
     Parameters
     ----------
     mesh : Mesh
-        Closed by index.
+        Closed: the triangles at each edge share the indices of its vertices.
 
     Returns
     -------
     mesh : Mesh
-        The given mesh if nothing had to be changed, or if no part of it can be kept.
+        The given mesh if nothing had to be changed, or if no triangle would remain.
     findings : tuple of Finding
         The number of triangles changed or moved, and the places where surfaces still cross.
 
@@ -91,7 +91,10 @@ def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
 
 
 def _kept(mesh: Mesh) -> tuple[Mesh, Finding, IndexArray]:
-    """Return the thickened form of a mesh that rounding would erase, a finding, and crossings."""
+    """Thicken a mesh that rounding would erase; return it rounded, a finding, and crossings.
+
+    Crossings are the numbers of triangles that still cross others.
+    """
     spacing = _spacing(mesh.vertices)
     result, _, crossing = _mended(_thickened(mesh, spacing))
     if len(result.faces):
@@ -101,28 +104,34 @@ def _kept(mesh: Mesh) -> tuple[Mesh, Finding, IndexArray]:
 
 
 def _mended(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
-    """Return a mesh in single precision, the number of mended triangles, and those that cross."""
+    """Round a mesh to single precision and mend it, several times if necessary.
+
+    Return the mesh, the count of mended triangles, and the numbers of those that still cross.
+    """
     result, mended, crossing = _rounded(mesh)
     for _ in range(_MAX_ROUNDS):
         if not len(crossing) or not len(result.faces):
             break
         mended += len(crossing)
         result, more, _ = _rounded(_united(result))
-        # The lattice on which surfaces are united does not contain the numbers of single precision.
+        # The lattice on which surfaces are united does not contain all numbers of single precision.
         # Faces that stay unchanged there may cross, so all are checked.
         crossing = _faulty(result.certificate)
         mended += more
     return result, mended, crossing
 
 
-#: The largest number of rounds: each unites what rounding made cross, and rounds the result. One is
-#: nearly always enough: surfaces nearer each other than the rounding lie in one place after it, and
-#: are united.
+#: The largest number of rounds; each unites surfaces that cross after rounding, and rounds the
+#: result. One is nearly always enough: surfaces nearer to each other than the rounding coincide
+#: after it, and are united.
 _MAX_ROUNDS = 4
 
 
 def _rounded(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
-    """Round and mend a mesh once; return it, the count of mended triangles, and crossing ones."""
+    """Round a mesh to single precision and mend it, once.
+
+    Return the mesh, the count of mended triangles, and the numbers of those that still cross.
+    """
     with core_errors():
         found = mesh_in_single(mesh.vertices, mesh.faces)
     kept = found["kept"]
@@ -140,33 +149,31 @@ def _faulty(proof: Certificate) -> IndexArray:
 
 def _either(some: IndexArray, others: IndexArray) -> IndexArray:
     """Return the numbers that are in at least one of two lists, ascending."""
-    # Not numpy.unique, which imports numpy.ma: a tenth of a small boolean's time.
+    # Not numpy.unique: it imports numpy.ma, a tenth of the time of a small boolean operation.
     return np.array(sorted({*some.ravel().tolist(), *others.tolist()}), dtype=np.int64)
 
 
 def _united(mesh: Mesh) -> Mesh:
-    """Return the mesh of the set of points that a mesh winds around, free of crossings.
-
-    Iterated snap rounding: triangles that cross are cut exactly, and the pieces are rounded again.
-    """
+    """Return the mesh of the solid that a mesh encloses: crossing triangles are cut exactly."""
     result = solid_of_mesh(mesh).normalized().to_mesh()
     origins = mesh.source[result.source[:, 1]]
     return Mesh(result.vertices, result.faces, origins, result.carried)
 
 
 def _spacing(vertices: FloatArray) -> float:
-    """Return the spacing of single precision at the largest coordinate."""
+    """Return the distance between adjacent float32 numbers at the largest coordinate."""
     return float(np.spacing(np.float32(np.abs(vertices).max())))
 
 
 def _thickened(mesh: Mesh, spacing: float) -> Mesh:
-    """Return a mesh with each vertex moved outwards, along the gradient of the volume.
+    """Move each vertex of a mesh outwards by `spacing`, along the gradient of the volume.
 
-    Opposite sides move two spacings apart along an axis; rounding brings them closer by one.
+    Opposite sides move two spacings apart along an axis, and rounding brings them at most one
+    spacing closer.
     """
     first, second, third = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
     edges = np.stack([second - first, third - first])
-    # Edges count even if their squared length underflows in doubles.
+    # Scale the edges, since their squared lengths may underflow.
     edges /= np.abs(edges).max()
     areas = np.cross(edges[0], edges[1])
     gained = np.zeros_like(mesh.vertices)
@@ -214,7 +221,7 @@ def _merged(vertices: FloatArray, rounded: FloatArray, moved: BoolArray) -> tupl
 
 
 def _beside_moved(rounded: FloatArray, moved: BoolArray) -> BoolArray:
-    """Say which vertices share a coordinate x with a rounded one; only these can merge."""
+    """Say for each vertex whether its x equals that of a moved vertex: only then it can merge."""
     x = rounded[:, 0]
     taken = np.sort(x[moved])
     place = np.minimum(np.searchsorted(taken, x), len(taken) - 1)
@@ -226,7 +233,7 @@ _REMEDY = "; write PLY, OBJ, OFF or 3MF to keep the mesh as it is."
 
 
 def _changed(mesh: Mesh | RawMesh, rounded: FloatArray, moved: BoolArray) -> tuple[Finding, ...]:
-    """Return the findings about triangles that lose their area or turn over."""
+    """Return findings about triangles that rounding turns over or deprives of their area."""
     flat, turned = _flat_and_turned(mesh.vertices, rounded, mesh.faces, moved)
     told = (
         ("flattened_by_rounding", "removes the area of", flat),
@@ -248,7 +255,7 @@ def _changed(mesh: Mesh | RawMesh, rounded: FloatArray, moved: BoolArray) -> tup
 def _flat_and_turned(
     vertices: FloatArray, rounded: FloatArray, faces: IndexArray, moved: BoolArray
 ) -> tuple[IndexArray, IndexArray]:
-    """Return the numbers of the triangles that lose their area, and of those that turn over."""
+    """Return the numbers of triangles that lose their area, and of triangles that turn over."""
     numbers = np.flatnonzero(moved[faces].any(axis=1))
     flat, turned = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
     for block in blocks(len(numbers)):

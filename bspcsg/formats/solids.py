@@ -1,4 +1,4 @@
-"""Solids of mesh files."""
+"""Making a solid of the mesh that was read from a file."""
 
 import os
 from typing import Any
@@ -11,10 +11,10 @@ from .raw import RawMesh
 def solid_of(
     raw: RawMesh, path: str | os.PathLike[str], *, attributes: bool = True, **options: Any
 ) -> Solid:
-    """Return the solid of the mesh of a file; errors name the file.
+    """Return the solid that the mesh of a file encloses; errors name the file.
 
-    A file that `save` wrote of the empty set gives the empty set. Any other file without faces is
-    refused, since its content may have been lost.
+    If `save` wrote the file for the empty set, it is the empty set. Any other file without faces
+    is an error, since its content may have been lost.
     """
     if raw.is_empty_set:
         return Solid.empty()

@@ -1,4 +1,4 @@
-"""The bytes of a file, with its name and positions for errors."""
+"""`Source`: the bytes and the name of a file for readers, and errors that name a position in it."""
 
 import codecs
 import errno
@@ -16,10 +16,10 @@ from .._types import FloatArray
 from ..errors import FormatError, unreadable
 from ..parameters import file_path
 
-#: The mark that some editors put before a text.
+#: The byte order mark of UTF-8, with which a text file may begin.
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
-#: The marks of texts of two and of four bytes a letter, the longer ones first.
+#: The byte order marks of UTF-32 and UTF-16; UTF-32 comes first, as its marks begin with UTF-16's.
 _WIDE_MARKS = {
     codecs.BOM_UTF32_LE: "utf-32",
     codecs.BOM_UTF32_BE: "utf-32",
@@ -31,25 +31,25 @@ _WIDE_MARKS = {
 _MAX_QUOTED_CHARACTERS = 24
 
 #: The largest number of bytes of a script or drawing. A parsed file takes ten or more times as
-#: many, so this fills 3 GB.
+#: many bytes of memory: some 3 GB.
 _MAX_TEXT_BYTES = 1 << 28
 
-#: A double holds every whole number exactly up to this one.
+#: Up to this number, doubles represent every whole number exactly.
 _MAX_EXACT_INTEGER = 2.0**53
 
 #: The largest number of characters of a whole number. It is twice what 64 bits need, so that errors
 #: can quote a number that is a little too large.
 _MAX_INTEGER_CHARACTERS = 40
 
-#: The beginning of the pointer that Git keeps in place of a large file, and the largest number of
-#: bytes of a pointer.
+#: The beginning of the pointer that Git LFS stores instead of a large file, and the largest number
+#: of bytes of a pointer.
 _POINTER_START = re.compile(rb"version https://(git-lfs|hawser)\.github\.com/spec/v\d")
 _MAX_POINTER_BYTES = 1024
 
 
 @dataclass(frozen=True)
 class Source:
-    """The input of a reader.
+    """A file as the input of a reader.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class Source:
     data : bytes
         The whole file.
     files : dict of str to bytes, optional
-        Companion files that are not written yet.
+        The content of companion files by name; if absent, they are read from the disk.
     """
 
     name: str
@@ -66,7 +66,7 @@ class Source:
     files: Mapping[str, bytes] | None = None
 
     def without_mark(self) -> "Source":
-        """Return the bytes without a byte order mark; UTF-16 and UTF-32 become UTF-8."""
+        """Return the source without a byte order mark; UTF-16 and UTF-32 become UTF-8."""
         for mark, name in _WIDE_MARKS.items():
             if self.data.startswith(mark):
                 with suppress(UnicodeError):
@@ -74,13 +74,13 @@ class Source:
         return replace(self, data=self.data.removeprefix(BYTE_ORDER_MARK))
 
     def beside(self, name: str) -> bytes | None:
-        """Return the bytes of a file in the same folder, or None if it is missing or too large."""
+        """Return the bytes of a companion file in the same folder; None if missing or too large."""
         if self.files is not None:
             return self.files.get(name)
-        # A name in a mesh file may be anything: a folder, a device, another user's file.
+        # Only plain file names: a mesh file could name a folder, a device or another user's file.
         if Path(name).name != name:
             return None
-        # Companions may lie beside a link, or beside its target if they were written with that.
+        # If the path is a link, companion files may be in its folder or in that of its target.
         for path in (self.name, os.path.realpath(self.name)):
             data = _limited(Path(path).parent / name)
             if data is not None:
@@ -95,7 +95,7 @@ class Source:
         line: int | None = None,
         offset: int | None = None,
     ) -> FormatError:
-        """Return the error for a position in this file, a line (from 1) or a byte (from 0)."""
+        """Return a `FormatError` that names the file and a line (from 1) or a byte (from 0)."""
         if line is not None:
             return FormatError(f"{self.name}:{line}: {message}", code, [line])
         if offset is not None:
@@ -107,8 +107,8 @@ class Source:
     ) -> Iterator[tuple[int, list[bytes]]]:
         """Yield number and words of each line that is not blank, without comments.
 
-        Names follow the words of `naming` and may contain the comment mark: there only a mark that
-        stands alone begins a comment.
+        In a line that begins with a keyword of `naming`, names may contain the comment mark: only a
+        mark that is a word of its own begins a comment.
         """
         for number, line in enumerate(self.without_mark().data.splitlines(), 1):
             words = line.split()
@@ -123,7 +123,8 @@ class Source:
         Raises
         ------
         FormatError
-            If a row has fewer than three words, or a word is no finite number; names its line.
+            If a row has fewer than three words, or a word is no finite number; the message has the
+            number of the row's line.
         """
         try:
             numbers = [(float(row[0]), float(row[1]), float(row[2])) for row in rows]
@@ -155,7 +156,7 @@ def _uncommented(
 
 
 def _limited(path: Path) -> bytes | None:
-    """Return the bytes of a file, or None if it is missing or too large."""
+    """Return the bytes of a file; None if it is missing, too large or a pointer of Git LFS."""
     try:
         data = content_of(path) if path.stat().st_size <= _MAX_TEXT_BYTES else None
     except (OSError, ValueError):
@@ -164,7 +165,7 @@ def _limited(path: Path) -> bytes | None:
 
 
 def content_of(path: Path) -> bytes:
-    """Return the bytes of a file or pipe; raise OSError for devices, which may never end."""
+    """Return the bytes of a file or pipe; raise an `OSError` for devices, which may never end."""
     mode = path.stat().st_mode
     if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
         raise OSError(errno.EINVAL, "it is a device, not a file")
@@ -177,7 +178,7 @@ def limited_content(path: str | os.PathLike[str]) -> bytes:
     Raises
     ------
     FormatError
-        If it cannot be read, is larger than 256 MiB, or is a pointer of Git LFS.
+        If the file cannot be read, is larger than 256 MiB, or is a pointer of Git LFS.
     """
     name = file_path(path)
     with _readable(name):
@@ -195,7 +196,7 @@ def whole_content(path: str | os.PathLike[str]) -> bytes:
     Raises
     ------
     FormatError
-        If it cannot be read or is a pointer of Git LFS.
+        If the file cannot be read or is a pointer of Git LFS.
     """
     name = file_path(path)
     with _readable(name):
@@ -204,12 +205,12 @@ def whole_content(path: str | os.PathLike[str]) -> bytes:
 
 
 def present(name: str, data: bytes) -> bytes:
-    """Return the bytes of a file, unless they are a pointer to another file.
+    """Return the bytes of a file unchanged, unless they are a pointer of Git LFS.
 
     Raises
     ------
     FormatError
-        If they are a pointer of Git LFS; code ``"unreadable"``.
+        If the bytes are a pointer of Git LFS; code ``"unreadable"``.
     """
     if _is_pointer(data):
         message = (
@@ -226,7 +227,7 @@ def _is_pointer(data: bytes) -> bool:
 
 @contextmanager
 def _readable(name: str) -> Iterator[None]:
-    """Turn errors of the block into a `FormatError` that the file cannot be read."""
+    """Turn an exception of the block into a `FormatError`: the file `name` cannot be read."""
     try:
         yield
     except (OSError, ValueError) as error:
@@ -234,7 +235,7 @@ def _readable(name: str) -> Iterator[None]:
 
 
 def quoted(words: bytes) -> str:
-    """Return the first characters of some bytes in quotes, for a message."""
+    """Return the first characters of a text in quotes, for a message; “nothing” if it is empty."""
     decoded = words.decode("utf-8", "replace")
     text = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in decoded)
     short = text if len(text) <= _MAX_QUOTED_CHARACTERS else text[:_MAX_QUOTED_CHARACTERS] + "…"
@@ -242,7 +243,7 @@ def quoted(words: bytes) -> str:
 
 
 def as_text(name: bytes) -> str:
-    """Return a name in a file as text, decoded as UTF-8 or else as Latin-1."""
+    """Decode a name in a file as UTF-8, or as Latin-1 if it is no UTF-8."""
     try:
         return name.decode("utf-8")
     except UnicodeDecodeError:
@@ -250,14 +251,14 @@ def as_text(name: bytes) -> str:
 
 
 def whole(word: bytes) -> int:
-    """Return a whole number; ``1_0``, which Python takes for 10, is none."""
+    """Convert a word to an integer; raise a `ValueError` for other words, such as ``1_0``."""
     if b"_" in word or len(word) > _MAX_INTEGER_CHARACTERS:
         raise ValueError(word)
     return int(word)
 
 
 def integral(word: bytes) -> int:
-    """Return a whole number, also of a text like ``1.0``, which some programs write."""
+    """Convert a word to an integer, also one like ``1.0``; raise a `ValueError` for others."""
     try:
         return whole(word)
     except ValueError:

@@ -1,7 +1,7 @@
-"""STL, binary and ASCII: loose triangles, which are joined where coordinates are equal.
+"""Reading and writing STL, binary and ASCII; corners with equal coordinates become one vertex.
 
-The binary form has single precision. The size of a file decides whether it is binary, not its first
-word: many binary files begin with "solid".
+The binary form has single precision. The length of a file decides whether it is binary, not its
+first word: binary files may begin with "solid", too.
 """
 
 import re
@@ -24,21 +24,21 @@ from .source import Source, as_text, quoted
 _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
-#: The mark in a header before the colour of the whole, in bytes.
+#: The mark in a binary STL's header before the colour of the whole mesh.
 _COLOR = b"COLOR="
 
-#: The lines of one facet, by their first word.
+#: The first word of each line of one facet.
 _FACET = (b"facet", b"outer", b"vertex", b"vertex", b"vertex", b"endloop", b"endfacet")
 
 
-#: The words that end something, which some programs write as two, and all that begin a line: a
-#: text may have several on one, or one on several.
+#: Patterns for texts with other line breaks: an end keyword, which may be written as two words, and
+#: the blank before a keyword that should begin a line.
 _ENDS = re.compile(rb"(?i)(?<!\S)end(?:_|\s+)(solid|loop|facet)(?!\S)")
 _STATEMENTS = re.compile(rb"(?i) (?=(?:(?:end)?(?:solid|facet)|outer|vertex|endloop)(?: |$))")
 
 
 def read(source: Source) -> RawMesh:
-    """Read either form.
+    """Read a binary or an ASCII STL file.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def read(source: Source) -> RawMesh:
     except FormatError as error:
         if error.code not in ("syntax", "truncated"):
             raise
-        # Errors use the line numbers of the file.
+        # If no other division into lines helps, raise the error with the file's own line numbers.
         joined = _ENDS.sub(rb"end\1", text.data)
         for data in (joined, _STATEMENTS.sub(b"\n", b" ".join(joined.split()))):
             with suppress(FormatError):
@@ -103,15 +103,16 @@ def _read_binary(source: Source) -> RawMesh:
 
 
 def _starts_by_lengths(data: bytes, attributes: Values) -> list[int] | None:
-    """Return where triangles begin if each is followed by as many attribute bytes as it states.
+    """Return the byte offset of each triangle if the attribute field is a length, else None.
 
-    This is the format's rule. Most programs store a colour in the field and no bytes. The field
-    counts as a length only if the triangles then fill the file exactly.
+    By the format's rule, a triangle states the number of attribute bytes that follow it. Programs
+    usually store a colour in that field, and no bytes follow. The field counts as a length only if
+    the triangles then fill the file exactly.
     """
     named = np.flatnonzero(attributes)
     if not len(named):
         return None
-    # Both readings agree up to the first triangle with a number other than 0.
+    # Both interpretations agree up to the first triangle whose field is not 0.
     starts = [_HEADER + _RECORD.itemsize * k for k in range(int(named[0]))]
     at = _HEADER + _RECORD.itemsize * len(starts)
     while len(starts) < len(attributes) and at + _RECORD.itemsize <= len(data):
@@ -179,7 +180,7 @@ def _joined(corners: FloatArray, name: str, findings: tuple[Finding, ...]) -> Ra
 
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
-    """Yield the binary form; coordinates are rounded to single precision."""
+    """Yield the bytes of a binary STL; coordinates are rounded to single precision."""
     title = EMPTY_SET.strip(b"# \n") if says_empty_set(mesh) else b"bspcsg"
     header = title.ljust(_HEADER - 4, b" ")
     yield header + len(mesh.faces).to_bytes(4, "little")
@@ -198,7 +199,7 @@ def called(name: str) -> str:
 
 
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
-    """Yield the ASCII form, a solid for each object; every double reads back as it was."""
+    """Yield the bytes of an ASCII STL, a solid for each object; doubles read back unchanged."""
     for name, faces in parts_of(mesh) or [("", mesh.faces)]:
         title = called(name)
         yield f"solid {title}\n".encode()
@@ -217,7 +218,7 @@ def _facets(corners: FloatArray) -> Iterator[bytes]:
 
 
 def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
-    """Return what single precision would change about a mesh.
+    """Return findings about what single precision, in which binary STL is, changes in a mesh.
 
     Raises
     ------
@@ -228,7 +229,7 @@ def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
 
 
 def _normals(corners: FloatArray) -> FloatArray:
-    """Return unit normals of (m, 3, 3) triangles, zero for those that have none."""
+    """Return the unit normals of triangles (m, 3, 3), zero for a triangle without area."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     with np.errstate(over="ignore", invalid="ignore"):
         normals = np.cross(b - a, c - a)

@@ -1,6 +1,6 @@
-"""Exact tests for triangles without area, and for triangles that a change of corners flips.
+"""Exact tests for triangles without area, and for triangles that a change of corners turns over.
 
-Floating point decides where its error bound allows, fractions decide the rest.
+Doubles decide where their error bound allows it, fractions decide all other cases.
 """
 
 from fractions import Fraction
@@ -10,25 +10,25 @@ import numpy.typing as npt
 
 from .._types import FloatArray
 
-#: Bound of the error of a normal's coordinate, in units of the product of the two edges' lengths.
+#: A bound of the error of a normal's coordinate, relative to the product of the two edges' lengths.
 #: Differences have a relative error of u = 2**-53, so a product of two has 3 u, a difference of
-#: two such products at most 8 u of the larger; each product is at most that of the lengths.
+#: two such products at most 8 u of the larger; each product is at most the product of the lengths.
 _NORMAL_ERROR = 2.0**-49
 
-#: Added to error bounds, which do not hold by themselves where products underflow.
+#: Added to error bounds, since these are too small where products underflow.
 _UNDERFLOW_ERROR = 1e-280
 
-#: Between these sizes, products in pairs of doubles neither overflow nor underflow.
+#: Between these magnitudes, products as pairs of doubles neither overflow nor underflow.
 _MIN_EXACT_SIZE, _MAX_EXACT_SIZE = 2.0**-400, 2.0**400
 
-#: Splits the 53 bits of a double into two halves whose products are exact.
+#: Dekker's factor, which splits the 53 bits of a double into two halves with exact products.
 _SPLITTER = 2.0**27 + 1
 
 _Normals = tuple[FloatArray, FloatArray]
 
 
 def are_flat(corners: FloatArray) -> npt.NDArray[np.bool_]:
-    """Say whether each of (m, 3, 3) triangles has no area, decided exactly."""
+    """Say for each triangle, (m, 3, 3), whether it has no area, decided exactly."""
     normals, errors = _normals(corners)
     flat = np.asarray(~(np.abs(normals) > errors[:, None]).any(axis=1))
     unsure = np.flatnonzero(flat)
@@ -39,11 +39,11 @@ def are_flat(corners: FloatArray) -> npt.NDArray[np.bool_]:
 
 
 def _flat_by_products(corners: FloatArray) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
-    """Return which triangles are flat, and for which triangles this is certain.
+    """Return for each triangle whether it has no area, and whether this result is certain.
 
-    The answer is certain if the edges are differences without rounding: then products in two
-    doubles are exact. Corners in single precision are such, unless their sizes differ by a factor
-    of 2**29.
+    The result is certain if the differences of corners were not rounded: then products as pairs of
+    doubles are exact. Corners in single precision have such differences, unless their magnitudes
+    differ by a factor of 2**29.
     """
     first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     exact = _is_difference(first, corners[:, 1], corners[:, 0])
@@ -59,7 +59,7 @@ def _flat_by_products(corners: FloatArray) -> tuple[npt.NDArray[np.bool_], npt.N
 
 
 def _is_difference(found: FloatArray, end: FloatArray, start: FloatArray) -> npt.NDArray[np.bool_]:
-    """Say whether (m, 3) differences were not rounded, by Knuth's error of a sum."""
+    """Say for each row whether `found`, the difference end - start, was not rounded (Knuth)."""
     back = found - end
     exact: npt.NDArray[np.bool_]
     exact = ((end - (found - back)) + (-start - back) == 0).all(axis=1)
@@ -67,7 +67,7 @@ def _is_difference(found: FloatArray, end: FloatArray, start: FloatArray) -> npt
 
 
 def _product(one: FloatArray, other: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return products as two doubles each, the rounded product and its error (Dekker)."""
+    """Return the exact product as two doubles: the rounded product and its error (Dekker)."""
     product = one * other
     (a, b), (c, d) = _halves(one), _halves(other)
     return product, b * d - (((product - a * c) - b * c) - a * d)
@@ -80,11 +80,14 @@ def _halves(values: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def are_turned(before: FloatArray, after: FloatArray) -> npt.NDArray[np.bool_]:
-    """Say whether the normals of (m, 3, 3) triangles are more than a right angle apart, exactly."""
+    """Say for each triangle whether its normals before and after are over a right angle apart.
+
+    The triangles are (m, 3, 3); the decision is exact.
+    """
     (first, first_error), (second, second_error) = _normals(before), _normals(after)
     with np.errstate(over="ignore", invalid="ignore"):
         cosines = np.einsum("mi,mi->m", first, second)
-        # Each coordinate has at most this error, and the sum of three is rounded once more.
+        # An error bound of the sum of products; twice as much also covers its own rounding.
         error = first_error * np.abs(second).sum(axis=1)
         error += second_error * (np.abs(first).sum(axis=1) + 3 * first_error)
         turned: npt.NDArray[np.bool_] = cosines < 0
@@ -96,7 +99,7 @@ def are_turned(before: FloatArray, after: FloatArray) -> npt.NDArray[np.bool_]:
 
 
 def _normals(corners: FloatArray) -> _Normals:
-    """Return normals (m, 3), as long as twice the areas, and error bounds of coordinates."""
+    """Return the normals of triangles (m, 3), as long as twice the areas, and error bounds (m,)."""
     with np.errstate(over="ignore", invalid="ignore", under="ignore"):
         (ax, ay, az), (bx, by, bz), (cx, cy, cz) = np.ascontiguousarray(corners.transpose(1, 2, 0))
         px, py, pz, qx, qy, qz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az

@@ -1,4 +1,4 @@
-"""Meshes turned about the x axis by quarters, for formats with another axis up."""
+"""Rotation of meshes about the x axis by quarter turns, for formats whose upward axis is y."""
 
 from dataclasses import replace
 
@@ -8,13 +8,13 @@ from .raw import RawMesh
 
 
 def turned(raw: RawMesh, quarters: int) -> RawMesh:
-    """Return a mesh turned by quarters about x, exactly; one quarter takes y to z.
+    """Return a mesh rotated about x by quarter turns, exactly; one quarter takes y to z.
 
     Parameters
     ----------
     raw : RawMesh
     quarters : int
-        Of any sign.
+        The number of quarter turns, of any sign.
     """
     count = quarters % 4
     if count == 0:

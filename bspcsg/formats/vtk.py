@@ -1,4 +1,4 @@
-"""VTK's legacy and XML files of unstructured grids, through meshio (the extra ``bspcsg[vtk]``).
+"""Reading and writing VTK's legacy and XML files through meshio (the extra ``bspcsg[vtk]``).
 
 meshio reads and writes files by name, so the bytes go through a temporary folder.
 """
@@ -20,17 +20,17 @@ from ..mesh.mesh import Mesh
 from .raw import IndexPolygons, RawMesh, says_empty_set
 from .source import Source
 
-#: Kinds of cells that are faces, and those that are passed by.
+#: Types of cells that are faces, and types of cells that are skipped.
 _FACES = ("triangle", "quad", "polygon")
 _OTHER = ("vertex", "line")
 
-#: The largest number of bytes that the packed data of a file may unpack to.
+#: The largest number of bytes that the compressed data of a file may unpack to.
 _MAX_UNPACKED_BYTES = 1 << 31
 
-#: The number of bytes of a file that are handed on together: they stay in the processor's cache.
+#: The number of bytes in a chunk of a written file: they stay in the processor's cache.
 _CHUNK_BYTES = 1 << 17
 
-#: Files of nothing, which meshio neither writes nor reads.
+#: The content of files for the empty set, which meshio neither writes nor reads.
 EMPTY = {
     ".vtk": (
         b"# vtk DataFile Version 3.0\nbspcsg\nASCII\nDATASET UNSTRUCTURED_GRID\n"
@@ -60,7 +60,7 @@ def reader(suffix: str) -> Callable[[Source], RawMesh]:
 
 
 def writer(suffix: str) -> Callable[[Mesh | RawMesh], Iterator[bytes]]:
-    """Return the writer for ``.vtk`` or ``.vtu``, in binary; every double is kept."""
+    """Return the binary writer for ``.vtk`` or ``.vtu``; coordinates read back unchanged."""
 
     def write(mesh: Mesh | RawMesh) -> Iterator[bytes]:
         return _write(mesh, suffix)
@@ -77,12 +77,12 @@ def _meshio() -> Any:
 
 
 def _grid_of(source: Source, suffix: str) -> Any:
-    """Return the `meshio.Mesh` of a file; limit the size of its unpacked data.
+    """Return the `meshio.Mesh` of a file; limit the number of bytes that it unpacks to.
 
     Raises
     ------
     FormatError
-        If meshio cannot read it.
+        If meshio cannot read the file.
     """
     meshio = _meshio()
     if b"<!DOCTYPE" in source.data or b"<!ENTITY" in source.data:
@@ -109,18 +109,18 @@ def _grid_of(source: Source, suffix: str) -> Any:
             raise source.error(f"meshio cannot read this file ({reason}).") from error
 
 
-#: Held while streams and parts of meshio are others, for all threads have the same.
+#: Locked while `sys.stdout`, `sys.stderr` and modules in meshio are replaced, for all threads.
 _ONE_AT_A_TIME = threading.Lock()
 
 
 class _OfOthers:
-    """A stream for the output of all threads but the one that created it."""
+    """A stream that drops the output of the thread that created it, and passes on all other."""
 
     def __init__(self, stream: TextIO | None) -> None:
         self._stream, self._thread = stream, threading.get_ident()
 
     def write(self, text: str) -> int:
-        """Pass a text on, unless the creating thread writes it."""
+        """Write a text to the stream, unless the thread that created this object calls."""
         if self._stream is None or threading.get_ident() == self._thread:
             return len(text)
         return self._stream.write(text)
@@ -130,13 +130,13 @@ class _OfOthers:
 
 
 class _Unpacker:
-    """Replaces zlib in meshio, which unpacks without a limit of size."""
+    """A replacement of zlib in meshio that limits the total number of unpacked bytes."""
 
     def __init__(self, largest: int) -> None:
         self._largest = self._left = largest
 
     def decompress(self, data: bytes) -> bytes:
-        """Return the unpacked bytes; raise an error if all of them together exceed the limit."""
+        """Return the unpacked bytes; raise a `MemoryError` if all calls together exceed a limit."""
         found = zlib.decompressobj().decompress(data, self._left)
         self._left -= len(found)
         if self._left <= 0:
@@ -147,17 +147,17 @@ class _Unpacker:
 
 
 class _Refuser:
-    """Replaces lzma in meshio, which cannot unpack a limited part."""
+    """A replacement of lzma in meshio that refuses all data, as their length is not limited."""
 
     @staticmethod
     def decompress(data: bytes) -> bytes:
-        """Raise an error."""
+        """Raise a `ValueError`: data packed by LZMA are not read."""
         raise ValueError("LZMA compression is not supported; save the file with zlib compression")
 
 
 @contextlib.contextmanager
 def _bounded(largest: int) -> Iterator[None]:
-    """Limit the amount of data that meshio unpacks inside the block."""
+    """Limit the number of bytes that meshio unpacks inside a `with` block."""
     from meshio.vtu import _vtu
 
     kept = _vtu.zlib, _vtu.lzma

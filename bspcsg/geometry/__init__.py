@@ -1,1 +1,1 @@
-"""Points, hyperplanes, polygons and motions, on which meshes are built."""
+"""Points, hyperplanes, polygons and transforms: the geometry on which meshes are built."""

@@ -1,4 +1,4 @@
-"""Converts anything that callers pass to arrays of doubles."""
+"""Convert numbers in any form that callers pass to arrays of doubles."""
 
 import sys
 from typing import Any
@@ -8,12 +8,12 @@ import numpy as np
 from .._types import FloatArray
 from ..errors import BspcsgError
 
-#: The kinds of arrays that hold numbers: signed and unsigned integers, floats, objects.
+#: numpy's codes of array kinds that are numbers: signed and unsigned integers, floats, objects.
 _NUMBERS = "iufO"
 
 
 def axes_of(values: Any) -> int | None:
-    """Return the number of axes of values as an array; None if they do not form one."""
+    """Return the number of axes that values have as an array; None if they do not form an array."""
     try:
         return int(np.ndim(values))
     except ValueError:
@@ -21,13 +21,13 @@ def axes_of(values: Any) -> int | None:
 
 
 def doubles(values: Any, refusal: BspcsgError) -> FloatArray:
-    """Return values as an array of doubles, of any shape.
+    """Return values as an array of doubles of any shape, or raise the given error.
 
     Parameters
     ----------
     values : array_like
     refusal : BspcsgError
-        The error to raise if they are not numbers.
+        The error to raise if `values` are not numbers.
     """
     array = doubles_or_none(values)
     if array is None:
@@ -36,10 +36,10 @@ def doubles(values: Any, refusal: BspcsgError) -> FloatArray:
 
 
 def doubles_or_none(values: Any) -> FloatArray | None:
-    """Return values as an array of doubles, of any shape; None if they are not numbers.
+    """Return values as an array of doubles of any shape; None if they are not all numbers.
 
-    Complex numbers, dates, truth values and texts do not count, though numpy would convert them,
-    nor do arrays with masked entries.
+    Complex numbers, dates, truth values, texts and masked entries do not count as numbers, though
+    numpy would convert them.
     """
     if is_masked(values):
         return None
@@ -51,8 +51,9 @@ def doubles_or_none(values: Any) -> FloatArray | None:
 
 
 def is_masked(values: Any) -> bool:
-    """Say whether an array has masked entries, which numpy's conversion would unmask."""
-    # Such an array needs numpy.ma to be imported; another thread may be importing it just now.
+    """Return true if an array has masked entries, which numpy's conversion would unmask."""
+    # Without numpy.ma imported there are no masked arrays; it may be half imported by another
+    # thread.
     masks: Any = sys.modules.get("numpy.ma")
     kind = getattr(masks, "MaskedArray", ())
     return isinstance(values, kind) and bool(masks.is_masked(values))

@@ -1,4 +1,4 @@
-"""Chains of transform factors that cost only as much as the factors that a step adds."""
+"""`FactorChain`: a transform as a list of factors, to which adding factors is cheap."""
 
 from collections.abc import Callable, Iterator, MutableMapping, Sequence
 from functools import reduce
@@ -9,22 +9,22 @@ from .transform import Factor, Factors, LatticeMotion, lattice_motion, multiplie
 
 Value = TypeVar("Value")
 
-#: The largest number of factors in a block; shorter chains are multiplied like any `product`.
+#: The largest number of factors in a block.
 BLOCK = 32
 
 
 class FactorChain:
-    """The factors that move a solid, outermost first; immutable.
+    """A transform as a list of affine factors, the outermost first; immutable.
 
-    Blocks of the innermost factors store their products. A longer chain shares them, so that n
-    steps that each need the result multiply a multiple of n matrices and not n².
+    The innermost factors are grouped in blocks that store their products. Longer chains share these
+    blocks, so that n transforms one after another take a multiple of n matrix products, not of n².
 
     Parameters
     ----------
     head : tuple of Factor
         The outermost factors, at most `BLOCK`.
     rest : FactorBlock, optional
-        The factors inside of these.
+        The factors that are applied before those of `head`.
     """
 
     __slots__ = ("__weakref__", "_head", "_rest", "_shorter")
@@ -36,11 +36,11 @@ class FactorChain:
 
     @classmethod
     def of(cls, factors: Sequence[Factor]) -> "FactorChain":
-        """Return the chain of factors, outermost first."""
+        """Return the chain of the given factors, the outermost first."""
         return cls().under(factors)
 
     def under(self, factors: Sequence[Factor]) -> "FactorChain":
-        """Return the chain with more factors outside, outermost first."""
+        """Return the chain with more factors applied after it, given outermost first."""
         head, rest = self._head, self._rest
         for factor in reversed(factors):
             if len(head) == BLOCK:
@@ -49,7 +49,7 @@ class FactorChain:
         return FactorChain(head, rest)
 
     def around(self, inner: "FactorChain") -> "FactorChain":
-        """Return the chain with another one inside of it."""
+        """Return the chain that applies `inner` first and then this chain."""
         return inner.under(tuple(self)) if inner else self
 
     def fold(
@@ -58,15 +58,16 @@ class FactorChain:
         step: Callable[[Value, Factor], Value],
         known: MutableMapping["FactorBlock", Value],
     ) -> Value:
-        """Fold the factors over a value, the innermost first.
+        """Return the value after one call of `step` for each factor, the innermost first.
 
         Parameters
         ----------
         start : object
         step : callable
-            Maps the value and a factor to the next value.
+            A function of a value and a factor that returns the next value.
         known : mutable mapping
-            The values at blocks for this start; they are looked up and added here.
+            The values after whole blocks for this start; they are looked up here, and new ones
+            added.
         """
         waiting, block = [], self._rest
         while block is not None and block not in known:
@@ -78,7 +79,7 @@ class FactorChain:
         return reduce(step, reversed(self._head), value)
 
     def without(self, count: int) -> "FactorChain":
-        """Return the chain without so many outermost factors, the same object as the last time."""
+        """Return the chain without its `count` outermost factors; equal calls return one object."""
         if count == 0:
             return self
         # Read once, because another thread may replace it.
@@ -95,7 +96,7 @@ class FactorChain:
         return FactorChain(head[count:], rest)
 
     def __len__(self) -> int:
-        """Count the factors."""
+        """Return the number of factors."""
         return len(self._head) + _length(self._rest)
 
     def __iter__(self) -> Iterator[Factor]:
@@ -107,51 +108,51 @@ class FactorChain:
             block = block.rest
 
     def __eq__(self, other: object) -> bool:
-        """Say whether all factors agree in every bit."""
+        """Return true if both chains have the same factors, bit by bit."""
         return isinstance(other, FactorChain) and len(self) == len(other) == _agreeing(self, other)
 
     def __hash__(self) -> int:
-        """Hash of all factors."""
+        """Return a hash value of all factors."""
         return _hashed(self._head, self._rest)
 
     def __reduce__(self) -> tuple[Callable[[Factors], "FactorChain"], tuple[Factors]]:
-        """Pickle the factors only, because blocks are nested."""
+        """Return the factors for pickling, without blocks, whose nesting may be too deep."""
         return FactorChain.of, (tuple(self),)
 
     @property
     def product(self) -> FloatArray:
-        """The product of the factors, each entry of each product rounded once."""
+        """The product of all factors, (4, 4) float64, each entry of each product rounded once."""
         return _product(self._head, self._rest)
 
     @property
     def mirrors(self) -> bool:
-        """True if the transform reverses orientation."""
+        """True if the transform is orientation-reversing."""
         return _mirrors(self._head, self._rest)
 
     @property
     def inner(self) -> "FactorChain":
-        """The chain without the outermost factors that permute and mirror axes only."""
+        """The chain without its outermost factors that only permute, mirror and shift axes."""
         return _inner(self._head, self._rest)
 
     def outer_motion(self, pitch: int) -> LatticeMotion | None:
-        """Return the motion of the factors outside of `inner`, or None if it is not exact."""
+        """Return the factors that `inner` omits as a lattice motion, or None if it is not exact."""
         run = permuting_run(self._head)
         if self._rest is None or len(run) < len(self._head):
             return lattice_motion(run, pitch)
         return lattice_motion(run, pitch, self._rest.outer_motion(pitch))
 
 
-#: The chain that moves nothing.
+#: The chain without factors, the identity.
 UNMOVED = FactorChain()
 
 
 class FactorBlock:
-    """The innermost factors of a chain, with their product.
+    """A group of factors of a chain and all factors inside it, with their product.
 
     Parameters
     ----------
     factors : tuple of Factor
-        The outermost of these, as many as `BLOCK`.
+        The outermost factors of the block, `BLOCK` in number.
     rest : FactorBlock, optional
     """
 
@@ -168,7 +169,8 @@ class FactorBlock:
     )
 
     def __init__(self, factors: Factors, rest: "FactorBlock | None") -> None:
-        # Computed at once: computing it later would recurse as deep as there are blocks.
+        # Computed now from `rest`; on demand, the recursion would be as deep as the number of
+        # blocks.
         self.factors = factors
         self.rest = rest
         self.length = len(factors) + _length(rest)
@@ -179,7 +181,7 @@ class FactorBlock:
         self._motions: dict[int, LatticeMotion | None] = {}
 
     def outer_motion(self, pitch: int) -> LatticeMotion | None:
-        """Return the motion as `FactorChain.outer_motion` does."""
+        """Return the factors that `inner` omits as a lattice motion, or None if it is not exact."""
         waiting: list[FactorBlock] = []
         block: FactorBlock | None = self
         while block is not None and pitch not in block._motions:
@@ -193,7 +195,7 @@ class FactorBlock:
 
 
 def common_prefix(chains: Sequence[FactorChain]) -> FactorChain:
-    """Return the longest chain of outermost factors that all chains share."""
+    """Return the longest chain of outermost factors with which all given chains begin."""
     first = chains[0]
     length = min(_agreeing(first, chain) for chain in chains)
     if length == len(first):
@@ -202,7 +204,7 @@ def common_prefix(chains: Sequence[FactorChain]) -> FactorChain:
 
 
 def _agreeing(one: FactorChain, other: FactorChain) -> int:
-    """Count the outermost factors that two chains share."""
+    """Return the number of equal outermost factors of two chains."""
     if one is other:
         return len(one)
     count = 0

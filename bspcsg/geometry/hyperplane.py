@@ -1,12 +1,13 @@
-"""Hyperplanes of half-spaces, in exact numbers and on the lattice.
+"""Hyperplanes of half-spaces in exact rational numbers, and their rounding to the lattice.
 
 A double means the shortest decimal that identifies it: 0.1 is a tenth. So hyperplanes have rational
 coefficients, and transforms move them exactly.
 
 A hyperplane n·x = d with integers n without a common divisor, and x in lattice steps, contains
 lattice points if and only if d is an integer. Such a hyperplane is used as it is. Any other is
-moved to the nearest one on the lattice, rounded like the coordinates of a mesh, so that a
-half-space and a mesh face at one coordinate meet; it records how far it was moved.
+moved to the nearest one that contains lattice points, rounded like the coordinates of a mesh, so
+that a half-space and a mesh face at the same coordinate meet; `LatticeHyperplane.moved` has the
+distance.
 
 Normals that are too wide for the core, as after rotations by odd angles, are rounded so that their
 products fit a machine word. This turns the hyperplane by less than 2**-60.
@@ -30,30 +31,30 @@ from .arrays import is_masked
 #: Exponent of the lattice step for sets that fit on any lattice.
 DEFAULT_PITCH = -9
 
-#: The finest lattice that a hyperplane asks for: it reaches 9000 units.
+#: The smallest pitch that is chosen for a hyperplane: this lattice extends to 9000 units.
 _FINEST_PITCH = -12
 
 #: Lattice coordinates are below this many steps.
 _REACH = 2**53
 
-#: Bits to which normals are rounded: one less than the most whose products fit a machine word.
+#: The number of bits to which normals are rounded: one less than products in 64-bit words allow.
 _ROUNDED_BITS = 61
 
-#: Transforms round wider numbers to half as many bits when they multiply them.
+#: Transforms round coefficients of more bits than this to half as many bits.
 _KEPT_BITS = 1024
 
 
 @dataclass(frozen=True)
 class LatticeHyperplane:
-    """A hyperplane through lattice points.
+    """A hyperplane through lattice points, with integer coefficients.
 
     Parameters
     ----------
     row : list of int
-        The normal, and its product with every point of the hyperplane, in lattice steps.
+        The integers (*n, c) of the hyperplane n·x = c, with x in lattice steps.
     moved : float or None
-        The largest distance, anywhere on the lattice, to the hyperplane that was asked for, in
-        model units; None if they are the same.
+        The largest distance, anywhere on the lattice, from the hyperplane before rounding, in model
+        units; None if nothing was rounded.
     """
 
     row: list[int]
@@ -61,7 +62,7 @@ class LatticeHyperplane:
 
     @property
     def note(self) -> str | None:
-        """The text of the finding, if this is not the hyperplane that was asked for."""
+        """A sentence for a finding, if the hyperplane was moved to the lattice; else None."""
         if self.moved is None:
             return None
         return (
@@ -78,10 +79,10 @@ class Hyperplane:
     Parameters
     ----------
     normal : tuple of one to three int
-        Without a common divisor.
+        Integers without a common divisor.
     offset : Fraction
     exact : bool
-        True if nothing was rounded.
+        True if neither normal nor offset was rounded.
     """
 
     normal: tuple[int, ...]
@@ -90,7 +91,7 @@ class Hyperplane:
 
     @classmethod
     def of(cls, normal: Sequence[Fraction], offset: Fraction, exact: bool = True) -> Self:
-        """Return the hyperplane of any nonzero normal."""
+        """Return the hyperplane of any normal but zero, reduced to coprime integers."""
         denominator = math.lcm(*(entry.denominator for entry in normal))
         whole = [entry.numerator * (denominator // entry.denominator) for entry in normal]
         divisor = math.gcd(*whole)
@@ -99,7 +100,7 @@ class Hyperplane:
 
     @classmethod
     def from_numbers(cls, normal: Sequence[Any], offset: Any) -> Self:
-        """Return the hyperplane of given numbers.
+        """Return the hyperplane of a normal and an offset, where 0.1 means exactly a tenth.
 
         Raises
         ------
@@ -120,7 +121,7 @@ class Hyperplane:
         return cls.of(entries, product)
 
     def on_lattice(self, pitch: int) -> LatticeHyperplane:
-        """Return the nearest hyperplane of the lattice of step ``10**pitch``."""
+        """Return the nearest hyperplane through points of the lattice of step ``10**pitch``."""
         steps = self.offset / Fraction(10) ** pitch
         normal, scale = self._narrow()
         offset = _nearest(scale * steps, scale * self._as_a_coordinate(pitch))
@@ -131,9 +132,9 @@ class Hyperplane:
         return LatticeHyperplane([*normal, offset], float(off) / math.hypot(*normal) * 10.0**pitch)
 
     def is_above_lattice(self, pitch: int) -> bool | None:
-        """Say on which side of the lattice of step ``10**pitch`` it lies; None if it crosses it.
+        """Return true if the whole lattice lies on the minus side, false if on the plus side.
 
-        True if the whole lattice is on the minus side.
+        None means that the hyperplane crosses the range of the lattice of step ``10**pitch``.
         """
         steps = self.offset / Fraction(10) ** pitch
         if abs(steps) < sum(map(abs, self.normal)) * _REACH:
@@ -142,9 +143,10 @@ class Hyperplane:
 
     @property
     def pitch(self) -> int:
-        """The coarsest lattice that contains the hyperplane, from the default one down to 10**-12.
+        """The coarsest pitch, from -9 to -12, at which the hyperplane contains lattice points.
 
-        If the default lattice does not reach it, the step grows by powers of 1000, as for meshes.
+        If the hyperplane is outside the range of the lattice of pitch -9, the step grows by powers
+        of 1000, as for meshes. Without such a pitch it is the coarsest one in range.
         """
         within = range(DEFAULT_PITCH, MAX_PITCH, 3)
         coarsest = next((p for p in within if self.is_above_lattice(p) is None), DEFAULT_PITCH)
@@ -154,12 +156,15 @@ class Hyperplane:
         return coarsest
 
     def _as_a_coordinate(self, pitch: int) -> Fraction:
-        """Return the offset as a mesh coordinate has it: its double decides where halves go."""
+        """Return the offset in lattice steps as its double, which decides how ties are rounded.
+
+        Coordinates of meshes, which are doubles, are rounded equally.
+        """
         near = abs(self.offset) < 2**1000
         return (Fraction(float(self.offset)) if near else self.offset) / Fraction(10) ** pitch
 
     def _narrow(self) -> tuple[tuple[int, ...], Fraction]:
-        """Return the normal at a width that the core accepts, and the approximate factor to it."""
+        """Return the normal rounded to a width that the core accepts, and the factor applied."""
         bits = max(entry.bit_length() for entry in self.normal)
         if bits <= _bits(len(self.normal)):
             return self.normal, Fraction(1)
@@ -169,7 +174,7 @@ class Hyperplane:
         return tuple(entry // divisor for entry in rounded), Fraction(1, power * divisor)
 
     def shortened(self) -> Self:
-        """Return the hyperplane without digits far beyond the resolution of any lattice."""
+        """Return the hyperplane rounded to about 1024 bits, if it has more."""
         ratio = self.offset.as_integer_ratio()
         if max(entry.bit_length() for entry in (*self.normal, *ratio)) <= _KEPT_BITS:
             return self
@@ -181,16 +186,16 @@ class Hyperplane:
 
 
 def exact_number(value: Any) -> Fraction:
-    """Return a number exactly; a double means the shortest decimal that identifies it.
+    """Return a number as an exact fraction; a double means the shortest decimal that identifies it.
 
     Raises
     ------
     ValueError, OverflowError
-        If it is not finite.
+        If the number is not finite.
     TypeError
-        If it is not a number.
+        If the value is not a number.
     """
-    # Time spans would otherwise pass for integers.
+    # np.timedelta64 is a subclass of numpy's integers.
     no_numbers = (bool, np.bool_, np.timedelta64, str, bytes)
     if isinstance(value, no_numbers) or is_complex(value):
         raise TypeError("bools, strings, times and complex numbers are not accepted as numbers")
@@ -201,7 +206,7 @@ def exact_number(value: Any) -> Fraction:
 
 
 def exact_point(values: Any, dimension: int, name: str) -> list[Fraction]:
-    """Return the coordinates of a point exactly; on the line a single number is a point.
+    """Return a point's coordinates as exact fractions; in 1D a single number is a point.
 
     Parameters
     ----------
@@ -224,7 +229,7 @@ def exact_point(values: Any, dimension: int, name: str) -> list[Fraction]:
 
 
 def _nearest(value: Fraction, coordinate: Fraction) -> int:
-    """Return the nearest integer; halves go towards the coordinate, or away from zero."""
+    """Return the integer nearest to `value`; ties go towards `coordinate`, else away from zero."""
     low = math.floor(value)
     rest = value - low
     if rest == Fraction(1, 2) and coordinate != value:
@@ -234,5 +239,5 @@ def _nearest(value: Fraction, coordinate: Fraction) -> int:
 
 @lru_cache
 def _bits(dimension: int) -> int:
-    """Return the largest width of the core's normals in bits; on the line none are to spare."""
+    """Return the largest number of bits of the core's normals in this dimension."""
     return normal_bits(dimension)

@@ -1,4 +1,4 @@
-"""Arguments with a number for each axis, in the three forms in which callers give them."""
+"""Arguments with one number for each axis, as a single value, as numbers or by axis name."""
 
 from typing import Any
 
@@ -7,23 +7,24 @@ from ..parameters import number
 
 
 def per_axis(given: tuple[Any, ...], name: str, *, missing: float = 0.0, **axes: Any) -> Any:
-    """Return the numbers of the axes: from one value, from single numbers, or from named axes.
+    """Return the argument: one value unchecked, or a tuple with one number for each axis.
 
     Parameters
     ----------
     given : tuple
-        One value alone, still unchecked, or one number for each axis.
+        The positional arguments: one value, which is returned unchecked, or one number for each
+        axis.
     name : str
-        Of the value, for errors.
+        The name of the argument, for error messages.
     missing : float
-        The number of an axis that is not named, if others are.
+        The number for axes that are not named, if at least one is.
     **axes : float or None
-        The numbers by axis name, in order.
+        The numbers by axis name, in the order of the axes; None for an axis that is not named.
 
     Raises
     ------
     InvalidParameterError
-        If nothing is given, or values are given in two forms.
+        If nothing is given, or both positional and named numbers are.
     """
     named = {axis: number(value, axis) for axis, value in axes.items() if value is not None}
     if bool(given) == bool(named):

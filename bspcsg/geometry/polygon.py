@@ -1,4 +1,4 @@
-"""Plane polygons with holes: reads, orients and triangulates them."""
+"""Plane polygons with holes: reading them in any form, orienting and triangulating them."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
@@ -12,8 +12,9 @@ from .._types import FloatArray, IndexArray
 from ..errors import invalid_parameter
 from .arrays import doubles
 
-#: The share of the products of coordinates above which their sum has the right sign: each has three
-#: roundings and the sum one for each doubling of their number, 2**-53 each.
+#: A sum of products of coordinates has the right sign if it exceeds this fraction of the sum of
+#: their absolute values: each product has three roundings and the sum one for each doubling of
+#: their number, 2**-53 each.
 _CLEAR = 1e-12
 
 
@@ -30,13 +31,13 @@ def contours_of(polygon: Any) -> list[FloatArray]:
     Returns
     -------
     list of (n, 2) float64
-        Shapes know which of their contours are holes. For bare contours, the number of other
-        contours around each decides.
+        Of shapes, ``interiors`` are the holes. Of plain point lists, a contour inside an odd number
+        of others is a hole.
 
     Raises
     ------
     InvalidMeshError
-        If there is no contour, one has fewer than 3 points, or a coordinate is not finite.
+        If there is no contour, a contour has fewer than 3 points, or a coordinate is not finite.
     """
     shapes = shape_contours(polygon)
     contours = _bare_contours(polygon) if shapes is None else shapes
@@ -48,11 +49,11 @@ def contours_of(polygon: Any) -> list[FloatArray]:
 
 
 def shape_contours(given: Any) -> list[FloatArray] | None:
-    """Return the oriented contours of a shape or a sequence of shapes, None if it is neither.
+    """Return the oriented contours of a shape or a sequence of shapes; None for other objects.
 
-    The time is proportional to the number of points, since a shape knows its holes: the winding
-    number of the contours is the number of polygons at a point, even if these overlap. Parts of a
-    collection that have no area, such as lines, are left out.
+    A shape has ``exterior`` and ``interiors``, or ``geoms``, like those of shapely. The winding
+    number of the contours at a point is the number of polygons that contain it, even if these
+    overlap. Parts of a collection without area, such as lines, are left out.
 
     Raises
     ------
@@ -62,16 +63,16 @@ def shape_contours(given: Any) -> list[FloatArray] | None:
     """
     if _is_shape(given):
         return _rings([given])
-    # A generator can be read only once.
+    # Only sequences: a generator could not be read again.
     is_list = isinstance(given, Sequence) and not isinstance(given, (str, bytes))
     return _rings(given) if is_list and given and all(map(_is_shape, given)) else None
 
 
 def triangulate(contours: Sequence[FloatArray]) -> IndexArray:
-    """Return (m, 3) triangles over the contours' points, counted one contour after another.
+    """Return (m, 3) triangles over the contours' points, numbered through all contours.
 
-    For any input, the directed edges that other triangles do not cancel are exactly those of the
-    contours; triangles overlap only if the contours cross.
+    For any input, the directed edges that no opposite edge of another triangle cancels are exactly
+    the edges of the contours; triangles overlap only if the contours cross.
     """
     edges = directed_edges(contours)
     if len(edges) > _MAX_MANIFOLD_CORNERS:
@@ -81,9 +82,9 @@ def triangulate(contours: Sequence[FloatArray]) -> IndexArray:
     return triangles if _has_border(triangles, edges) else _fans(contours)
 
 
-#: The largest number of corners that manifold3d triangulates. Its time grows with their square, and
-#: so does the time to import its needles. For many corners on one line its recursion is as deep as
-#: their number.
+#: The largest number of corners that manifold3d triangulates. Its time grows with the square of
+#: their number, and so does the time to import the needles that it makes. For many corners on one
+#: line its recursion is as deep as their number.
 _MAX_MANIFOLD_CORNERS = 200
 
 
@@ -92,10 +93,10 @@ def _manifold_triangles(contours: Sequence[FloatArray]) -> IndexArray:
 
 
 def _region_triangles(contours: Sequence[FloatArray], edges: IndexArray) -> IndexArray:
-    """Return the triangles of a region, or of pieces of contours that do not bound one.
+    """Return the triangles of contours, or of each contour by itself if they bound no region.
 
-    A piece of many corners that crosses itself is cut between two of them. Its halves have the cut
-    in both directions, so it cancels wherever it runs.
+    A contour of many corners that crosses itself is cut in two between two corners; the halves have
+    the cut as opposite edges, which cancel.
     """
     points = np.concatenate(contours)
     whole = outline_triangles(points, edges)
@@ -129,7 +130,7 @@ def _piece_triangles(corners: FloatArray) -> IndexArray | None:
 
 
 def triangulate_face(corners: FloatArray) -> IndexArray:
-    """Return (m, 3) triangles of one polygon in space, given by its (n, 3) corners in order."""
+    """Return (m, 3) triangles of one polygon in space, given its (n, 3) corners in order."""
     if len(corners) == 3:
         return np.array([[0, 1, 2]])
     following = np.roll(corners, -1, axis=0)
@@ -139,13 +140,13 @@ def triangulate_face(corners: FloatArray) -> IndexArray:
     flat = np.ascontiguousarray(corners[:, plane])
     if normal[axis] >= 0:
         return triangulate([flat])
-    # Seen from behind: triangulate the mirror image, which is counter-clockwise.
+    # The projection is clockwise; its mirror image is counter-clockwise.
     flat[:, 0] = -flat[:, 0]
     return triangulate([flat])
 
 
 def directed_edges(contours: Sequence[FloatArray]) -> IndexArray:
-    """Return the (n, 2) edges of the contours, points counted one contour after another."""
+    """Return the (n, 2) directed edges of contours, with points numbered through all contours."""
     edges = []
     start = 0
     for contour in contours:
@@ -162,7 +163,7 @@ def signed_area(contour: FloatArray) -> float:
 
 
 def runs_clockwise(contour: FloatArray) -> bool:
-    """Say whether the area of a contour is negative, exactly."""
+    """Return true if the area of a contour is negative, decided exactly."""
     x, y = (contour - contour[0]).T
     terms = np.concatenate([x * np.roll(y, -1), -np.roll(x, -1) * y])
     area = float(terms.sum())
@@ -187,7 +188,7 @@ def _rings(shapes: Iterable[Any]) -> list[FloatArray]:
 
 
 def _polygonal(shapes: Iterable[Any]) -> Iterator[Any]:
-    """Yield the polygons of shapes and of the collections among them, in order."""
+    """Yield the polygons of shapes, also those in nested collections, in order."""
     waiting = [(shape, False) for shape in shapes][::-1]
     while waiting:
         shape, inside = waiting.pop()
@@ -216,7 +217,7 @@ def _bare_contours(polygon: Any) -> list[FloatArray]:
         return contours if hasattr(polygon, "outlines") else _oriented(contours)
     try:
         points = list(polygon)
-        # The entries of a single contour are points, whose entries are numbers.
+        # In a single contour the entries of an entry are numbers.
         single = bool(points) and np.ndim(points[0][0]) == 0
     except (TypeError, IndexError) as error:
         raise invalid_parameter(
@@ -242,7 +243,7 @@ def _cleaned(contour: Any) -> FloatArray:
 
 
 def _oriented(contours: list[FloatArray]) -> list[FloatArray]:
-    """Return the contours; those inside an odd number of others become clockwise."""
+    """Return the contours, clockwise if inside an odd number of others, else counter-clockwise."""
     depths = [0] * len(contours)
     for outer, inner in _overlapping_boxes(contours):
         depths[inner] += _contains(contours[outer], contours[inner])
@@ -252,7 +253,7 @@ def _oriented(contours: list[FloatArray]) -> list[FloatArray]:
 
 
 def _overlapping_boxes(contours: list[FloatArray]) -> Iterator[tuple[int, int]]:
-    """Yield the pairs whose bounding boxes share area, found along the x axis."""
+    """Yield the pairs of contours whose bounding boxes have area in common, by a sweep along x."""
     if not contours:
         return
     low = np.array([contour.min(axis=0) for contour in contours])
@@ -266,7 +267,7 @@ def _overlapping_boxes(contours: list[FloatArray]) -> Iterator[tuple[int, int]]:
 
 
 def _contains(outer: FloatArray, inner: FloatArray) -> bool:
-    """Say whether most corners and edge midpoints of `inner` are inside; some may touch `outer`."""
+    """Return true if more than half of `inner`'s corners and edge midpoints are inside `outer`."""
     probes = np.concatenate([inner, (inner + np.roll(inner, -1, axis=0)) / 2])
     is_near = ((probes >= outer.min(axis=0)) & (probes <= outer.max(axis=0))).all(axis=1)
     if 2 * is_near.sum() <= len(probes):
@@ -278,12 +279,12 @@ def _contains(outer: FloatArray, inner: FloatArray) -> bool:
     return 2 * inside > len(probes)
 
 
-#: The number of pairs of a point and an edge that are processed together, to bound memory.
+#: The number of pairs of a point and an edge in one array operation, which bounds the memory.
 _PAIRS_PER_BATCH = 1 << 16
 
 
 def _crossings(contour: FloatArray, points: FloatArray) -> IndexArray:
-    """Count the edges that a ray to the right from each point crosses."""
+    """Return for each point the number of edges that a ray in the direction of +x crosses."""
     start, end = contour, np.roll(contour, -1, axis=0)
     y = points[:, 1:]
     point, edge = np.nonzero((start[:, 1] <= y) != (end[:, 1] <= y))
@@ -294,7 +295,7 @@ def _crossings(contour: FloatArray, points: FloatArray) -> IndexArray:
 
 
 def _has_border(triangles: IndexArray, border: IndexArray) -> bool:
-    """Say whether the triangles' directed edges cancel to those of a border."""
+    """Return true if the triangles' directed edges cancel to exactly the edges of `border`."""
     count = len(border)
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     balance = np.concatenate([edges, border[:, ::-1]])
@@ -304,7 +305,7 @@ def _has_border(triangles: IndexArray, border: IndexArray) -> bool:
 
 
 def _fans(contours: Sequence[FloatArray]) -> IndexArray:
-    """Return one fan per contour, triangles outside the polygon counting negatively."""
+    """Return one fan of triangles for each contour; triangles outside the polygon are clockwise."""
     fans = []
     start = 0
     for contour in contours:
@@ -315,12 +316,12 @@ def _fans(contours: Sequence[FloatArray]) -> IndexArray:
 
 
 def convex_corners(edges: Sequence[FloatArray]) -> FloatArray:
-    """Return the corners of a convex polygon, counterclockwise, from its edges in any order.
+    """Return the corners of a convex polygon, counterclockwise, given its edges in any order.
 
     Parameters
     ----------
     edges : sequence of (2, 2) float64
-        Each from one corner to the next; no edges make a polygon without corners.
+        Each edge from one corner to the next, counterclockwise; without edges there are no corners.
     """
     if not len(edges):
         return np.zeros((0, 2))

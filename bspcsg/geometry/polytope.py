@@ -1,6 +1,6 @@
-"""Convex bodies on the line, in the plane and in space, cut by hyperplanes in exact fractions.
+"""Convex bodies in one to three dimensions, cut by hyperplanes in exact fractions.
 
-For the regions of small trees: all numbers are `Fraction`, and nothing is fast.
+They are the regions of small trees: all numbers are `Fraction`, so this is slow.
 """
 
 from collections.abc import Sequence
@@ -13,15 +13,15 @@ import numpy as np
 
 from .._types import FloatArray
 
-#: A point, exactly.
+#: A point in exact coordinates.
 Corner: TypeAlias = tuple[Fraction, ...]
 
-#: Integers n, c of the hyperplane n·x = c, whose minus side has n·x < c.
+#: The integers (*n, c) of the hyperplane n·x = c, whose minus side has n·x < c.
 RowOfCut: TypeAlias = Sequence[int]
 
 
 def height(point: Corner, row: RowOfCut) -> Fraction:
-    """Return n·x - c: negative on the minus side."""
+    """Return n·x - c for a point x and a hyperplane (*n, c): negative on the minus side."""
     return sum((n * x for n, x in zip(row[:-1], point, strict=True)), Fraction(-row[-1]))
 
 
@@ -31,14 +31,14 @@ def cut_polygon(corners: Sequence[Corner], row: RowOfCut, side: int) -> tuple[Co
     Parameters
     ----------
     corners : sequence of points
-        In order; two for a segment, one for a point.
+        The corners in order; two for a segment, one for a point.
     row : sequence of int
     side : {-1, 1}
 
     Returns
     -------
     tuple of points
-        Empty if nothing lies strictly on that side.
+        The corners of the part; empty if no point lies strictly on this side.
     """
     heights = [side * height(corner, row) for corner in corners]
     if max(heights, default=Fraction(0)) <= 0:
@@ -58,14 +58,14 @@ def cut_polygon(corners: Sequence[Corner], row: RowOfCut, side: int) -> tuple[Co
 
 @dataclass(frozen=True)
 class Polytope:
-    """A convex body with an interior.
+    """A bounded convex body with an interior: an interval, a polygon or a polyhedron.
 
     Parameters
     ----------
     dimension : int
     faces : tuple of tuples of points
-        Its two ends, least first (1D); its corners counterclockwise, as one tuple (2D); its faces,
-        counterclockwise seen from outside (3D).
+        In 1D the two ends, the lesser first; in 2D one tuple with the corners counterclockwise; in
+        3D the faces, each counterclockwise seen from outside.
     """
 
     dimension: int
@@ -73,7 +73,7 @@ class Polytope:
 
     @classmethod
     def box(cls, low: Sequence[int], high: Sequence[int]) -> "Polytope":
-        """Return the box between two corners; each coordinate of `low` is less than of `high`."""
+        """Return the box between two corners; `low` must be less than `high` on each axis."""
         if len(low) == 1:
             return cls(1, ((_point(low),), (_point(high),)))
         if len(low) == 2:
@@ -83,7 +83,7 @@ class Polytope:
 
     @property
     def corners(self) -> tuple[Corner, ...]:
-        """All corners, each once."""
+        """All corners of the body, each once."""
         return tuple(dict.fromkeys(corner for face in self.faces for corner in face))
 
     def clipped(self, row: RowOfCut, side: int) -> "Polytope | None":
@@ -106,7 +106,7 @@ class Polytope:
 
     @property
     def measure(self) -> Fraction:
-        """Length, area or volume."""
+        """The exact length, area or volume of the body."""
         if self.dimension == 1:
             return self.faces[1][0][0] - self.faces[0][0][0]
         if self.dimension == 2:
@@ -115,7 +115,7 @@ class Polytope:
         return sum((_cone6(face, apex) for face in self.faces), Fraction(0)) / 6
 
     def shape(self, unit: float) -> FloatArray | list[FloatArray]:
-        """Return its faces in doubles, as `PartitionTree.region` does; a step is `unit` long."""
+        """Return the faces as doubles times `unit`, in the form of `PartitionTree.region`."""
         arrays = [
             np.array([[float(x) * unit for x in corner] for corner in face]) for face in self.faces
         ]
@@ -143,7 +143,7 @@ def _box_face(low: Sequence[int], high: Sequence[int], axis: int, end: int) -> t
 
 
 def _ring(points: list[Corner], row: RowOfCut, side: int) -> tuple[Corner, ...]:
-    """Return coplanar points in convex position in order, seen from the side that was cut off."""
+    """Return the corners of a convex face in order, counterclockwise seen from the removed side."""
     axis = max(range(3), key=lambda k: abs(row[k]))
     u, v = (axis + 1) % 3, (axis + 2) % 3
     count = len(points)
@@ -158,7 +158,7 @@ def _ring(points: list[Corner], row: RowOfCut, side: int) -> tuple[Corner, ...]:
 
 
 def _turned(points: list[Corner], arms: dict[Corner, tuple[Fraction, Fraction]]) -> list[Corner]:
-    """Return points of a half-plane by angle: insertion by the sign of cross products."""
+    """Return points within a half-plane by angle, sorted by the signs of exact cross products."""
     ordered: list[Corner] = []
     for point in points:
         x, y = arms[point]

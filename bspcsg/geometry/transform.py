@@ -1,9 +1,9 @@
-"""Transforms as lists of factors, and the exact motions among them.
+"""Transforms as lists of affine factors, and the exact lattice motions among them.
 
 A transform is a list of 4x4 factors, outermost first: ``(F1, F2)`` maps a point x to F1 (F2 x). A
 solid stores it as a chain (`bspcsg/geometry/chain.py`). Factors are never multiplied or inverted
-before they are applied, so that factors by which two solids were moved *together* can be recognised
-bit by bit and removed.
+before they are applied, so that factors that two solids have in common can be recognised bit by bit
+and removed.
 
 A factor whose linear part only permutes and mirrors axes, and which shifts by whole lattice steps,
 is a lattice motion: it acts on planes and lattice points without rounding.
@@ -22,19 +22,19 @@ from ..errors import LimitError, invalid_parameter
 from ..parameters import number, shown
 from .arrays import doubles, doubles_or_none
 
-#: Largest number of lattice steps from the origin.
+#: The largest number of lattice steps of a coordinate.
 LATTICE_REACH = 2**53
 
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 class Factor:
-    """One affine map, compared bit by bit.
+    """One affine map of a transform, compared bit by bit.
 
     Parameters
     ----------
     matrix : (4, 4) float64
-        Last row 0, 0, 0, 1; invertible.
+        An invertible matrix with the last row 0, 0, 0, 1.
     """
 
     __slots__ = ("_mirrors", "key", "matrix")
@@ -47,29 +47,29 @@ class Factor:
         self._mirrors: bool | None = None
 
     def __eq__(self, other: object) -> bool:
-        """Say whether both matrices agree in every bit."""
+        """Return true if both matrices have the same bits."""
         return isinstance(other, Factor) and self.key == other.key
 
     def __hash__(self) -> int:
-        """Hash of the matrix's bits."""
+        """Return a hash value of the matrix's bits."""
         return hash(self.key)
 
     def __reduce__(self) -> tuple[type["Factor"], tuple[FloatArray]]:
-        """Pickle the matrix only."""
+        """Return the matrix for pickling."""
         return Factor, (self.matrix,)
 
     def __repr__(self) -> str:
-        """Show the matrix."""
+        """Return a text with the entries of the matrix."""
         return f"Factor({self.matrix.tolist()})"
 
     @property
     def is_identity(self) -> bool:
-        """True if the map moves nothing."""
+        """True if the map is the identity."""
         return self.key == _IDENTITY_KEY
 
     @property
     def mirrors(self) -> bool:
-        """True if the map reverses orientation; computed once."""
+        """True if the map is orientation-reversing; computed once."""
         if self._mirrors is None:
             self._mirrors = determinant_sign(self.matrix) < 0
         return self._mirrors
@@ -91,12 +91,12 @@ def translation(offset: Vector) -> Factor:
 
 
 def scaling(factor: Scalar | Vector) -> Factor:
-    """Return the scaling about the origin by one number, or by one per axis."""
+    """Return the scaling about the origin by one number, or by one number for each axis."""
     return matrix_factor(np.diag([*vector3(factor, "scale factor", spread=True), 1.0]))
 
 
 def mirroring(normal: str | Vector) -> Factor:
-    """Return the mirror image in the plane through the origin with this normal."""
+    """Return the reflection in the plane through the origin with this normal."""
     unit = _unit(along(normal), "normal")
     return _from_linear(_snapped(np.eye(3) - 2 * np.outer(unit, unit)))
 
@@ -107,9 +107,9 @@ def rotation(angle: Scalar, axis: str | Vector) -> Factor:
     Parameters
     ----------
     angle : float
-        In degrees, counter-clockwise when the axis points at the viewer.
+        The angle in degrees, counter-clockwise when the axis points at the viewer.
     axis : "x", "y", "z" or (3,) float
-        Need not have unit length.
+        The axis, of any length but zero.
     """
     cosine, sine = cos_sin(number(angle, "angle"))
     u = axis_vector(axis)
@@ -120,26 +120,29 @@ def rotation(angle: Scalar, axis: str | Vector) -> Factor:
 
 
 def euler_rotation(angles: Vector) -> Factors:
-    """Return the rotation about x, then y, then z (degrees) as separate factors."""
+    """Return the rotations about x, then y, then z by angles in degrees, outermost first.
+
+    Rotations by zero are left out.
+    """
     about = zip(vector3(angles, "angles"), "xyz", strict=True)
     turns = [rotation(float(angle), axis) for angle, axis in about]
     return tuple(turn for turn in reversed(turns) if not turn.is_identity)
 
 
 def about(point: Vector, factors: Factors) -> Factors:
-    """Return factors that act about a point as the given ones act about the origin."""
+    """Return factors that act about `point` as the given factors act about the origin."""
     there = vector3(point, "point")
     return (translation(there), *factors, translation(-there)) if there.any() else factors
 
 
 def matrix_factor(matrix: Any) -> Factor:
-    """Return the affine map of a (4, 4) or (3, 4) matrix.
+    """Return the factor of a (4, 4) or (3, 4) matrix, checked to be an invertible affine map.
 
     Raises
     ------
     InvalidParameterError
-        If the shape is wrong, an entry is not finite, the last row is not 0, 0, 0, 1, or the map
-        flattens space.
+        If the shape is wrong, an entry is not finite, the last row is not 0, 0, 0, 1, or the
+        determinant is zero.
     """
     array = doubles(matrix, invalid_parameter("A transform must be a 4x4 matrix of numbers."))
     if array.shape == (3, 4):
@@ -161,7 +164,7 @@ def matrix_factor(matrix: Any) -> Factor:
 
 
 def cos_sin(angle: float) -> tuple[float, float]:
-    """Return cosine and sine of a finite angle in degrees, exact wherever they are rational."""
+    """Return the cosine and sine of a finite angle in degrees; rational values are exact."""
     quarter, rest = divmod(math.fmod(angle, 360.0), 90.0)
     cosine, sine = _cos_sin_in_quarter(rest)
     # Adding zero turns -0.0 into 0.0.
@@ -172,7 +175,7 @@ def cos_sin(angle: float) -> tuple[float, float]:
 
 def _cos_sin_in_quarter(angle: float) -> tuple[float, float]:
     if angle > 45:
-        # Mirroring at the diagonal makes the results of angle and 90 - angle agree bit by bit.
+        # So the results for angle and 90 - angle are equal bit by bit.
         sine, cosine = _cos_sin_in_quarter(90 - angle)
         return cosine, sine
     if angle == 45:
@@ -182,12 +185,12 @@ def _cos_sin_in_quarter(angle: float) -> tuple[float, float]:
 
 
 def product(factors: Factors) -> FloatArray:
-    """Return the product of the factors, each entry of each product rounded once."""
+    """Return the matrix product of factors, each entry of each product rounded once."""
     return multiplied([factor.matrix for factor in factors])
 
 
 def multiplied(matrices: Sequence[FloatArray]) -> FloatArray:
-    """Return the product of (4, 4) matrices, from the first to the last."""
+    """Return the product of (4, 4) matrices in the given order, each entry rounded once."""
     if len(matrices) == 1:
         return matrices[0]
     rows = np.eye(4).tolist()
@@ -220,7 +223,7 @@ def apply(matrix: FloatArray, points: FloatArray) -> FloatArray:
 
 
 def determinant_sign(matrix: FloatArray) -> int:
-    """Return the exact sign of the linear part's determinant."""
+    """Return the exact sign of the determinant of a matrix's linear part: -1, 0 or 1."""
     if matrix[:3, :3].tolist() == _UNIT_ROWS:
         return 1
     value = determinant(exact_linear(matrix))
@@ -228,22 +231,22 @@ def determinant_sign(matrix: FloatArray) -> int:
 
 
 def determinant(rows: list[list[Fraction]]) -> Fraction:
-    """Return the determinant of three rows."""
+    """Return the exact determinant of a (3, 3) matrix, given as three rows."""
     return exact_dot(rows[0], cofactors(rows)[0])
 
 
 def exact_linear(matrix: FloatArray) -> list[list[Fraction]]:
-    """Return the three rows of the linear part as fractions."""
+    """Return the linear part of a matrix as three rows of fractions."""
     return [[Fraction(entry) for entry in row] for row in matrix[:3, :3].tolist()]
 
 
 def exact_dot(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:
-    """Return the inner product."""
+    """Return the exact inner product of two vectors."""
     return sum((x * y for x, y in zip(a, b, strict=True)), Fraction(0))
 
 
 def cofactors(rows: list[list[Fraction]]) -> list[list[Fraction]]:
-    """Return the cofactor matrix: it maps normals as `rows` maps points, times the determinant."""
+    """Return the cofactor matrix of three rows, which maps normals if `rows` maps points."""
     a, b, c = rows
     return [_cross(b, c), _cross(c, a), _cross(a, b)]
 
@@ -254,14 +257,14 @@ def _cross(a: list[Fraction], b: list[Fraction]) -> list[Fraction]:
 
 @dataclass(frozen=True)
 class LatticeMotion:
-    """A map of the lattice onto itself that keeps lengths.
+    """A distance-preserving map of the lattice onto itself: signed permutation, then translation.
 
     Parameters
     ----------
     axes : tuple of int
-        The old axis (1, 2, 3) of each new axis, negative if mirrored.
+        For each new axis, the old axis (1, 2 or 3) that becomes it, negative if it is mirrored.
     shift : tuple of int
-        In lattice steps, added afterwards.
+        The translation in lattice steps, after the permutation.
     """
 
     axes: tuple[int, int, int] = (1, 2, 3)
@@ -269,17 +272,17 @@ class LatticeMotion:
 
     @property
     def is_identity(self) -> bool:
-        """True if the motion moves nothing."""
+        """True if the motion is the identity."""
         return self == LatticeMotion()
 
     @property
     def linear(self) -> FloatArray:
-        """The matrix without the shift, (3, 3) float64."""
+        """The matrix of the signed permutation, (3, 3) float64."""
         rows = [np.sign(axis) * np.eye(3)[abs(axis) - 1] for axis in self.axes]
         return np.array(rows)
 
     def after(self, inner: "LatticeMotion") -> "LatticeMotion":
-        """Return the motion that does `inner` first and this one second."""
+        """Return the motion that applies `inner` first and then this motion."""
         signs = [1 if axis > 0 else -1 for axis in self.axes]
         olds = [abs(axis) - 1 for axis in self.axes]
         axes = [sign * inner.axes[old] for sign, old in zip(signs, olds, strict=True)]
@@ -289,7 +292,7 @@ class LatticeMotion:
 
 
 def permuting_run(factors: Factors) -> Factors:
-    """Return the outermost factors that only permute and mirror axes, with any shift."""
+    """Return the outermost factors before the first that does more than permute axes and shift."""
     for position, factor in enumerate(factors):
         if _signed_axes(factor) is None:
             return factors[:position]
@@ -299,7 +302,7 @@ def permuting_run(factors: Factors) -> Factors:
 def lattice_motion(
     factors: Factors, pitch: int, motion: LatticeMotion | None = LatticeMotion()
 ) -> LatticeMotion | None:
-    """Return the factors as an exact motion at this pitch, or None if they are not one.
+    """Return the factors as one exact lattice motion, or None if they are not one.
 
     Parameters
     ----------
@@ -307,7 +310,7 @@ def lattice_motion(
     pitch : int
         The lattice step is ``10**pitch`` model units.
     motion : LatticeMotion or None
-        The motion of the factors inside of these, if it is exact.
+        The motion that is applied before the factors; None if it is not exact.
     """
     for factor in reversed(factors):
         step = _motion_of(factor, pitch)
@@ -329,7 +332,7 @@ def _motion_of(factor: Factor, pitch: int) -> LatticeMotion | None:
 
 
 def _signed_axes(factor: Factor) -> tuple[int, int, int] | None:
-    """Return the axes of a signed permutation; an invertible matrix with these rows is one."""
+    """Return the axes of a signed permutation as in `LatticeMotion`, or None for another map."""
     axes = []
     for row in factor.matrix[:3, :3].tolist():
         used = [axis for axis, entry in enumerate(row) if entry != 0]
@@ -347,7 +350,7 @@ def whole_steps(length: float, pitch: int) -> int | None:
     """
     numerator, denominator = length.as_integer_ratio()
     scale = 10 ** abs(pitch)
-    # Integers throughout: the quotient of two ints is rounded once, as that of fractions is.
+    # The quotient of two ints is rounded once, as the quotient of two fractions would be.
     if pitch < 0:
         steps = _nearest(numerator * scale, denominator)
         fits = abs(steps) < LATTICE_REACH and steps / scale == length
@@ -358,7 +361,7 @@ def whole_steps(length: float, pitch: int) -> int | None:
 
 
 def _nearest(numerator: int, denominator: int) -> int:
-    """Return the whole number nearest to a quotient of positive denominator, ties to even."""
+    """Return the integer nearest to a quotient of positive denominator, ties to even."""
     floor, rest = divmod(numerator, denominator)
     above = 2 * rest - denominator
     return floor + (above > 0 or (above == 0 and floor % 2 == 1))
@@ -371,7 +374,7 @@ def _from_linear(linear: FloatArray) -> Factor:
 
 
 def _snapped(linear: FloatArray) -> FloatArray:
-    """Return the signed permutation that a rotation or mirror equals up to rounding, or itself."""
+    """Return the signed permutation that a matrix equals up to rounding, or the matrix itself."""
     nearest = np.round(linear)
     return nearest if np.abs(linear - nearest).max() < 1e-15 else linear
 
@@ -382,7 +385,7 @@ def axis_vector(axis: str | Vector) -> FloatArray:
 
 
 def along(axis: str | Vector) -> Vector:
-    """Return the vector of "x", "y" or "z"; any other argument as it is."""
+    """Return the unit vector for "x", "y" or "z"; any other argument unchanged."""
     if not isinstance(axis, str):
         return axis
     if axis.lower() not in _AXES:
@@ -396,21 +399,21 @@ def _unit(value: Vector, name: str) -> FloatArray:
     vector = vector3(value, name)
     if not vector.any():
         raise invalid_parameter(f"The {name} must not be the zero vector.")
-    # Scaling by the largest entry first keeps huge and tiny vectors from over- and underflowing.
+    # Scaling by the largest entry avoids overflow and underflow of the squares.
     vector /= np.abs(vector).max()
     vector /= math.hypot(*vector)
     return vector
 
 
 def vector3(value: Any, name: str, *, spread: bool = False) -> FloatArray:
-    """Return (3,) float64, or raise an error that names the parameter.
+    """Return a vector as (3,) float64, or raise an error that names the parameter.
 
     Parameters
     ----------
     value : (3,) array_like of float
     name : str
     spread : bool
-        True if one number stands for three equal ones.
+        True if a single number means three equal numbers.
     """
     given = doubles_or_none(value)
     if given is None:

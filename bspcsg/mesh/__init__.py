@@ -1,1 +1,1 @@
-"""Meshes: the type, its certificate, and the exchange with other libraries."""
+"""Triangle meshes: the type `Mesh`, exact checks, and conversion to and from other libraries."""

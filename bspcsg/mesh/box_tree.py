@@ -1,4 +1,4 @@
-"""A tree of boxes, and the search for near pairs of members of two trees."""
+"""A tree of boxes around triangles, and the search for near pairs of leaves of two such trees."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -8,35 +8,35 @@ import numpy as np
 
 from .._types import FloatArray, IndexArray
 
-#: The number of members of a leaf.
+#: The number of members in a leaf.
 _LEAF_SIZE = 8
 
-#: The number of boxes on each level that are followed to leaves near a point. With one, the search
-#: for the nearest triangles takes four times as long, with eight half as long again.
+#: The number of boxes on each level in which `near_leaves` looks further. With 1, the search for
+#: the nearest triangles takes four times as long as with 4; with 8, half as long again.
 _BOXES_FOLLOWED = 4
 
-#: Bits of each coordinate in the order along which members are sorted.
+#: Bits of each coordinate in the position on Morton's curve, by which members are sorted.
 _BITS = 21
 
-#: The number of pairs of boxes that are divided together: this bounds the memory to some 100 MB.
+#: The number of pairs of boxes that are divided at a time: this bounds the memory to some 100 MB.
 _PAIRS_PER_BATCH = 1 << 16
 
-#: Pairs of boxes on one level of two trees: their numbers in both, (k, 2).
+#: Pairs of boxes, (k, 2): the number of a box in a level of each of two trees.
 BoxPairs: TypeAlias = IndexArray
 
 
 @dataclass(frozen=True, eq=False)
 class BoxTree:
-    """A binary tree of boxes: leaves are boxes around members that lie close together.
+    """A binary tree of axis-parallel boxes; a leaf is the box around eight members near each other.
 
     Members are triangles, boxes or points.
 
     Parameters
     ----------
     order : (m,) int64
-        The members; leaf k has those from 8 k on.
+        The numbers of the members; leaf k has members 8 k to 8 k + 7 of this array.
     levels : list of (low, high), each (n, 3) float64
-        Boxes from the leaves to the root; box k holds boxes 2 k and 2 k + 1 of the level before.
+        Boxes from the leaves to the root; box k contains boxes 2 k and 2 k + 1 of the level before.
     """
 
     order: IndexArray
@@ -58,11 +58,11 @@ class BoxTree:
 
     @classmethod
     def of_points(cls, points: FloatArray) -> "BoxTree":
-        """Return a tree of one level over points, (m, 3); leaf k is point k."""
+        """Return a tree of one level over points, (m, 3), in which leaf k is point k."""
         return cls(np.arange(len(points)), [(points, points)])
 
     def near_leaves(self, points: FloatArray) -> IndexArray:
-        """Return a few leaves near each point, (m, k), not necessarily the nearest ones."""
+        """Return up to four leaves near each point, (m, k), not necessarily the nearest ones."""
         near, around = np.zeros((len(points), 1), np.int64), points[:, None]
         for low, high in reversed(self.levels[:-1]):
             halves = np.hstack([2 * near, np.minimum(2 * near + 1, len(low) - 1)])
@@ -72,7 +72,7 @@ class BoxTree:
         return near
 
     def members(self, leaves: IndexArray) -> tuple[IndexArray, IndexArray]:
-        """Return the members of leaves, and for each the row of its leaf."""
+        """Return the members of all given leaves, and each member's row in the array `leaves`."""
         places = leaves[:, None] * _LEAF_SIZE + np.arange(_LEAF_SIZE)
         rows = np.broadcast_to(np.arange(len(leaves))[:, None], places.shape)
         there = places < len(self.order)
@@ -80,13 +80,13 @@ class BoxTree:
 
 
 class Nearness:
-    """The search for near members of two trees.
+    """A search for pairs of leaves of two trees that are near to each other.
 
     Parameters
     ----------
     first, second : BoxTree
     limit : float or (n,) float64
-        The squared distance beyond which pairs are ignored; the caller lowers it during the search.
+        Pairs with a larger squared distance are ignored; the caller may lower it during the search.
         If the first tree is of points, each point may have its own limit.
     """
 
@@ -95,7 +95,7 @@ class Nearness:
         self.limit = limit
 
     def leaves(self) -> Iterator[BoxPairs]:
-        """Yield pairs of leaves within the limit, roughly from near to far."""
+        """Yield pairs of leaves with squared distances up to `limit`, roughly nearest first."""
         top = len(self._trees[0].levels) - 1, len(self._trees[1].levels) - 1
         roots = np.arange(len(self._trees[0].levels[-1][0]))
         waiting = [(top, np.column_stack([roots, np.zeros_like(roots)]))]
@@ -123,7 +123,10 @@ class Nearness:
         return squared_gaps(low[i], high[i], low_b[j], high_b[j])
 
     def _divided(self, level: tuple[int, int], pairs: BoxPairs) -> tuple[tuple[int, int], BoxPairs]:
-        """Return pairs with their boxes halved, in the tree with more levels left or in both."""
+        """Replace boxes by their children, in the tree with more levels below, or in both.
+
+        Return the new levels, and all pairs of children.
+        """
         deepest = max(level)
         cut = [own == deepest for own in level]
         below = level[0] - cut[0], level[1] - cut[1]
@@ -139,14 +142,14 @@ class Nearness:
 def squared_gaps(
     low: FloatArray, high: FloatArray, low_b: FloatArray, high_b: FloatArray
 ) -> FloatArray:
-    """Return the squared distances of boxes, each of shape (…, 3)."""
+    """Return the squared distances between boxes, given by corners of shape (…, 3)."""
     apart = np.maximum(np.maximum(low - high_b, low_b - high), 0.0)
     gaps: FloatArray = np.einsum("...j,...j->...", apart, apart)
     return gaps
 
 
 def _along_a_curve(points: FloatArray) -> IndexArray:
-    """Return the places of points along Morton's curve, which keeps near ones near."""
+    """Return the positions of points along Morton's curve, close for points that are near."""
     low = points.min(axis=0)
     extent = float((points.max(axis=0) - low).max()) or 1.0
     cells = ((points - low) / extent * ((1 << _BITS) - 1)).astype(np.int64)
@@ -157,7 +160,7 @@ def _along_a_curve(points: FloatArray) -> IndexArray:
 
 
 def _spread(numbers: IndexArray) -> IndexArray:
-    """Return numbers of 21 bits with two zeros after each bit."""
+    """Return numbers of 21 bits with two zero bits inserted after each bit."""
     masks = (0x1F00000000FFFF, 0x1F0000FF0000FF, 0x100F00F00F00F00F, 0x10C30C30C30C30C3)
     spread = numbers
     for shift, mask in zip((32, 16, 8, 4), masks, strict=True):

@@ -1,4 +1,4 @@
-"""Boxes around parts of a mesh, and the nesting of boxes."""
+"""Axis-parallel boxes around parts of a mesh, and the search for boxes that contain others."""
 
 from collections.abc import Iterator
 
@@ -7,23 +7,23 @@ import numpy as np
 from .._types import FloatArray, IndexArray
 from .box_tree import BoxTree, Nearness
 
-#: The number of boxes that are looked up together: among a thousand nested boxes they take 2 MB.
+#: The number of boxes in one search: among a thousand nested boxes, a search takes 2 MB.
 _BOXES_PER_BATCH = 256
 
 
 def boxes_of(corners: FloatArray, owner: IndexArray) -> FloatArray:
-    """Return the boxes around the triangles of each owner.
+    """Return the axis-parallel box around the triangles of each group.
 
     Parameters
     ----------
     corners : (m, 3, 3) float64
     owner : (m,) int64
-        For each triangle the number of its owner, from 0; each has one at least.
+        For each triangle the number of its group, from 0; no group is empty.
 
     Returns
     -------
     (n, 2, 3) float64
-        The least and the largest corner of each.
+        The smallest and the largest coordinates of each box.
     """
     order = np.argsort(owner, kind="stable")
     starts = np.flatnonzero(np.diff(owner[order], prepend=-1))
@@ -33,7 +33,9 @@ def boxes_of(corners: FloatArray, owner: IndexArray) -> FloatArray:
 
 
 def boxes_around(inner: FloatArray, outer: FloatArray) -> Iterator[IndexArray]:
-    """Yield for each box the numbers of the boxes that contain it, ascending; equal boxes count.
+    """Yield for each box of `inner` the numbers of the boxes of `outer` that contain it, ascending.
+
+    A box contains an equal box.
 
     Parameters
     ----------
@@ -42,8 +44,8 @@ def boxes_around(inner: FloatArray, outer: FloatArray) -> Iterator[IndexArray]:
 
     Notes
     -----
-    The time grows with (k + n) log n, and with the number of boxes that contain a corner of
-    another.
+    The time grows with (k + n) log n, and with the number of pairs in which an outer box contains
+    a corner of an inner box.
     """
     if not len(inner) or not len(outer):
         yield from (np.zeros(0, dtype=np.int64) for _ in inner)
@@ -54,7 +56,10 @@ def boxes_around(inner: FloatArray, outer: FloatArray) -> Iterator[IndexArray]:
 
 
 def _around(inner: FloatArray, outer: FloatArray, tree: BoxTree) -> list[IndexArray]:
-    """Return for each box the numbers of the boxes that contain it; the tree is over the latter."""
+    """Return for each box of `inner` the numbers of the boxes of `outer` that contain it.
+
+    `tree` is the tree over `outer`.
+    """
     found = [np.zeros((0, 2), dtype=np.int64)]
     for pairs in Nearness(BoxTree.of_points(inner[:, 0]), tree, 0.0).leaves():
         numbers, rows = tree.members(pairs[:, 1])

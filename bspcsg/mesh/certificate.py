@@ -1,6 +1,6 @@
 """`Certificate`: the result of an exact check of a mesh in its own precision.
 
-This layer knows only arrays; all arithmetic behind it is exact.
+The check takes arrays only, and its arithmetic is exact.
 """
 
 from dataclasses import dataclass
@@ -12,27 +12,27 @@ from .._core import mesh_counts, mesh_faults
 from .._types import FloatArray, IndexArray
 from ..errors import core_errors
 
-#: The numbers in which coordinates are held.
+#: The floating-point precision of coordinates.
 Precision: TypeAlias = Literal["double", "single"]
 
 
 @dataclass(frozen=True)
 class Certificate:
-    """A proof about a mesh, triangle by triangle, for the coordinates as they are.
+    """The result of an exact check of a mesh with its coordinates unrounded.
 
     Parameters
     ----------
     precision : {"double", "single"}
-        The lowest precision that holds all coordinates.
+        Single if single precision represents all coordinates exactly, else double.
     triangles : int
         The number of checked triangles.
     open_edges : int
-        Directed edges without exactly one opposite, by index.
+        The number of directed edges that do not have exactly one opposite edge, by vertex index.
     crossings : tuple of (int, int)
         Pairs of triangles that cross or overlap. Surfaces may touch. At an edge of more than two
         triangles, surfaces count as crossing only if they cross for every pairing of the triangles.
     flat : tuple of int
-        Triangles without area.
+        Numbers of the triangles without area.
 
     Examples
     --------
@@ -55,7 +55,7 @@ class Certificate:
 
 
 def certify(vertices: FloatArray, faces: IndexArray) -> Certificate:
-    """Check whether a mesh is closed by index, crosses itself, or has triangles without area.
+    """Check exactly whether a mesh is closed, crosses itself, or has triangles without area.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def certify(vertices: FloatArray, faces: IndexArray) -> Certificate:
 
     Notes
     -----
-    Linear in the triangles, plus the pairs whose boxes overlap.
+    The time grows with the number of triangles plus the number of pairs whose boxes overlap.
     """
     with core_errors():
         found = mesh_faults(vertices, faces)

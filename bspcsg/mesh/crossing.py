@@ -1,4 +1,4 @@
-"""Pairs of faces of a mesh that cross, and the depth of their crossings."""
+"""The search for pairs of faces of a mesh that cross, and a bound of how deep they cross."""
 
 from dataclasses import dataclass
 
@@ -7,23 +7,23 @@ import numpy as np
 from .._types import BoolArray, FloatArray, IndexArray
 from .certificate import certify
 
-#: One face in so many is looked at, then more: a mesh that crosses itself all over has pairs as the
-#: square of its faces, and a few of these tell.
+#: Every 64th face is checked first, then every 8th, then all: in a mesh that crosses itself
+#: everywhere, the number of pairs grows with the square of its faces, and a sample is enough.
 _STRIDES = (64, 8, 1)
 
 
 @dataclass(frozen=True, eq=False)
 class Crossings:
-    """Pairs of faces that cross or overlap.
+    """The pairs of faces of a mesh that cross or overlap.
 
     Parameters
     ----------
     pairs : (k, 2) int64
         Numbers of faces.
     are_deep : bool
-        True if some faces pierce each other too deeply to be mended.
+        True if at least one pair crosses too deeply to be mended.
     are_all : bool
-        False if there may be more pairs.
+        False if only a sample of the faces was checked, so that there may be more pairs.
     """
 
     pairs: IndexArray
@@ -32,14 +32,14 @@ class Crossings:
 
 
 def crossings(vertices: FloatArray, faces: IndexArray, deep: float) -> Crossings:
-    """Return the pairs of faces that cross or overlap; only some pairs if one is deep.
+    """Return the pairs of faces that cross or overlap; only pairs of a sample if one is deep.
 
     Parameters
     ----------
     vertices : (n, 3) float64
     faces : (m, 3) int64
     deep : float
-        A crossing is deep if a vertex must move farther than this to remove it.
+        A crossing is deep if a vertex must move farther than this distance to remove it.
     """
     for stride in _STRIDES:
         found = certify(vertices, faces[::stride]).crossings
@@ -53,8 +53,8 @@ def crossings(vertices: FloatArray, faces: IndexArray, deep: float) -> Crossings
 def _pierce(pairs: FloatArray, deep: float) -> BoolArray:
     """Say which pairs of triangles, (k, 2, 3, 3), cross unless a vertex moves farther than `deep`.
 
-    An edge keeps crossing a triangle as long as its ends do not reach the triangle and the edge
-    does not reach the triangle's sides. This holds if no vertex moves farther than half of these
+    An edge crosses a triangle as long as its ends do not reach the triangle's plane and the edge
+    does not reach the triangle's sides: that is, if no vertex moves farther than half of these
     distances.
     """
     found = np.zeros(len(pairs), dtype=bool)
@@ -66,9 +66,10 @@ def _pierce(pairs: FloatArray, deep: float) -> BoolArray:
 
 
 def _depth(start: FloatArray, end: FloatArray, triangles: FloatArray) -> FloatArray:
-    """Return a lower bound of the distances of crossings from the ends and sides, for edges (k, 3).
+    """Return for k edges and k triangles how deep each edge crosses its triangle, at least.
 
-    It is negative where an edge does not cross its triangle (k, 3, 3).
+    This is a lower bound of the distances of the edge's ends from the triangle's plane, and of the
+    edge from the triangle's sides. It is negative if the edge does not cross the triangle.
     """
     sides = np.roll(triangles, -1, axis=1) - triangles
     along = end - start

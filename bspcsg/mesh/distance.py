@@ -1,4 +1,4 @@
-"""The distance of points from triangles, accurate for needles too."""
+"""The distance of points from triangles, accurate for long thin triangles (needles), too."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from .._types import FloatArray
 
 
 def distances_to_triangles(points: FloatArray, corners: FloatArray) -> FloatArray:
-    """Return the distance of each point from its triangle, (k,) float64, in model units.
+    """Return the distance of point i from triangle i, for k pairs, (k,) float64, in model units.
 
     Parameters
     ----------
@@ -16,8 +16,9 @@ def distances_to_triangles(points: FloatArray, corners: FloatArray) -> FloatArra
     Notes
     -----
     The distance from the three sides needs no normal. The distance from the plane counts only if
-    the foot of the perpendicular is inside. The normal of a needle is mostly rounding; ignoring its
-    plane causes an error below the needle's width.
+    the foot of the perpendicular is inside the triangle. The normal of a needle (a long thin
+    triangle) consists mainly of rounding errors; ignoring its plane causes an error below the
+    needle's width.
     """
     local = corners - points[:, None]
     starts, ends = local, np.roll(local, -1, axis=1)
@@ -33,7 +34,7 @@ def distances_to_triangles(points: FloatArray, corners: FloatArray) -> FloatArra
 
 
 def nearest_on_triangles(points: FloatArray, corners: FloatArray) -> FloatArray:
-    """Return the point of its triangle that is nearest to each point, (k, 3) float64.
+    """Return the point of triangle i that is nearest to point i, for k pairs, (k, 3) float64.
 
     Parameters
     ----------
@@ -57,13 +58,13 @@ def nearest_on_triangles(points: FloatArray, corners: FloatArray) -> FloatArray:
 
 
 def _to_segments(starts: FloatArray, ends: FloatArray) -> FloatArray:
-    """Return the distance of the origin from segments, (…, 3) each."""
+    """Return the distance of the origin from each segment; start and end points are (…, 3)."""
     found: FloatArray = np.linalg.norm(_feet(starts, ends), axis=-1)
     return found
 
 
 def _feet(starts: FloatArray, ends: FloatArray) -> FloatArray:
-    """Return the points of segments that are nearest to the origin, (…, 3) each."""
+    """Return the point of each segment that is nearest to the origin, (…, 3)."""
     along = ends - starts
     squares = np.einsum("...i,...i->...", along, along)
     dots = -np.einsum("...i,...i->...", starts, along)

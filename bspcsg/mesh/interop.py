@@ -1,6 +1,6 @@
-"""The exchange of meshes with other libraries.
+"""Conversion of mesh objects of other libraries to arrays, and of meshes to manifold3d.
 
-Readers look at the attributes of an object, not at its type, so they import no library.
+An object is recognized by its Python attributes, not by its type, so no library is imported.
 """
 
 import importlib
@@ -23,23 +23,23 @@ AnyArrays: TypeAlias = tuple[Any, Any]
 
 _Array = TypeVar("_Array", FloatArray, IndexArray)
 
-#: Chord error for shapes that have to be tessellated first, in model units.
+#: The largest distance between a curved shape and its triangles, in model units.
 TESSELLATION_TOLERANCE = 0.01
 
 
 def arrays_from(mesh: Any, tolerance: float = TESSELLATION_TOLERANCE) -> AnyArrays:
-    """Return vertices and faces of any object that holds a mesh.
+    """Return vertices and faces of a mesh object of any known library, or of a pair of arrays.
 
     Parameters
     ----------
     mesh : object
     tolerance : float
-        Chord error for shapes that have to be tessellated first, in model units.
+        For curved shapes: the largest distance between surface and triangles, in model units.
 
     Raises
     ------
     InvalidMeshError
-        If no attribute of the object looks like a mesh.
+        If the object has none of the known sets of Python attributes.
     """
     if isinstance(mesh, (tuple, list)) and len(mesh) == 2:
         return mesh[0], mesh[1]
@@ -60,14 +60,14 @@ def arrays_from(mesh: Any, tolerance: float = TESSELLATION_TOLERANCE) -> AnyArra
 
 
 def _advice(mesh: Any) -> str:
-    """Return advice on common objects that are no meshes."""
+    """Return advice for an object that is a grid of cells, no surface; else an empty string."""
     if hasattr(mesh, "extract_surface"):
         return " For a grid of cells, pass mesh.extract_surface()."
     return ""
 
 
 def are_empty(arrays: AnyArrays) -> bool:
-    """Say whether there are neither vertices nor faces; vertices alone are a point cloud."""
+    """Say whether a pair (vertices, faces) has neither vertices nor faces."""
     try:
         return not any(map(len, arrays))
     except TypeError:  # no arrays at all: another check reports this
@@ -80,20 +80,20 @@ def mesh_arrays(vertices: Any, faces: Any) -> tuple[FloatArray, IndexArray]:
     Raises
     ------
     InvalidMeshError
-        If an array has another shape, or the indices are no whole numbers.
+        If an array has another shape, or an index is no whole number.
     """
     points = points_array(vertices, "Vertices")
     return points, face_array(faces, points)
 
 
 def own_arrays(vertices: Any, faces: Any) -> tuple[FloatArray, IndexArray]:
-    """Return the arrays of `mesh_arrays`, copied if the caller could change them."""
+    """Return vertices (n, 3) float64 and triangles (m, 3) int64 that share no memory with input."""
     points, triangles = mesh_arrays(vertices, faces)
     return _own(points, vertices), _own(triangles, faces)
 
 
 def points_array(points: Any, name: str = "Points") -> FloatArray:
-    """Return (n, 3) float64 in C order, without a copy if possible."""
+    """Return points as (n, 3) float64 in C order, without a copy if possible."""
     array = doubles_or_none(points)
     if array is None:
         raise InvalidMeshError(f"{name} must be an array of numbers of shape (n, 3).", "shape")
@@ -105,7 +105,7 @@ def points_array(points: Any, name: str = "Points") -> FloatArray:
 
 
 def face_array(faces: Any, vertices: FloatArray) -> IndexArray:
-    """Return (m, 3) int64 in C order; faces of more corners are triangulated."""
+    """Return faces as triangles, (m, 3) int64 in C order; larger polygons are triangulated."""
     if is_masked(faces):
         raise InvalidMeshError(
             "Faces must not be a masked array; pass the unmasked faces only.", "shape"
@@ -129,12 +129,12 @@ def face_array(faces: Any, vertices: FloatArray) -> IndexArray:
 
 
 def _own(array: _Array, given: Any) -> _Array:
-    """Return the array, copied if it may share memory with the given object."""
+    """Return `array`, copied if it may share memory with `given`."""
     return array if array is not given and array.base is None else array.copy()
 
 
 def _whole(array: Any) -> IndexArray:
-    """Return indices as int64; raise an error for other numbers instead of wrapping them."""
+    """Return indices as int64; raise an `InvalidMeshError` if a number is not a 64-bit integer."""
     if array.dtype.kind not in "iuf":
         raise InvalidMeshError(
             f"Vertex indices of faces must be integers, not {array.dtype}.", "shape"
@@ -164,7 +164,7 @@ def _triangles(faces: Iterable[Any], vertices: FloatArray) -> IndexArray:
     return np.concatenate(triangles) if triangles else np.zeros((0, 3), dtype=np.int64)
 
 
-# Readers. Each takes an object with the attributes named in the table below.
+# Readers. Each takes an object with the Python attributes that `_READERS` names for it.
 
 
 def _from_manifold(mesh: Any) -> AnyArrays:
@@ -183,7 +183,7 @@ def _from_polydata(mesh: Any) -> AnyArrays:
 
 
 def _unpadded(stream: IndexArray) -> Any:
-    """Split a stream of count, index, index, … into faces."""
+    """Divide an array of count, index, index, …, count, … into faces."""
     if len(stream) % 4 == 0 and (stream[::4] == 3).all():
         return stream.reshape(-1, 4)[:, 1:]
     faces = []
@@ -201,7 +201,7 @@ def _from_vtk(mesh: Any) -> AnyArrays:
     for index in range(mesh.GetNumberOfCells()):
         cell = mesh.GetCell(index)  # the next call overwrites it
         corners = [cell.GetPointId(k) for k in range(cell.GetNumberOfPoints())]
-        # Loose points and lines are no part of a surface.
+        # Points and lines are no part of a surface.
         if len(corners) >= 3:
             faces.append(corners)
     return points, faces
@@ -235,7 +235,7 @@ def _shapes_on(workplane: Any) -> list[Any]:
 
 
 def _joined(parts: list[AnyArrays]) -> AnyArrays:
-    """Return several meshes as one; winding numbers unite them where they overlap."""
+    """Return one mesh of several meshes, concatenated; where they overlap, they form a union."""
     points = [points_array(vertices, "Vertices") for vertices, _ in parts]
     starts = np.cumsum([0, *map(len, points)])
     faces = [
@@ -245,12 +245,13 @@ def _joined(parts: list[AnyArrays]) -> AnyArrays:
     return np.concatenate(points), np.concatenate(faces)
 
 
-#: Shapes of CAD kernels have methods named vertices and faces: they come before plain meshes.
+#: The Python attributes of a CAD kernel's shape. It is tried before meshes, since such a shape has
+#: methods named vertices and faces.
 _SHAPE = ("tessellate", "wrapped")
 
 _WORKPLANE = ("val", "plane")
 
-#: The objects that hold a mesh or a shape, by their attributes, and the way to get at that.
+#: Objects that contain a mesh or a shape: their Python attributes, and how to get the content.
 _HOLDERS: tuple[tuple[tuple[str, ...], Callable[[Any], Any]], ...] = (
     (("current_mesh",), lambda meshes: meshes.current_mesh()),
     (("part", "pending_faces"), lambda builder: builder.part),
@@ -278,7 +279,7 @@ def optional(name: str, package: str) -> Any:
     Raises
     ------
     MissingPartError
-        If it is not installed; code ``"missing_package"``.
+        If the module is not installed; code ``"missing_package"``.
     """
     try:
         return importlib.import_module(name)
@@ -291,7 +292,7 @@ def optional(name: str, package: str) -> Any:
 
 
 def to_manifold(mesh: Mesh) -> "manifold3d.Manifold":
-    """Return a `manifold3d.Manifold` of the same vertices and faces, without attributes."""
+    """Return a `manifold3d.Manifold` of a mesh's vertices and faces, without attributes."""
     import manifold3d
 
     # The binding accepts only writable arrays of exactly these types.

@@ -1,6 +1,6 @@
-"""Conversion of meshes with attributes to other libraries, with warnings about losses.
+"""Conversion of meshes with attributes to trimesh and manifold3d, with warnings about losses.
 
-`visuals` converts back and restores the names.
+The module `visuals` converts them back.
 """
 
 import io
@@ -23,16 +23,16 @@ if TYPE_CHECKING:
     import manifold3d
     import trimesh
 
-#: The keys in the metadata of a trimesh: the values of corners, the faces that they are of, and the
-#: materials that faces name.
+#: The keys in the metadata of a trimesh: attributes of corners, the faces to which these belong,
+#: and materials by name.
 CORNERS, CORNER_FACES, MATERIALS = "corner_attributes", "corner_faces", "materials"
 
-#: The colour that trimesh has for faces that say none.
+#: The colour in trimesh of faces whose colour is not given.
 _PLAIN = (102, 102, 102, 255)
 
 
 def trimesh_of(mesh: Mesh) -> "trimesh.Trimesh":
-    """Return a `trimesh.Trimesh` of copies of the same arrays, with the attributes."""
+    """Return a `trimesh.Trimesh` with copies of a mesh's vertices, faces and attributes."""
     made: trimesh.Trimesh = optional("trimesh", "trimesh").Trimesh(
         mesh.vertices.copy(), mesh.faces.copy(), process=False
     )
@@ -43,7 +43,7 @@ def trimesh_of(mesh: Mesh) -> "trimesh.Trimesh":
 
 
 def _said_of(mesh: Mesh, library: str) -> Attributes | None:
-    """Return the attributes of a mesh; None, with a warning, if they are inconsistent."""
+    """Return the attributes of a mesh, or None; inconsistent ones give None and a warning."""
     if mesh.carried is None:
         return None
     try:
@@ -59,7 +59,7 @@ def _tell(message: str, count: int) -> None:
 
 
 class _TrimeshAttributes:
-    """Sets the attributes of a trimesh: its visual, named arrays, and metadata for the rest."""
+    """A conversion of attributes to a trimesh: to its visual, its named arrays and its metadata."""
 
     def __init__(self, made: "trimesh.Trimesh", said: Attributes) -> None:
         self._made = made
@@ -67,7 +67,7 @@ class _TrimeshAttributes:
         self._is_colored = False
 
     def run(self) -> None:
-        """Set all attributes."""
+        """Set all attributes of the trimesh."""
         said, made = self._said, self._made
         names = set(said.names)
         if said.materials:
@@ -82,7 +82,7 @@ class _TrimeshAttributes:
         self._corners()
 
     def _color(self) -> None:
-        """Show the colours; colours of corners become a mean for each face."""
+        """Set the colours of the trimesh's visual; corners' colours become a mean for each face."""
         said, self._is_colored = self._said, True
         kind = said.kind_of(COLOR) or "face"
         values = said.of(kind)[COLOR]
@@ -104,7 +104,7 @@ class _TrimeshAttributes:
         self._made.visual = visual(self._made, **colors)
 
     def _materials(self) -> None:
-        """Set the only material with its picture, or else the colours of all materials."""
+        """Set the material if there is only one and it fits, else the colours of all materials."""
         said = self._said
         if "material" not in said.face or not said.materials:
             return
@@ -128,7 +128,7 @@ class _TrimeshAttributes:
             self._show(face_colors=colors_by_materials(said.face["material"], said.materials))
 
     def _color_as_array(self) -> None:
-        """Keep colours as an array beside a picture, since a trimesh shows only one of the two."""
+        """Store colours as a named array, since the trimesh's visual already has a picture."""
         said = self._said
         if COLOR in said.vertex:
             self._made.vertex_attributes[COLOR] = said.vertex[COLOR].copy()
@@ -147,12 +147,12 @@ def _are_places(uv: Values | None) -> bool:
 
 
 def mean_colors(values: Values) -> Values:
-    """Return the mean colour of each face's corners in bytes, (m, 4)."""
+    """Return the mean colour of each face's corners, (m, 4) uint8."""
     return opaque(as_bytes(as_floats(values).mean(axis=1)))
 
 
 def colors_by_materials(names: Values, materials: Mapping[str, Material]) -> Values:
-    """Return the colour of each face's material in bytes, (m, 4)."""
+    """Return the colour of each face's material, (m, 4) uint8."""
     kinds, numbers = np.unique(names, return_inverse=True)
     found = [materials[kind].color if kind in materials else None for kind in kinds.tolist()]
     table = [_PLAIN if one is None else as_bytes(np.array(one)) for one in found]
@@ -161,7 +161,7 @@ def colors_by_materials(names: Values, materials: Mapping[str, Material]) -> Val
 
 
 def _material(name: str, material: Material) -> Any:
-    """Return a material of trimesh."""
+    """Return a material as a `trimesh.visual.material.PBRMaterial`."""
     kind = optional("trimesh.visual.material", "trimesh").PBRMaterial
     picture = None if material.texture is None else picture_of(material.texture)
     color = as_bytes(np.array(material.color))
@@ -170,20 +170,20 @@ def _material(name: str, material: Material) -> Any:
 
 
 def picture_of(data: bytes) -> Any:
-    """Return a picture of Pillow."""
+    """Return the bytes of a picture file as a `PIL.Image.Image`."""
     return optional("PIL.Image", "pillow").open(io.BytesIO(data))
 
 
 @dataclass(frozen=True)
 class Column:
-    """The columns of manifold3d's vertex properties that hold one attribute.
+    """The columns of manifold3d's vertex properties that contain one attribute.
 
     Parameters
     ----------
     name, kind, dtype
-        Of the attribute.
+        Those of the attribute.
     shape : tuple of int
-        Of each value.
+        The shape of one value of the attribute.
     """
 
     name: str
@@ -193,7 +193,7 @@ class Column:
 
     @property
     def width(self) -> int:
-        """The number of columns."""
+        """The number of columns that the attribute needs."""
         return int(np.prod(self.shape, dtype=np.int64))
 
     @property
@@ -201,12 +201,12 @@ class Column:
         return self.name == COLOR and self.shape == (4,)
 
     def numbers(self, values: Values) -> Values:
-        """Return values as numbers (k, width); colours from 0 to 1, as in Manifold."""
+        """Convert attribute values to columns, (k, width) float64; colours from 0 to 1."""
         found = opaque(as_floats(values)) if self._is_color else values.astype(np.float64)
         return found.reshape(-1, self.width)
 
     def values(self, numbers: Values) -> Values:
-        """Return numbers (…, width) as values."""
+        """Convert columns (…, width) back to attribute values of the attribute's type."""
         values = numbers.reshape(*numbers.shape[:-1], *self.shape)
         if self._is_color and self.dtype.kind == "u":
             values = np.clip(values, 0, 1) * np.iinfo(self.dtype).max
@@ -216,21 +216,21 @@ class Column:
         return np.asarray(rounded.astype(self.dtype))
 
 
-#: The columns of meshes that went to manifold3d, by the numbers that it tells their faces apart by.
+#: The columns of each mesh that was converted to manifold3d, by manifold3d's id of the original.
 _LAYOUTS: dict[int, tuple[Column, ...]] = {}
 
-#: The largest number of meshes whose columns are remembered; the oldest are forgotten first.
+#: The largest number of meshes whose columns are stored; the oldest are deleted first.
 _MAX_LAYOUTS = 1 << 16
 
 
 def layout_of(ids: Iterable[int]) -> tuple[Column, ...] | None:
-    """Return the columns of some original meshes, if all have the same."""
+    """Return the columns of the original meshes with these ids; None unless all have the same."""
     found = {_LAYOUTS.get(int(number)) for number in ids}
     return found.pop() if len(found) == 1 else None
 
 
 def manifold_of(mesh: Mesh) -> "manifold3d.Manifold":
-    """Return a `manifold3d.Manifold` with the numeric attributes as vertex properties."""
+    """Return a `manifold3d.Manifold` of a mesh; numeric attributes become vertex properties."""
     said = _said_of(mesh, "manifold3d")
     if said is None:
         return to_manifold(mesh)
@@ -256,13 +256,16 @@ _NONE: IndexArray = np.zeros(0, dtype=np.int64)
 
 
 def _in_order(said: Attributes) -> list[str]:
-    """Return the names; properties that came from manifold3d come first, so their numbers stay."""
+    """Return the names of attributes, “properties” first.
+
+    “properties” are columns that came from manifold3d; as the first ones they get the same numbers.
+    """
     return sorted(said.names, key=lambda name: name != "properties")
 
 
 def _column(said: Attributes, name: str) -> Column:
     values = said.at_corners(name, _NONE)
-    # Colours of three numbers and of four have the same columns, so that they can be mixed.
+    # Colours with and without opacity have four columns, so that both may occur in one mesh.
     shape = (4,) if is_color(name, values, 2) else values.shape[2:]
     return Column(name, said.kind_of(name) or "face", values.dtype, shape)
 
@@ -276,7 +279,7 @@ def _with_properties(
     corners = mesh.faces.ravel()
     chosen, numbers = _distinct(corners, table)
     vertices = np.hstack([mesh.vertices[corners[chosen]], table[chosen]])
-    # For the topology, vertices at one place with different values count as the first of them.
+    # For the topology, vertices of one position with different values are merged into the first.
     same, first = np.unique(corners[chosen], return_index=True)
     target = first[np.searchsorted(same, corners[chosen])]
     source = np.flatnonzero(target != np.arange(len(chosen)))
@@ -296,7 +299,10 @@ def _with_properties(
 
 
 def _distinct(corners: IndexArray, table: Values) -> tuple[IndexArray, IndexArray]:
-    """Return one corner for each vertex and set of values, and the index of each corner there."""
+    """Split vertices whose corners have different values, the rows of `table`.
+
+    Return the number of one corner for each new vertex, and the new vertex of each corner.
+    """
     # Bytes in this order sort like the numbers of vertices, so vertices keep their order.
     keys = corners.astype(">u8")[:, None].view(np.uint8)
     rows: npt.NDArray[np.uint8] = np.hstack([keys, np.ascontiguousarray(table).view(np.uint8)])

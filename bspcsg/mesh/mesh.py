@@ -1,7 +1,4 @@
-"""`Mesh`: the triangles of a solid, with their measures.
-
-This layer knows only arrays, not how a mesh was made.
-"""
+"""`Mesh`: the triangles of a solid as arrays, with volume, area and other measures."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -22,7 +19,7 @@ from .certificate import Certificate, certify
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Mesh:
-    """A closed triangle mesh, counter-clockwise when seen from outside.
+    """A closed triangle mesh; seen from outside, the corners of a triangle are counter-clockwise.
 
     The arrays of a solid's mesh are read-only and its attributes cannot be replaced, because the
     solid returns the same mesh again; copy arrays before you change them. Measures are cached, so
@@ -38,7 +35,7 @@ class Mesh:
         The origin of each face: the number of the input mesh, counted from 0 in the order of
         the expression, and the index of the face in that mesh.
     carried : Later, optional
-        Its attributes, looked up when they are asked for; for the modules of this package.
+        The attributes, computed when they are first read; for the modules of this package.
 
     Examples
     --------
@@ -56,7 +53,7 @@ class Mesh:
     carried: Later | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:
-        """Show the size of the mesh."""
+        """Return the numbers of vertices and faces as text."""
         return f"Mesh({len(self.vertices)} vertices, {len(self.faces)} faces)"
 
     def __iter__(self) -> Iterator[Any]:
@@ -65,42 +62,42 @@ class Mesh:
         yield self.faces
 
     def frozen(self) -> "Mesh":
-        """Return this mesh after making its arrays read-only."""
+        """Make the arrays read-only, and return this mesh."""
         for array in (self.vertices, self.faces, self.source):
             array.flags.writeable = False
         return self
 
     @property
     def attributes(self) -> Attributes:
-        """All attributes of vertices, corners and faces."""
+        """The attributes of vertices, corners and faces; empty if the mesh has none."""
         return Attributes(self.faces) if self.carried is None else self.carried.now()
 
     @property
     def vertex_attributes(self) -> Mapping[str, Values]:
-        """Values of vertices, (n, …) arrays by their names.
+        """Values of vertices, (n, …) arrays by name.
 
-        A vertex attribute stays here as long as all faces at each vertex agree; else it moves to
-        `corner_attributes`, since the two sides of a cut keep their own values.
+        An attribute is here if all faces at each vertex agree on its value; else it is in
+        `corner_attributes`, since the faces on both sides of a cut have their own values.
         """
         return MappingProxyType(self.attributes.vertex)
 
     @property
     def corner_attributes(self) -> Mapping[str, Values]:
-        """Values of the corners of each face, (m, 3, …) arrays by their names."""
+        """Values of the corners of each face, (m, 3, …) arrays by name."""
         return MappingProxyType(self.attributes.corner)
 
     @property
     def face_attributes(self) -> Mapping[str, Values]:
-        """Values of faces, (m, …) arrays by their names."""
+        """Values of faces, (m, …) arrays by name."""
         return MappingProxyType(self.attributes.face)
 
     @property
     def materials(self) -> Mapping[str, Material]:
-        """The materials that the names in the face attribute ``"material"`` stand for."""
+        """The materials by name; the face attribute ``"material"`` has the name for each face."""
         return MappingProxyType(self.attributes.materials)
 
     def carrying(self, carried: Later) -> "Mesh":
-        """Return this mesh with attributes; for the modules of this package."""
+        """Return a mesh of the same arrays with attributes; for the modules of this package."""
         return replace(self, carried=carried)
 
     @cached_property
@@ -110,7 +107,7 @@ class Mesh:
 
     @property
     def volume(self) -> float:
-        """Volume in cubic model units: signed tetrahedra, summed without further rounding."""
+        """Volume in cubic model units: signed tetrahedra, whose sum is rounded only once."""
         return self._measures[0]
 
     @property
@@ -125,9 +122,9 @@ class Mesh:
 
     @property
     def inertia(self) -> FloatArray:
-        """Moments of inertia about the centroid, (3, 3) float64, at density 1; NaN without volume.
+        """The inertia tensor about the centroid, (3, 3) float64, at density 1; NaN without volume.
 
-        In model units to the fifth power.
+        It is in model units to the fifth power.
         """
         second = self._moments[1]
         moments: FloatArray = np.trace(second) * np.eye(3) - second
@@ -135,7 +132,7 @@ class Mesh:
 
     @property
     def bounds(self) -> FloatArray | None:
-        """Lowest and highest coordinates, (2, 3) float64, or None for an empty mesh."""
+        """Smallest and largest x, y and z, (2, 3) float64, or None for an empty mesh."""
         if len(self.faces) == 0:
             return None
         used = self.vertices
@@ -147,18 +144,18 @@ class Mesh:
 
     @property
     def euler_number(self) -> int:
-        """Vertices - edges + faces, counting only vertices that a face uses."""
+        """The Euler number: vertices minus edges plus faces; unused vertices do not count."""
         vertices, edges, _, _ = self._counts
         return vertices - edges + len(self.faces)
 
     @property
     def open_edges(self) -> int:
-        """Directed edges without exactly one opposite, by index."""
+        """The number of directed edges without exactly one opposite edge, by vertex index."""
         return self._counts[2]
 
     @property
     def surface_count(self) -> int:
-        """Number of connected surfaces; the wall of a closed cavity is one of its own."""
+        """Number of connected surfaces; the wall of a closed cavity is a separate surface."""
         return self._counts[3]
 
     @property
@@ -185,7 +182,7 @@ class Mesh:
 
     @cached_property
     def _moments(self) -> tuple[FloatArray, FloatArray]:
-        """The centroid, and the second moments about it; NaN without volume."""
+        """The centroid (3,) and the second moments about it (3, 3); NaN if there is no volume."""
         middle = self._middle()
         x, y, z = middle.tolist()
         with core_errors():
@@ -196,18 +193,20 @@ class Mesh:
 
     @cached_property
     def _counts(self) -> tuple[int, int, int, int]:
-        """The numbers of used vertices, edges, open edges and connected surfaces."""
+        """The counts of used vertices, edges, open edges and connected surfaces, in this order."""
         with core_errors():
             return mesh_counts(self.faces, len(self.vertices))
 
 
 def surfaces_of(faces: IndexArray, vertex_count: int) -> IndexArray:
-    """Return for each face the number of its surface; smallest vertex numbers give the order.
+    """Return for each face the number of its connected surface, from 0.
+
+    Surfaces are numbered in the order of their smallest vertex indices.
 
     Parameters
     ----------
     faces : (m, 3) int64
-        Corners of each face; those that share one are connected.
+        Vertex indices of each face; faces that share a vertex are connected.
     vertex_count : int
 
     Returns

@@ -1,4 +1,4 @@
-"""The connected pieces of a mesh, how thick each is, and points inside them."""
+"""The connected pieces of a mesh, the thickness of each, and points inside them."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -12,26 +12,26 @@ from .mesh import Mesh, surfaces_of
 
 Point: TypeAlias = tuple[float, float, float]
 
-#: Relative rounding error of a tetrahedron's volume, by the lengths of three edges.
+#: The rounding error of a tetrahedron's volume, relative to the product of three edge lengths.
 _NOISE = 1e-15
 
-#: The largest number of faces of a piece below which a point is looked for, and of points that are
-#: kept.
+#: The largest number of faces of a piece from which a point inside is sought, and of points that
+#: are returned.
 _MAX_FACES_TRIED, _MAX_POINTS_KEPT = 60, 6
 
 
 @dataclass(frozen=True, eq=False)
 class MeshPieces:
-    """The pieces of a closed mesh, each with the walls of its cavities.
+    """The connected pieces of a closed mesh; the walls of a cavity belong to the piece around it.
 
     Parameters
     ----------
     mesh : Mesh
     owner : (m,) int64
-        For each face the number of its piece; some numbers are not used.
+        For each face the number of its piece; not every number from 0 to p - 1 occurs.
     thickness : (p,) float64
-        The thickness of each piece, in model units: twice the volume divided by the area. It is the
-        thickness of a film, and a third of the side of a cube.
+        The thickness of each piece, in model units: twice the volume divided by the area. For a
+        film this is the distance between its sides; for a cube it is a third of the edge.
     """
 
     mesh: Mesh
@@ -40,7 +40,7 @@ class MeshPieces:
 
     @classmethod
     def of(cls, mesh: Mesh, film: float = 0.0) -> "MeshPieces":
-        """Return the pieces of a mesh with faces; a thickness below `film` may be an estimate."""
+        """Return the pieces of a non-empty mesh; a thickness below `film` may be inexact."""
         surfaces = surfaces_of(mesh.faces, len(mesh.vertices))
         volumes, areas = _measures(mesh, surfaces, film)
         outer = _outer_surfaces(mesh, surfaces, volumes)
@@ -50,24 +50,24 @@ class MeshPieces:
 
     @property
     def thickest(self) -> int:
-        """The number of the thickest piece."""
+        """The number of the piece with the largest thickness."""
         return int(self.thickness.argmax())
 
     def thicker_than(self, bound: float) -> list[int]:
-        """Return the numbers of the pieces thicker than a bound, the thickest first."""
+        """Return the numbers of the pieces whose thickness exceeds `bound`, the thickest first."""
         order = np.argsort(-self.thickness, kind="stable")
         return [int(piece) for piece in order if self.thickness[piece] > bound]
 
     def corner_of(self, piece: int) -> Point:
-        """Return a vertex of a piece."""
+        """Return the coordinates of one vertex of a piece."""
         face = self.mesh.faces[int((self.owner == piece).argmax())]
         return _as_point(self.mesh.vertices[face[0]])
 
     def points_in(self, piece: int) -> list[Point]:
-        """Return points that should be inside a piece, the deepest first.
+        """Return up to six points that should be inside a piece, the deepest first.
 
-        They lie half-way between a large face and what is below it, computed in doubles: test them
-        if you need certainty.
+        Each is half-way between a large face and the next face below it. They are computed in
+        doubles, so test them if you need certainty.
         """
         triangles = self.mesh.vertices[self.mesh.faces[self.owner == piece]]
         origin = triangles[0, 0]
@@ -87,7 +87,10 @@ def _as_point(point: FloatArray) -> Point:
 def _below(
     triangles: FloatArray, normals: FloatArray, face: int
 ) -> tuple[float, FloatArray] | None:
-    """Return the point half-way from the middle of a face to the face behind it, and its depth."""
+    """Return the depth and the point half-way from a face's centroid to the next face below it.
+
+    Return None if no face is below, or the face has no area.
+    """
     start = triangles[face].mean(axis=0)
     length = np.linalg.norm(normals[face])
     if length == 0:
@@ -111,10 +114,10 @@ def _below(
 
 
 def _measures(mesh: Mesh, surfaces: IndexArray, film: float) -> tuple[FloatArray, FloatArray]:
-    """Return volume and area of each surface, with a point of the surface as origin.
+    """Return volume and area of each surface, computed relative to a point of the surface.
 
-    The volume of a needle is lost in rounding errors due to its length. If these could make it look
-    thicker than a film, the sum is computed exactly.
+    The rounding errors of a long needle's volume may exceed the volume. If they could make the
+    piece appear thicker than `film`, the volume is computed exactly.
     """
     _, first = np.unique(surfaces, return_index=True)
     origin = mesh.vertices[mesh.faces[first, 0]][surfaces]
@@ -130,7 +133,7 @@ def _measures(mesh: Mesh, surfaces: IndexArray, film: float) -> tuple[FloatArray
 
 
 def _exact_volume(triangles: FloatArray) -> float:
-    """Return the signed volume of a closed surface of (m, 3, 3) corners, rounded once."""
+    """Return the signed volume of a closed surface, given by corners (m, 3, 3), rounded once."""
     six = Fraction(0)
     for a, b, c in triangles.tolist():
         (u, v, w), (x, y, z), (p, q, r) = (map(Fraction, corner) for corner in (a, b, c))
@@ -143,10 +146,11 @@ def _summed(groups: IndexArray, values: FloatArray) -> FloatArray:
 
 
 def _outer_surfaces(mesh: Mesh, surfaces: IndexArray, volumes: FloatArray) -> IndexArray:
-    """Return for each wall of a cavity the surface around it, for other surfaces themselves.
+    """Return for the wall of each cavity the surface around it, for all other surfaces themselves.
 
-    A closed film is a large surface around a cavity nearly as large; its thickness follows only
-    from both. The surface with the smallest enclosing box is the one around a cavity.
+    A cavity's wall has negative volume. The surface around it is the one of smallest volume whose
+    box contains the wall's box and whose volume is at least as large. A closed film, for example,
+    is a surface around a cavity nearly as large, and its thickness follows only from both.
     """
     count = len(volumes)
     outer = np.arange(count)

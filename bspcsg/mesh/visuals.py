@@ -1,7 +1,7 @@
-"""Attributes of the meshes of other libraries.
+"""Conversion of colours and other data of the mesh objects of other libraries to attributes.
 
-As in `interop`, the attributes of an object decide. Data that are no array over its vertices or
-triangles are silently ignored.
+An object is recognized by its Python attributes, not by its type. Data that are no array over the
+vertices or triangles are silently ignored.
 """
 
 import io
@@ -26,18 +26,18 @@ from .leaving import (
 )
 from .mesh import Mesh
 
-#: Types of arrays that are carried.
+#: numpy's letters for the types of arrays that can be attributes.
 _TYPES = "biufU"
 
 
 def attributes_from(mesh: Any, vertices: Any, faces: Any) -> dict[str, Any]:
-    """Return the attributes of any object that holds a mesh, as `Solid` takes them.
+    """Return the attributes of a mesh object of any known library, as keyword arguments of `Solid`.
 
     Parameters
     ----------
     mesh : object
     vertices, faces
-        Its arrays, as `interop.arrays_from` found them.
+        The arrays that `interop.arrays_from` returns for `mesh`.
     """
     if isinstance(mesh, (tuple, list)):
         return {}
@@ -59,7 +59,7 @@ def attributes_from(mesh: Any, vertices: Any, faces: Any) -> dict[str, Any]:
     return _fitting(found, len(vertices), faces)
 
 
-#: The places of arrays with names in objects: trimesh and `Mesh`, then pyvista and meshio.
+#: The Python attributes with dictionaries of arrays: of trimesh and `Mesh`, of pyvista and meshio.
 _DICTIONARIES = {
     "vertex": ("vertex_attributes", "point_data"),
     "corner": ("corner_attributes",),
@@ -75,7 +75,7 @@ def _arrays_in(held: Any) -> dict[str, Any]:
 
 
 def _one_array(values: Any) -> Any:
-    """Return one array of values; meshio has one for each block of cells."""
+    """Return values as one array; a list of arrays, meshio's blocks of cells, is concatenated."""
     is_list = isinstance(values, list) and values
     if is_list and all(isinstance(block, np.ndarray) for block in values):
         return np.concatenate(values)
@@ -85,7 +85,10 @@ def _one_array(values: Any) -> Any:
 def _fitting(
     found: dict[str, dict[str, Any]], vertex_count: int, faces: Any
 ) -> dict[str, dict[str, Any]]:
-    """Return the arrays with a row for each vertex or triangle, each name once."""
+    """Return keyword arguments of `Solid` with the arrays that fit the mesh, each name once.
+
+    An array fits if it has a row for each vertex, triangle or corner, and a supported type.
+    """
     triangles = np.asarray(faces) if all(len(face) == 3 for face in faces) else np.zeros((0, 3))
     rows = {"vertex": (vertex_count,), "corner": triangles.shape, "face": triangles.shape[:1]}
     taken: set[str] = set()
@@ -107,7 +110,7 @@ def _fitting(
 
 
 def _take_properties(mesh: Any, found: dict[str, dict[str, Any]]) -> None:
-    """Take the vertex properties of manifold3d; seams have vertices of their own."""
+    """Add the vertex properties of a manifold3d mesh to `found` as attributes."""
     properties = np.asarray(mesh.vert_properties)[:, 3:]
     if properties.shape[1] == 0:
         return
@@ -130,7 +133,11 @@ def _take_column(
     has_seams: bool,
     found: dict[str, dict[str, Any]],
 ) -> None:
-    """Take the values of one attribute, for its original kind of element if they still allow it."""
+    """Add one attribute to `found`: of faces, corners or vertices.
+
+    It is an attribute of faces if it was one and still has one value for each face; of corners if
+    the mesh has seams, which are vertices of one position with different values.
+    """
     corners = values[triangles]
     if column.kind == "face" and np.array_equal(corners, np.repeat(corners[:, :1], 3, axis=1)):
         found["face"][column.name] = corners[:, 0]
@@ -141,7 +148,10 @@ def _take_column(
 
 
 def _take_metadata(told: Mapping[str, Any], faces: Any, found: dict[str, dict[str, Any]]) -> None:
-    """Take the data of `leaving` from the metadata of a trimesh, if its faces are unchanged."""
+    """Add the materials, and the attributes of corners if the faces are unchanged, to `found`.
+
+    `told` is the metadata that `leaving.trimesh_of` has stored in a trimesh.
+    """
     materials, corners = told.get(MATERIALS), told.get(CORNERS)
     if isinstance(materials, Mapping):
         kept = {name: one for name, one in materials.items() if isinstance(one, Material)}
@@ -163,7 +173,7 @@ def _take_visual(visual: Any, count: int, found: dict[str, dict[str, Any]]) -> N
 
 
 def _take_face_colors(colors: Values, found: dict[str, dict[str, Any]]) -> None:
-    """Take the colours of faces, unless they only repeat materials or colours of corners."""
+    """Add the colours of faces to `found`, unless they follow from materials or corner colours."""
     names, corners = found["face"].get("material"), found["corner"].get("color")
     if found["materials"] and names is not None and len(names) == len(colors):
         shown = colors_by_materials(names, found["materials"])
@@ -177,7 +187,7 @@ def _take_face_colors(colors: Values, found: dict[str, dict[str, Any]]) -> None:
 
 
 def _take_materials(visual: Any, count: int, found: dict[str, dict[str, Any]]) -> None:
-    """Take the materials of a trimesh: one for all faces, or one for each face by number."""
+    """Add the materials of a trimesh to `found`: one for all faces, or one of several per face."""
     numbers = getattr(visual, "face_materials", None)
     several = list(getattr(visual.material, "materials", None) or ())
     if several and numbers is not None and len(numbers) == count:
@@ -189,7 +199,7 @@ def _take_materials(visual: Any, count: int, found: dict[str, dict[str, Any]]) -
 
 
 def _take_material(material: Any, usual: str, found: dict[str, dict[str, Any]]) -> str:
-    """Take a material, unless it came from this package; return its name."""
+    """Add a material to `found`, unless an equal one of its name is there; return the name."""
     image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
     name = str(getattr(material, "name", None) or usual)
     color = np.asarray(getattr(material, "main_color", (255, 255, 255, 255)))[:4]
@@ -201,7 +211,7 @@ def _take_material(material: Any, usual: str, found: dict[str, dict[str, Any]]) 
 
 
 def _is_same(known: Material, color: Values, image: Any) -> bool:
-    """Say whether a material looks like a trimesh material with this colour and image."""
+    """Say whether a material has this colour in bytes and the pixels of this image, or no image."""
     if as_bytes(np.array(known.color)).tolist() != color.tolist():
         return False
     if known.texture is None or image is None:

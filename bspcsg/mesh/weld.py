@@ -1,4 +1,4 @@
-"""Merging of points with equal coordinates."""
+"""Welding: finding the distinct points among points with equal coordinates."""
 
 import numpy as np
 
@@ -8,9 +8,10 @@ from ..errors import core_errors
 
 
 def welded(points: FloatArray) -> tuple[FloatArray, IndexArray]:
-    """Return the distinct points in the order of first occurrence, and the index of each point.
+    """Return the distinct points in the order of first occurrence, and an index for each point.
 
-    Points are the same if their coordinates are equal as numbers; 0.0 equals -0.0.
+    The index is that of the equal distinct point. Points are equal if their coordinates are equal
+    as numbers; 0.0 equals -0.0.
 
     Parameters
     ----------
@@ -25,7 +26,7 @@ def welded(points: FloatArray) -> tuple[FloatArray, IndexArray]:
 
 
 def distinct(points: FloatArray) -> int:
-    """Return the number of distinct points, as `welded` counts them.
+    """Return the number of distinct points; points with equal coordinates count once.
 
     Parameters
     ----------

@@ -7,22 +7,22 @@
         csg.cylinder(h=10, r=3).translate(10, 10, 0)
     d.solid.save("plate.3mf")
 
-A solid counts if it was made in the block and not used up there:
+A solid counts as an operand of the block if it was made in the block and not used up there:
 
 * Every call that makes a solid counts it: primitives, `Solid`, `from_mesh`, `load`, operators,
   transforms and the named operations.
 * A solid passed to an operator, a transform or a named operation no longer counts. The result takes
-  its place, so ``cylinder(...).translate(...)`` counts once, in the first position. Another
+  its position, so ``cylinder(...).translate(...)`` counts once, in the first position. Another
   transform of the same solid counts as well, at the end: four translations of one pin are four
   pins, and the pin itself does not count.
 * Queries such as ``volume``, ``<=`` or `check` use up nothing.
-* Solids from outside do not count until something is made from them, or `Block.add` counts them;
-  `Block.discard` removes a solid that was only an aid.
+* Solids from outside the block do not count until a solid is made from them, or `Block.add` counts
+  them; `Block.discard` removes a solid that was only an aid.
 * A nested block counts as one solid when it ends. Solids that it uses up no longer count in the
   blocks around it either.
 
-Threads and asyncio tasks have blocks of their own. A thread or task that starts inside a block
-counts there until the block ends.
+Each thread and each asyncio task has its own blocks. A thread or task that starts inside a block
+counts its solids in that block until the block ends.
 """
 
 from collections.abc import Callable, Sequence
@@ -37,12 +37,12 @@ from ..solid.solid import Solid
 
 
 class Block:
-    """The solids that count in a ``with`` statement, and the solid made from them.
+    """The solids that are operands of a ``with`` statement, and the solid made from them.
 
     Parameters
     ----------
     combined : callable
-        Takes the list of solids and returns the block's.
+        Takes the list of solids and returns the result of the operation on them.
     """
 
     def __init__(self, combined: Callable[[Sequence[Solid]], Solid]) -> None:
@@ -52,12 +52,12 @@ class Block:
 
     @property
     def solids(self) -> tuple[Solid, ...]:
-        """The solids that count so far, in order."""
-        return tuple(solid for solid in self._ledger.solids if isinstance(solid, Solid))
+        """The current operands of the block, in order."""
+        return self._ledger.solids
 
     @property
     def solid(self) -> Solid:
-        """The result of the operation on the solids that count.
+        """The result of the block's operation on its operands.
 
         Raises
         ------
@@ -73,13 +73,13 @@ class Block:
         return self._solid
 
     def add(self, *solids: Solid) -> None:
-        """Count solids that were made elsewhere, after all others."""
+        """Append solids that were made outside the block to its operands."""
         self._refuse_ended(solids)
         for solid in solids:
             self._ledger.put(solid)
 
     def discard(self, *solids: Solid) -> None:
-        """Remove solids from those that count."""
+        """Remove solids from the block's operands."""
         self._refuse_ended(solids)
         self._ledger.discard(solids)
 
@@ -96,21 +96,26 @@ class Block:
                 )
 
     def end(self, failed: bool) -> None:
-        """Close the block; its solid counts in the block around it."""
+        """Close the block, and carry out its operation unless the block failed.
+
+        The result becomes an operand of the enclosing block, if there is one.
+        """
         counting.close(self._ledger)
         if not failed:
             self._solid = self._combined(self.solids)
 
 
 class Unfilled(Solid):
-    """An operation without operands: a block in a ``with`` statement, otherwise the set it equals.
+    """The result of a set operation without operands, such as ``union()``.
+
+    In a ``with`` statement it opens a block; otherwise it is the empty set or all of space.
 
     Parameters
     ----------
     combined : callable
         Carries out the operation on a list of solids.
     full : bool
-        True if the set is all of space, instead of empty.
+        True if the operation without operands gives all of space, instead of the empty set.
     """
 
     __slots__ = ("_combined", "_open")
@@ -121,7 +126,7 @@ class Unfilled(Solid):
         self._open: list[Block] = []
 
     def __enter__(self) -> Block:
-        """Open a block."""
+        """Open a block, whose operands are the solids made in the ``with`` statement."""
         self._open.append(Block(self._combined))
         return self._open[-1]
 
@@ -131,5 +136,5 @@ class Unfilled(Solid):
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """End the block."""
+        """End the block; its operation is carried out unless an error was raised."""
         self._open.pop().end(failed=kind is not None)

@@ -1,4 +1,4 @@
-"""Splits solids: into connected components, or into the two sides of a plane."""
+"""Division of solids into connected components, or by a plane."""
 
 import numpy as np
 
@@ -11,17 +11,17 @@ from ..shapes.primitives import half_space
 from ..solid.counting import uncounted
 from ..solid.solid import Solid
 
-#: The number of corners of a cavity that are tested first: rarely do all of these lie on the shell
-#: around it.
+#: The number of a cavity's corners that are tested first. Usually one of them is not on the
+#: enclosing shell.
 _CORNERS_TRIED_FIRST = 16
 
 
 @uncounted
 def connected_parts(solid: Solid) -> list[Mesh]:
-    """Return the boundaries of the connected components, the largest volume first.
+    """Return the boundary of each connected component of a solid, the largest volume first.
 
-    A cavity's wall belongs to the component around it, which is found exactly. Parts that touch
-    only in a point or an edge are separate, even where a face runs on from one to the other.
+    The wall of a cavity belongs to the component around it, which is found exactly. Components that
+    touch only in a point or an edge are separate, even if a face continues from one to the other.
 
     Parameters
     ----------
@@ -45,15 +45,16 @@ def connected_parts(solid: Solid) -> list[Mesh]:
 def sides_of_plane(solid: Solid, normal: str | Vector, offset: Scalar) -> tuple[Solid, Solid]:
     """Return the parts of a solid below and above the plane ``normal . x = offset``.
 
-    Both sides have the cut as a face; their union is exactly the solid. The plane is that of
-    `half_space`, with the same finding if it was moved onto the lattice.
+    Both parts have the cut as a face; their union is exactly the solid. The plane is the boundary
+    of `half_space`, with the same finding if it was moved onto the lattice.
 
     Parameters
     ----------
     solid : Solid
     normal : "x", "y", "z" or (3,) float
-        Points to the upper side.
+        The plane's normal, which points to the upper side.
     offset : float
+        The value of ``normal . x`` on the plane.
 
     Examples
     --------
@@ -67,7 +68,7 @@ def sides_of_plane(solid: Solid, normal: str | Vector, offset: Scalar) -> tuple[
 
 
 def _split(mesh: Mesh, owner: IndexArray) -> list[Mesh]:
-    """Return the faces of each number from 0 on as a separate mesh."""
+    """Return a mesh of the faces with `owner` k, for each k from 0."""
     order = np.argsort(owner, kind="stable")
     ends = np.cumsum(np.bincount(owner))
     return [_selected(mesh, rows) for rows in np.split(order, ends[:-1])]
@@ -81,14 +82,15 @@ def _selected(mesh: Mesh, rows: IndexArray) -> Mesh:
 
 
 class _Shells:
-    """The connected surfaces of a boundary, and how they are nested.
+    """The connected surfaces ("shells") of a solid's boundary, and which contains which.
 
     Parameters
     ----------
     mesh : Mesh
     owner : (m,) int64
-        For each face the number of its surface, from 0.
+        The number of each face's surface, from 0.
     pitch : int
+        The pitch of the solid.
     """
 
     def __init__(self, mesh: Mesh, owner: IndexArray, pitch: int) -> None:
@@ -99,7 +101,10 @@ class _Shells:
         self._solids: dict[int, Solid] = {}
 
     def homes(self) -> IndexArray:
-        """Return the outer shell that each shell belongs to: itself, or the one around a cavity."""
+        """Return the number of the outer shell of each shell, (n,).
+
+        It is the shell itself, or for the wall of a cavity, the smallest shell around it.
+        """
         homes = np.arange(len(self._meshes))
         cavities, solid = np.flatnonzero(self._volumes <= 0), np.flatnonzero(self._volumes > 0)
         around = boxes_around(self._boxes[cavities], self._boxes[solid])
@@ -108,15 +113,19 @@ class _Shells:
         return homes
 
     def _around(self, cavity: int, candidates: IndexArray) -> int:
-        """Return the number of the smallest shell that contains a cavity's wall."""
+        """Return the number of the smallest candidate shell that contains a cavity's wall."""
         for number in candidates[np.argsort(self._volumes[candidates], kind="stable")].tolist():
             if self._holds(number, self._meshes[cavity].vertices):
                 return int(number)
-        # Only rounding can have moved the wall outside; the largest shell is the likeliest.
+        # Only rounding can have moved the wall out of its shell; take the largest shell.
         return int(self._volumes.argmax())
 
     def _holds(self, number: int, points: FloatArray) -> bool:
-        """Say whether points that cross no shell are inside it; one off the boundary decides."""
+        """Return True if points are inside a shell; points on its boundary do not count.
+
+        The points belong to a surface that does not cross the shell, so one point off the boundary
+        decides.
+        """
         if number not in self._solids:
             shell = self._meshes[number]
             self._solids[number] = Solid(shell.vertices, shell.faces, pitch=self._pitch)
@@ -124,7 +133,7 @@ class _Shells:
             try:
                 sides = self._solids[number].classify(some)
             except InvalidMeshError:
-                # Nothing is left of the shell on this lattice.
+                # The shell vanishes on this lattice.
                 return False
             if sides.any():
                 return bool((sides > 0).any() and not (sides < 0).any())

@@ -1,4 +1,4 @@
-"""Set operations on any number of solids or regions, and on bare arrays."""
+"""Set operations on any number of solids or regions, and on two meshes given as arrays."""
 
 import operator
 from collections.abc import Callable, Iterable, Sequence
@@ -17,7 +17,7 @@ from ..solid.program import Operator, program_of
 from ..solid.solid import Solid, combine
 from .block import Unfilled
 
-#: Solids, or regions, or intervals: operands are all of one kind.
+#: The type of all operands of one operation: solids, regions or intervals.
 Set = TypeVar("Set", bound=PointSet)
 
 
@@ -78,7 +78,7 @@ def difference(*sets: Solid | Iterable[Solid]) -> Solid: ...
 @overload
 def difference(*sets: Set | Iterable[Set]) -> Set: ...
 def difference(*sets: Any) -> Any:
-    """Return the first operand without all others; the empty set if there are none.
+    """Return the first operand minus all other operands; the empty set without operands.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def xor(*sets: Solid | Iterable[Solid]) -> Solid: ...
 @overload
 def xor(*sets: Set | Iterable[Set]) -> Set: ...
 def xor(*sets: Any) -> Any:
-    """Return the points inside an odd number of operands; the empty set if there are none.
+    """Return the set of points inside an odd number of operands; the empty set without operands.
 
     Parameters
     ----------
@@ -125,15 +125,16 @@ def xor(*sets: Any) -> Any:
 
 
 def boolean(va: Any, fa: Any, vb: Any, fb: Any, op: SetOp) -> tuple[FloatArray, IndexArray]:
-    """Combine two meshes: arrays in, arrays out.
+    """Return the result of a set operation on two meshes, given and returned as arrays.
 
     Parameters
     ----------
     va, vb : (n, 3) array_like of float
-        Vertices, in model units.
+        Vertices of the two meshes, in model units.
     fa, fb : (m, 3) array_like of int
-        Indices of `va` and `vb`, counter-clockwise seen from outside.
+        Triangles as row numbers of `va` and `vb`, counter-clockwise seen from outside.
     op : {"union", "intersection", "difference", "xor"}
+        The set operation.
 
     Returns
     -------
@@ -159,7 +160,7 @@ def boolean(va: Any, fa: Any, vb: Any, fb: Any, op: SetOp) -> tuple[FloatArray, 
     try:
         operands = [Pitches().of(tree, pitch) for tree in trees]
     except LimitError:
-        # Solids choose a lattice that fits both.
+        # The class Solid chooses a lattice that fits both meshes.
         mesh = OPERATIONS[op](Solid(va, fa), Solid(vb, fb)).to_mesh()
         return mesh.vertices.copy(), mesh.faces.copy()
     with core_errors():
@@ -167,7 +168,7 @@ def boolean(va: Any, fa: Any, vb: Any, fb: Any, op: SetOp) -> tuple[FloatArray, 
     return vertices, faces
 
 
-#: The operations by name, each on any number of solids.
+#: The set operations by name; each takes any number of solids.
 OPERATIONS: dict[str, Callable[..., Solid]] = {
     "union": union,
     "intersection": intersection,
@@ -182,7 +183,7 @@ def _tree(vertices: Any, faces: Any) -> Tree:
     try:
         return Tree.from_mesh(vertices, faces)
     except (TypeError, CoreError):
-        # Not arrays in the core's form; convert them, which is slower.
+        # The arrays do not have the core's types; convert them, which is slower.
         return _converted_tree(vertices, faces)
 
 
@@ -248,7 +249,7 @@ def _applied(op: SetOp, entries: Iterable[Any]) -> Any:
 
 
 def _balanced(merge: Callable[[Any, Any], Any], trees: Sequence[Any]) -> Any:
-    """Merge neighbours, then the results, and so on: each tree takes part in few merges."""
+    """Merge a list to one value: merge pairs of neighbours, then of the results, and so on."""
     while len(trees) > 1:
         pairs = [trees[k : k + 2] for k in range(0, len(trees), 2)]
         trees = [merge(*pair) if len(pair) == 2 else pair[0] for pair in pairs]

@@ -1,7 +1,7 @@
 """Standard parts: metric threads, bolts and nuts, involute gears, snap fits.
 
-Sizes are in millimetres. Parts fit their mates without overlap: a nut fits its bolt, a gear another
-gear of its module, a hook its socket.
+Dimensions are in millimetres. Matching parts do not overlap: a nut and its bolt, two gears of one
+module, a hook and its socket.
 
 Examples
 --------

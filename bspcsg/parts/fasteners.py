@@ -12,7 +12,8 @@ from ..solid.solid import Solid
 from .metric import MetricSize, metric
 from .threads import play, radii, rod_between, tap
 
-#: The diameter where the chamfer of a head begins, as a fraction of the width across flats.
+#: The diameter at which the chamfer of a bolt's head begins, as a fraction of the width across
+#: flats.
 _CROWN = 0.95
 
 #: The tangent of the angle of a head's chamfer.
@@ -37,16 +38,16 @@ def hex_bolt(
     Parameters
     ----------
     size : str
-        From ``"M3"`` to ``"M20"``.
+        A name from ``"M3"`` to ``"M20"``.
     length : float
-        Of the shank, without the head.
+        Length of the shank, without the head, in millimetres.
     thread : float, optional
-        The length of the thread. By default as in ISO 4014: twice the diameter plus 6 mm, and more
-        for bolts longer than 125 mm.
+        The length of the thread. By default as in ISO 4014: twice the diameter plus 6 mm, or plus
+        12 or 25 mm for bolts longer than 125 or 200 mm.
     clearance : float, optional
-        As for `threaded_rod`.
+        The reduction of all thread diameters, as for `threaded_rod`.
     segments : int
-        The number of sides, at least 8.
+        The number of sides around the axis, at least 8.
 
     Raises
     ------
@@ -73,7 +74,7 @@ def hex_bolt(
     if cut == 0:
         return head | cylinder(long, outer, segments=segments)
     plain, deep = long - cut, outer - inner
-    # The rod reaches into the shank, or into the head, so that they are connected.
+    # The rod extends into the shank, or into the head, so that they are connected.
     rod = rod_between(chosen, plain - min(plain, 2 * deep) - chosen.head / 2, long, gap, segments)
     if not plain:
         return head | rod
@@ -89,11 +90,11 @@ def hex_nut(size: str, *, clearance: Scalar = 0.0, segments: int = SEGMENTS) -> 
     Parameters
     ----------
     size : str
-        From ``"M3"`` to ``"M20"``.
+        A name from ``"M3"`` to ``"M20"``.
     clearance : float
-        As for `tap`.
+        The increase of all thread diameters, as for `tap`.
     segments : int
-        Sides around, at least 8.
+        The number of sides of the bore, at least 8.
 
     Raises
     ------
@@ -102,7 +103,7 @@ def hex_nut(size: str, *, clearance: Scalar = 0.0, segments: int = SEGMENTS) -> 
 
     Notes
     -----
-    Widths and heights are the nominal and greatest ones of ISO 4032.
+    The width is the nominal, and the height the greatest one of ISO 4032.
 
     Examples
     --------
@@ -122,7 +123,10 @@ def hex_nut(size: str, *, clearance: Scalar = 0.0, segments: int = SEGMENTS) -> 
 
 
 def _mouths(size: MetricSize, more: float, segments: int) -> Solid:
-    """Return cones of 120 degrees at both ends of a nut's bore."""
+    """Return the cones of 120 degrees to subtract at both ends of a nut's bore.
+
+    `more` is the increase of radii for clearance.
+    """
     wide, bore = _MOUTH * size.diameter / 2 + more, size.minor_diameter / 2 + more
     low = min((wide - bore) * _CROWN_SLOPE, size.nut / 2)
     corners = [(0, 0), (wide, 0), (wide - low / _CROWN_SLOPE, low), (0, low)]
@@ -131,7 +135,10 @@ def _mouths(size: MetricSize, more: float, segments: int) -> Solid:
 
 
 def _hexagon(flats: float, height: float, segments: int, *, both: bool) -> Solid:
-    """Return an upright hexagon whose corners are cut off by a cone above, or above and below."""
+    """Return a hexagonal prism whose corners are chamfered by a cone at the top.
+
+    If `both`, they are chamfered at the bottom, too.
+    """
     crown, wide = _CROWN * flats / 2, flats
     slope = (wide - crown) * _CROWN_SLOPE
     low = [(crown, 0.0), (wide, slope)] if both else [(wide, 0.0)]

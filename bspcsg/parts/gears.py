@@ -21,10 +21,11 @@ from ..parameters import (
 from ..solid.counting import counted
 from ..solid.solid import Solid
 
-#: Height of a tooth above the reference circle and depth below it, in modules (ISO 53, profile A).
+#: The height of a tooth above and its depth below the reference circle, in modules (ISO 53, profile
+#: A).
 _ADDENDUM, _DEDENDUM = 1.0, 1.25
 
-#: The number of radii at which the end of an undercut is sought before bisection.
+#: The number of radii that are sampled to bracket the end of an undercut, before bisection.
 _RADII_TRIED = 1000
 
 
@@ -39,18 +40,18 @@ def spur_gear(
     bore: Scalar = 0.0,
     segments: int = SEGMENTS,
 ) -> Solid:
-    """Return an involute spur gear that stands on z = 0, a tooth on the x axis.
+    """Return an involute spur gear that stands on z = 0 and has a tooth on the x axis.
 
     Parameters
     ----------
     module : float
-        Diameter of the reference circle divided by the number of teeth.
+        Diameter of the reference circle divided by the number of teeth, in millimetres.
     teeth : int
-        At least 6.
+        Number of teeth, at least 6.
     width : float
-        Along the axis.
+        Length along the axis, in millimetres.
     pressure_angle : float
-        Degrees, from 14 to 25.
+        Pressure angle in degrees, from 14 to 25.
     backlash : float
         The reduction of each tooth's thickness on the reference circle. Two such gears have twice
         that play.
@@ -66,10 +67,10 @@ def spur_gear(
 
     Notes
     -----
-    Teeth have the form that a rack of ISO 53 cuts; those of small gears are undercut at the root.
-    So any two gears of one module and pressure angle mesh at the distance
-    ``module * (teeth + others) / 2``. There a gear with an even number of teeth must be rotated by
-    half a tooth, ``180 / teeth`` degrees.
+    Teeth have the form that a rack of ISO 53 cuts; the teeth of small gears are undercut at the
+    root. So any two gears of one module and pressure angle mesh if the distance of their axes is
+    ``module * (teeth + others) / 2``. If the second gear, at positive x, has an even number of
+    teeth, it must be rotated by half a tooth, ``180 / teeth`` degrees.
 
     Examples
     --------
@@ -88,7 +89,7 @@ def spur_gear(
         raise invalid_parameter(f"pressure_angle must be from 14 to 25 degrees, not {angle:g}.")
     around, hole = sides_around(8, segments, "segments"), not_negative(bore, "bore") / 2
     refuse_many_corners(count * around * 2, "This gear")
-    # In modules, so that rounding affects all sizes alike.
+    # Compute in modules, so that rounding errors are relative to the gear's size.
     thickness = math.pi / 2 - not_negative(backlash, "backlash") / size
     if thickness <= 0:
         raise invalid_parameter(
@@ -111,15 +112,16 @@ def spur_gear(
 
 @dataclass(frozen=True)
 class _Form:
-    """The half angle of a tooth as a function of the radius, in modules and radians.
+    """The outline of a tooth: half of its angle, in radians, for each radius, in modules.
 
     Parameters
     ----------
     teeth : int
+        The number of teeth of the gear.
     angle : float
-        Of pressure.
+        The pressure angle, in radians.
     thickness : float
-        Of a tooth, on the reference circle.
+        The thickness of a tooth on the reference circle, in modules.
     """
 
     teeth: int
@@ -128,42 +130,43 @@ class _Form:
 
     @property
     def reference(self) -> float:
-        """The radius of the reference circle."""
+        """The radius of the reference circle, in modules."""
         return self.teeth / 2
 
     @property
     def root(self) -> float:
-        """The radius at the foot of the teeth."""
+        """The radius at the foot of the teeth, in modules."""
         return self.reference - _DEDENDUM
 
     @property
     def base(self) -> float:
-        """The radius of the involute's base circle."""
+        """The radius of the involute's base circle, in modules."""
         return self.reference * math.cos(self.angle)
 
     def flank(self, radii: FloatArray) -> FloatArray:
-        """Return the half angles of the involute at some radii."""
+        """Return half of a tooth's angle, in radians, on the involute flank at each radius."""
         roll = np.sqrt(np.maximum((radii / self.base) ** 2 - 1, 0))
         whole = self.thickness / self.teeth + math.tan(self.angle) - self.angle
         return np.asarray(whole - (roll - np.arctan(roll)))
 
     def foot(self, radii: FloatArray) -> FloatArray:
-        """Return the half angles at some radii where the corner of the rack's tooth cuts.
+        """Return half of a tooth's angle, in radians, at the foot, at each radius.
 
-        While the gear rotates by an angle, the rack moves by the same arc on the reference circle.
+        The foot is cut by the corner of the rack's tooth. While the gear rotates by an angle, the
+        rack moves by the length of that arc on the reference circle.
         """
-        # From the middle of the space to the corner.
+        # The distance from the middle of the space between teeth to the corner of the rack's tooth.
         corner = (math.pi - self.thickness) / 2 - _DEDENDUM * math.tan(self.angle)
         behind = np.sqrt(np.maximum(radii**2 - self.root**2, 0))
         turned = np.arctan2(behind, self.root) - (behind - corner) / self.reference
         return np.asarray(math.pi / self.teeth - turned)
 
     def meeting(self) -> float:
-        """Return the radius at which foot and flank meet."""
+        """Return the radius, in modules, at which the foot of a tooth passes into its flank."""
         along = self.reference * math.sin(self.angle) - _DEDENDUM / math.sin(self.angle)
         if along >= 0:
             return math.hypot(self.base, along)
-        # The corner cuts into the flank, up to where its path leaves the flank.
+        # The rack's corner undercuts the flank, up to the radius where its path leaves the flank.
         radii = np.linspace(self.base, self.reference + _ADDENDUM, _RADII_TRIED)
         inside = np.flatnonzero(self.foot(radii) < self.flank(radii))
         low, high = radii[inside[-1]], radii[min(inside[-1] + 1, _RADII_TRIED - 1)]
@@ -177,7 +180,7 @@ class _Form:
 def _tooth(form: _Form, steps: int) -> FloatArray:
     """Return the outline of the tooth on the x axis, counter-clockwise, in modules."""
     tip, start = form.reference + _ADDENDUM, form.meeting()
-    # The foot is most curved at its beginning.
+    # The foot is most curved near the root, so take more radii there.
     low = form.root + (start - form.root) * np.linspace(0, 1, steps, endpoint=False) ** 2
     high = np.linspace(start, tip, steps + 1)
     radii = np.concatenate([low, high])
@@ -192,6 +195,6 @@ def _tooth(form: _Form, steps: int) -> FloatArray:
 
 
 def _turn(angle: float) -> FloatArray:
-    """Return the matrix that rotates row vectors by an angle."""
+    """Return the (2, 2) matrix that rotates row vectors by an angle in radians."""
     cosine, sine = cos_sin(math.degrees(angle))
     return np.array([(cosine, sine), (-sine, cosine)])

@@ -8,28 +8,28 @@ from types import MappingProxyType
 from ..errors import invalid_parameter
 from ..parameters import shown
 
-#: The height of the triangle of a profile whose pitch is 1.
+#: The height of the fundamental triangle of a thread profile, as a multiple of the thread's pitch.
 _HEIGHT = math.sqrt(3) / 2
 
 
 @dataclass(frozen=True)
 class MetricSize:
-    """The dimensions that go with a nominal diameter, in millimetres.
+    """The dimensions of a metric thread, bolt and nut of one nominal diameter, in millimetres.
 
     Parameters
     ----------
     diameter : float
-        Nominal, the major diameter (ISO 261).
+        The nominal diameter, which is the major diameter (ISO 261).
     pitch : float
-        The coarse one (ISO 261).
+        The coarse pitch of the thread (ISO 261).
     allowance : float
         The least reduction in diameter of threads of tolerance 6g (ISO 965-1).
     flats : float
-        Width across flats of bolts and nuts (ISO 4014, ISO 4032).
+        The width across flats of bolts and nuts (ISO 4014, ISO 4032).
     head : float
-        Height of a bolt's head (ISO 4014, nominal).
+        The height of a bolt's head (ISO 4014, nominal).
     nut : float
-        Height of a nut (ISO 4032, maximum).
+        The height of a nut (ISO 4032, maximum).
 
     Examples
     --------
@@ -48,7 +48,7 @@ class MetricSize:
 
     @property
     def pitch_diameter(self) -> float:
-        """The diameter at which ridge and groove have equal width (ISO 724)."""
+        """The diameter at which ridges and grooves of the thread are equally wide (ISO 724)."""
         return self.diameter - 2 * 3 / 8 * _HEIGHT * self.pitch
 
     @property
@@ -62,12 +62,12 @@ class MetricSize:
         return self.diameter - 2 * 17 / 24 * _HEIGHT * self.pitch
 
     def threaded(self, length: float) -> float:
-        """Return the length of the thread of a bolt (ISO 4014)."""
+        """Return the thread length of a bolt of a given length, in millimetres (ISO 4014)."""
         longer = 6 if length <= 125 else 12 if length <= 200 else 25
         return min(2 * self.diameter + longer, length)
 
 
-#: The sizes by name.
+#: The metric sizes from M3 to M20, by name.
 METRIC: Mapping[str, MetricSize] = MappingProxyType(
     {
         "M3": MetricSize(3, 0.5, 0.020, 5.5, 2.0, 2.4),
@@ -87,12 +87,12 @@ METRIC: Mapping[str, MetricSize] = MappingProxyType(
 
 
 def metric(size: str) -> MetricSize:
-    """Return the dimensions of a size.
+    """Return the dimensions of a metric size, given its name.
 
     Parameters
     ----------
     size : str
-        Such as ``"M6"``.
+        A name such as ``"M6"``.
 
     Raises
     ------

@@ -11,10 +11,10 @@ from ..parameters import not_negative, number, positive
 from ..solid.counting import counted
 from ..solid.solid import Solid
 
-#: The length of the land between catch and slope, as a fraction of the thickness.
+#: The length of the flat land between catch and entrance slope, as a fraction of the thickness.
 _LAND = 0.2
 
-#: The smallest thickness and undercut, as a fraction of the length.
+#: The least thickness and the least undercut of a hook, as a fraction of its length.
 _MIN_RATIO = 1e-3
 
 
@@ -28,23 +28,24 @@ def snap_hook(
     entrance: Scalar = 30.0,
     retention: Scalar = 90.0,
 ) -> Solid:
-    """Return a cantilever hook that stands on z = 0 and catches towards x.
+    """Return a cantilever hook that stands on z = 0, with its catch towards positive x.
 
     Parameters
     ----------
     length : float
-        From the foot to the catch.
+        Distance from the foot to the catch.
     width : float
-        Along y, the middle at 0.
+        Extent along y, with the middle at y = 0.
     thickness : float
-        Of the beam, along x from 0.
+        Thickness of the beam, along x from 0.
     undercut : float
-        The distance that the catch protrudes from the beam, and that the beam bends on the way in.
+        The distance by which the catch protrudes from the beam, and by which the beam bends when it
+        is pushed in.
     entrance : float
-        Angle in degrees between the beam and the slope that slides in, from 10 to 60.
+        Angle in degrees between the beam and the slope at the tip, from 10 to 60.
     retention : float
-        Angle in degrees between the catch and the beam: 90 locks for good, less releases when
-        pulled.
+        Angle in degrees between the catch and the beam, from 30 to 90. With 90 the hook locks
+        permanently; with less it releases when pulled.
 
     Raises
     ------
@@ -53,7 +54,7 @@ def snap_hook(
 
     Notes
     -----
-    `snap_strain` returns the strain of the beam on the way in.
+    `snap_strain` returns the strain of the beam when it is pushed in.
 
     Examples
     --------
@@ -80,17 +81,17 @@ def snap_socket(
     retention: Scalar = 90.0,
     clearance: Scalar = 0.2,
 ) -> Solid:
-    """Return the body to subtract from a wall for a hook of these dimensions.
+    """Return the solid to subtract from a wall, so that a hook of these dimensions snaps in.
 
-    It begins at z = 0, leaves the beam room to bend away from the catch, and ends a clearance above
-    the hook's tip.
+    It begins at z = 0, leaves the beam room to bend away from the catch, and ends above the hook's
+    tip by the clearance.
 
     Parameters
     ----------
     length, width, thickness, undercut, entrance, retention : float
-        As for `snap_hook`.
+        The dimensions of the hook, as for `snap_hook`.
     clearance : float
-        Between hook and wall, all around.
+        The distance between hook and wall on all sides.
 
     Raises
     ------
@@ -125,15 +126,15 @@ def snap_socket(
 
 
 def snap_strain(length: Scalar, thickness: Scalar, undercut: Scalar) -> float:
-    """Return the strain of a hook's beam on its way in, as a fraction.
+    """Return the strain of a hook's beam when it is pushed in, as a fraction.
 
     For a beam of constant thickness bent at its end: ``1.5 * thickness * undercut / length**2``
-    (Bayer MaterialScience, Snap-Fit Joints for Plastics). Plastics allow some 0.02 to 0.07.
+    (Bayer MaterialScience, Snap-Fit Joints for Plastics). Plastics allow about 0.02 to 0.07.
 
     Parameters
     ----------
     length, thickness, undercut : float
-        As for `snap_hook`.
+        The dimensions of the hook, as for `snap_hook`.
 
     Examples
     --------
@@ -173,5 +174,5 @@ def _nose(
 
 
 def _upright(figure: Region, width: float) -> Solid:
-    """Extrude a figure of x and z to a width along y, with its middle at y = 0."""
+    """Return the extrusion along y of a figure in the x-z plane, with its middle at y = 0."""
     return figure.extrude(width).rotate(x=90).translate(0, width / 2, 0)

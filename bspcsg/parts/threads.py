@@ -1,7 +1,7 @@
-"""Metric screw threads (ISO 68-1), as one mesh that winds about the axis.
+"""Metric screw threads (ISO 68-1), each as one mesh that winds about the axis.
 
 The profile of one pitch is a polyline of radii and heights. Its copies along a helix form the wall:
-each turn begins where the last one ends, so that nothing overlaps.
+each turn begins where the previous turn ends, so that nothing overlaps.
 """
 
 import math
@@ -19,7 +19,7 @@ from ..solid.counting import counted
 from ..solid.solid import Solid
 from .metric import MetricSize, metric
 
-#: The tangent of the angle between a flank and the plane across the axis.
+#: The tangent of the angle between a flank and the plane perpendicular to the axis.
 _FLANK = math.tan(math.radians(30))
 
 
@@ -27,18 +27,19 @@ _FLANK = math.tan(math.radians(30))
 def threaded_rod(
     size: str, length: Scalar, *, clearance: Scalar | None = None, segments: int = SEGMENTS
 ) -> Solid:
-    """Return a rod with a metric thread, from z = 0 upwards, both ends chamfered.
+    """Return a rod with a metric external thread from z = 0 upwards, with both ends chamfered.
 
     Parameters
     ----------
     size : str
-        From ``"M3"`` to ``"M20"``, with the coarse pitch.
+        A name from ``"M3"`` to ``"M20"``; the pitch is coarse.
     length : float
+        The length of the rod, in millimetres.
     clearance : float, optional
-        The reduction of all diameters from the nominal profile. By default that of tolerance 6g,
-        some hundredths; 3D printers need 0.2 to 0.4.
+        The reduction of all diameters from the nominal profile, in millimetres. By default the
+        allowance of tolerance 6g, from 0.02 to 0.042; 3D printers need 0.2 to 0.4.
     segments : int
-        The number of sides, at least 8.
+        The number of sides around the axis, at least 8.
 
     Raises
     ------
@@ -47,9 +48,9 @@ def threaded_rod(
 
     Notes
     -----
-    Crests are an eighth of the pitch wide, and roots a sixth, the width where the standard's round
-    root is deepest. Threads of this module are in phase: a nut fits its rod at multiples of the
-    pitch, and at heights between them when it is rotated.
+    Crests are an eighth of the thread's pitch wide. Roots are a sixth of it wide and as deep as the
+    standard's round root. All threads have the same phase: a nut fits its rod if it is translated
+    along z by multiples of the pitch, or by other lengths if it is also rotated.
 
     Examples
     --------
@@ -64,17 +65,18 @@ def threaded_rod(
 
 @counted
 def tap(size: str, length: Scalar, *, clearance: Scalar = 0.0, segments: int = SEGMENTS) -> Solid:
-    """Return the body to subtract for a metric internal thread, from z = 0 upwards.
+    """Return the solid to subtract for a metric internal thread, from z = 0 upwards.
 
     Parameters
     ----------
     size : str
-        From ``"M3"`` to ``"M20"``, with the coarse pitch.
+        A name from ``"M3"`` to ``"M20"``; the pitch is coarse.
     length : float
+        The length of the thread, in millimetres.
     clearance : float
         The increase of all diameters over the nominal profile; 3D printers need 0.2 to 0.4.
     segments : int
-        The number of sides, at least 8.
+        The number of sides around the axis, at least 8.
 
     Raises
     ------
@@ -98,10 +100,10 @@ def tap(size: str, length: Scalar, *, clearance: Scalar = 0.0, segments: int = S
 def rod_between(
     size: MetricSize, low: float, high: float, clearance: float, segments: int
 ) -> Solid:
-    """Return a rod with an external thread between two heights, its ends chamfered."""
+    """Return a rod with an external thread from z = low to z = high, with both ends chamfered."""
     inner, outer = radii(size, clearance)
     deep = outer - inner
-    # A little wider than the thread, so that the thread itself bounds the crests.
+    # The envelope is wider than the thread, so that the thread itself bounds the crests.
     wide, slope = outer + deep, 2 * deep
     ends = [
         (0, low),
@@ -119,12 +121,12 @@ def rod_between(
 
 
 def radii(size: MetricSize, clearance: float) -> tuple[float, float]:
-    """Return the radii of root and crest of an external thread."""
+    """Return the radii of the root and the crest of an external thread, less half the clearance."""
     return (size.root_diameter - clearance) / 2, (size.diameter - clearance) / 2
 
 
 def play(clearance: Scalar | None, size: MetricSize) -> float:
-    """Return a clearance, checked; None means the allowance of tolerance 6g."""
+    """Return a checked clearance of diameters; if None is given, the allowance of tolerance 6g."""
     if clearance is None:
         return size.allowance
     given = not_negative(clearance, "clearance")
@@ -139,7 +141,7 @@ def play(clearance: Scalar | None, size: MetricSize) -> float:
 def _thread(
     size: MetricSize, ends: tuple[float, float], reach: tuple[float, float], segments: int
 ) -> Solid:
-    """Return a thread between two radii that reaches beyond two heights, with uncut ends."""
+    """Return a thread between the two radii `ends`, which extends past the two heights `reach`."""
     around = sides_around(8, segments, "segments")
     pitch, (inner, outer) = size.pitch, ends
     first = math.floor(reach[0] / pitch) - 2
@@ -155,10 +157,10 @@ def _thread(
 def _wound(
     profile: FloatArray, pitch: float, turns: int, around: int
 ) -> tuple[FloatArray, IndexArray]:
-    """Return the mesh of a profile that winds about the axis, its ends closed by fans.
+    """Return the mesh of a profile that winds about the axis, with both ends closed by fans.
 
-    Corner c of step i has number ``i * k + c``; the last corner of a step is followed by the first
-    corner one turn later.
+    With k corners in the profile, corner c of step i has number ``i * k + c`` before unused corners
+    are removed. The last corner of a step is joined to the first corner one turn later.
     """
     count, steps = len(profile), turns * around + 1
     circle = unit_circle(around)[np.arange(steps) % around]
@@ -172,7 +174,7 @@ def _wound(
         np.stack([low, low + count, high + count], axis=2),
         np.stack([low, high + count, high], axis=2),
     ]
-    # Each end is a turn of the helix and a step back to its beginning.
+    # The border of each end is one turn of the helix and the profile back to its beginning.
     helix = np.arange(around + 1) * count
     rim = np.append(helix, np.arange(count - 1, 0, -1))
     last = (steps - around - 1) * count

@@ -1,1 +1,1 @@
-"""The diagnosis of a mesh, and its repair."""
+"""Diagnosis of the defects of meshes, and repair by pymeshlab."""

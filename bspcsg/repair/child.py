@@ -1,7 +1,8 @@
 """The process that runs pymeshlab: ``child.py FOLDER`` repairs ``mesh.npz`` in that folder.
 
-It runs apart because pymeshlab has another licence, and can crash or hang. It imports nothing
-of this package, writes ``repaired.npz`` and ``said.json``, and exits with 6 without pymeshlab.
+It is a process of its own because pymeshlab has another licence, and can crash or hang. It imports
+nothing of this package, and writes ``repaired.npz`` and ``said.json``. If pymeshlab is missing, its
+exit code is 6.
 """
 
 import json
@@ -12,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-#: The number of plug-ins that a complete installation loads.
+#: The number of plug-ins that a complete installation of pymeshlab loads.
 PLUGINS = 58
 
 MISSING = 6
@@ -46,11 +47,11 @@ def _drop(meshes: Any, settings: dict[str, Any]) -> None:
 
 
 def stray_faces(faces: Any) -> Any:
-    """Say which faces belong to stray fragments; none do if there are only fragments.
+    """Say for each face whether it belongs to a stray fragment; no face does if all are fragments.
 
-    A fragment is a piece of surface with one rim that contains all its corners, so that it bounds
-    nothing: a loose triangle, a fin, a strip. A tube without caps has two rims, and a pyramid
-    without its base has a tip off the rim, so neither is a fragment.
+    A stray fragment is a piece of surface with one boundary loop that contains all vertices, so
+    that it encloses nothing: a loose triangle, a fin, a strip. A tube without caps has two boundary
+    loops, and a pyramid without its base has a tip that is not on the loop, so neither is one.
     """
     faces = faces.astype(np.int64)
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
@@ -70,18 +71,21 @@ def stray_faces(faces: Any) -> Any:
 
 
 def _keys(first: Any, second: Any) -> Any:
-    """Return a number for each pair of numbers."""
+    """Return an integer for each pair of integers, distinct for distinct pairs."""
     return first * (second.max(initial=0) + 1) + second
 
 
 def _counts(bits: Any, things: Any, size: int = 0) -> Any:
-    """Return the number of distinct things in each piece, from pairs of a piece and a thing."""
+    """Return the number of distinct things in each piece, given pairs of a piece and a thing.
+
+    The result has at least `size` entries.
+    """
     pairs = np.unique(_keys(bits, things))
     return np.bincount(pairs // (things.max(initial=0) + 1), minlength=size)
 
 
 def _joined(links: Any, count: int) -> Any:
-    """Return for each of `count` things the least number of a thing connected to it by links."""
+    """Return for each of `count` nodes the smallest node that pairs of nodes connect it to."""
     least = np.arange(count)
     while len(links):
         before = least.copy()
@@ -96,7 +100,7 @@ def _joined(links: Any, count: int) -> Any:
 
 def _split(meshes: Any, settings: dict[str, Any]) -> None:
     meshes.compute_selection_by_non_manifold_edges_per_face()
-    # With nothing to split, the filter would tear sound meshes apart.
+    # If no edge is non-manifold, this filter would split correct meshes.
     if meshes.current_mesh().selected_face_number():
         meshes.meshing_repair_non_manifold_edges(method="Split Vertices")
     meshes.meshing_repair_non_manifold_vertices(vertdispratio=0)
@@ -121,7 +125,7 @@ STEPS: dict[str, Callable[[Any, dict[str, Any]], None]] = {
 
 
 def main(folder: Path) -> int:
-    """Repair the mesh in a folder."""
+    """Repair the mesh in a folder, and return the exit code of the process."""
     try:
         import pymeshlab
 

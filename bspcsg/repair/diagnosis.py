@@ -1,7 +1,7 @@
-"""The diagnosis of a mesh: all its defects, with name, number and place.
+"""The diagnosis of a mesh: findings that name and count its defects, and the faces that have them.
 
-Connectivity is judged after corners with equal coordinates are joined, as every reader of STL has
-to do. The core decides exactly whether faces cross or overlap.
+Corners with equal coordinates are joined before edges are examined, as every reader of STL has to
+do. The core decides exactly whether faces cross or overlap.
 """
 
 import math
@@ -22,42 +22,42 @@ from ..solid.counting import uncounted
 from ..solid.measure import overlaps_of
 from ..solid.solid import Solid
 
-#: The largest number of places that a finding names.
+#: The largest number of faces that a finding names.
 _MAX_PLACES_NAMED = 8
 
-#: Height by longest edge below which a triangle's area is computed exactly.
+#: The bound of height divided by longest edge below which a triangle's area is computed exactly.
 _FLAT = 1e-6
 
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """The findings about a mesh.
+    """The defects and the measures of a mesh.
 
     Parameters
     ----------
     triangles, vertices : int
-        As in the file.
+        The counts in the file.
     closed, oriented, manifold : bool
-        Every edge has as many faces one way as the other; no edge is used twice in one direction;
-        no edge has more than two faces.
+        Closed: every edge has as many faces in one direction as in the other. Oriented: no edge
+        with several faces has more in one direction. Manifold: no edge has more than two faces.
     self_overlapping : bool or None
         True if faces cross, overlap or repeat on the lattice; None if the mesh is not a solid.
     precision : {"double", "single"} or None
-        The coarsest precision that represents all coordinates; None if the mesh is not closed.
+        Single if single precision represents all coordinates exactly; None if not closed.
     crossings : int or None
-        Pairs of triangles that cross or overlap, decided exactly for the given coordinates; None if
-        the mesh is not closed.
+        The number of pairs of triangles that cross or overlap, decided exactly for the given
+        coordinates; None if the mesh is not closed.
     verdict : {"solid", "inside out", "not closed", "empty", "refused"}
     findings : tuple of Finding
-        The worst first.
+        Sorted by severity, the worst first.
     signed_volume, area : float
-        Of the triangles, even if they enclose nothing; in model units.
+        Sums over the triangles, even if they enclose nothing; in cubic and square model units.
     volume : float or None
-        Of the set with positive winding number; None if there is none.
+        The volume of the points with positive winding number; None if the mesh is not closed.
     surfaces, genus : int or None
-        Connected surfaces, and handles of all of them together.
+        The number of connected surfaces, and of handles in all of them together.
     bounds : tuple or None
-        Lowest and highest coordinates.
+        Smallest and largest x, y and z.
     """
 
     triangles: int
@@ -79,11 +79,11 @@ class Diagnosis:
 
     @property
     def is_solid(self) -> bool:
-        """True if the mesh bounds a set and is oriented outwards."""
+        """True if the verdict is "solid": the mesh is closed and oriented outwards."""
         return self.verdict == "solid"
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything as JSON values; a measure that overflows a double is None."""
+        """Return the diagnosis as JSON values; a measure that overflows a double is None."""
         found = asdict(self)
         for name in ("signed_volume", "area"):
             found[name] = found[name] if math.isfinite(found[name]) else None
@@ -92,7 +92,7 @@ class Diagnosis:
 
 @uncounted
 def diagnose(raw: RawMesh) -> Diagnosis:
-    """Diagnose a mesh."""
+    """Find all defects of a mesh, and measure it."""
     with np.errstate(over="ignore", invalid="ignore"):
         return _diagnosed(raw)
 
@@ -103,7 +103,7 @@ def _diagnosed(raw: RawMesh) -> Diagnosis:
     edges = EdgeUses(mesh.faces, len(vertices))
     findings = [*raw.findings, *_edge_findings(mesh, edges), *_face_findings(mesh, edges)]
     solid, verdict = _as_solid(raw, findings)
-    # The set of a mesh that is inside out is empty; comparing it with the mesh is useless.
+    # A mesh that is inside out encloses no points of positive winding number: nothing to compare.
     overlapping = None
     if solid is not None and verdict == "solid":
         overlaps = _overlaps(solid)
@@ -141,7 +141,10 @@ def by_severity(findings: Sequence[Finding]) -> tuple[Finding, ...]:
 
 
 class EdgeUses:
-    """The undirected edges of triangles, and how often faces use each in either direction.
+    """The undirected edges of triangles, sorted by how faces use each edge in both directions.
+
+    `open` are the edges with one face, `turned` those with more faces in one direction, `crowded`
+    those with more than two faces; all are indices of `ends`, the vertices of each edge.
 
     Parameters
     ----------
@@ -167,7 +170,7 @@ class EdgeUses:
 
     @property
     def are_closed(self) -> bool:
-        """True if every edge has as many faces one way as the other."""
+        """True if every edge has as many faces in one direction as in the other."""
         return len(self.open) == 0 and len(self.turned) == 0
 
     @property
@@ -176,7 +179,7 @@ class EdgeUses:
         return self.are_closed and len(self.crowded) == 0 and len(self.edge) > 0
 
     def faces_at(self, edges: IndexArray) -> tuple[int, ...]:
-        """Return the first few faces at some edges."""
+        """Return the first faces at the given edges, at most as many as a finding names."""
         at = np.flatnonzero(np.isin(self.edge, edges[:_MAX_PLACES_NAMED]))
         return tuple(np.unique(self.face[at])[:_MAX_PLACES_NAMED].tolist())
 
@@ -201,7 +204,10 @@ def _edge_findings(mesh: Mesh, edges: EdgeUses) -> list[Finding]:
 
 
 def connected(ends: IndexArray) -> IndexArray:
-    """Return the number, from 0, of the connected chain that each edge is in, (k,)."""
+    """Return for each edge the number, from 0, of the connected chain to which it belongs, (k,).
+
+    Edges are given by their vertices, (k, 2).
+    """
     used, edges = np.unique(ends, return_inverse=True)
     # Represent an edge as a triangle that repeats a corner.
     return surfaces_of(edges.reshape(-1, 2)[:, [0, 1, 1]], len(used))
@@ -227,10 +233,10 @@ def _face_findings(mesh: Mesh, edges: EdgeUses) -> list[Finding]:
 
 
 def flat_faces(mesh: Mesh) -> IndexArray:
-    """Return the faces whose area is exactly zero."""
+    """Return the numbers of the faces whose area is exactly zero."""
     corners = mesh.vertices[mesh.faces]
     scale = np.abs(corners - corners[:, :1]).max(axis=(1, 2))[:, None]
-    # Scaled by its own size, so that no area over- or underflows.
+    # Scale each triangle to its own largest coordinate, so that no area over- or underflows.
     local = np.divide(
         corners - corners[:, :1], scale[:, None], np.zeros_like(corners), where=scale[:, None] > 0
     )
@@ -247,7 +253,7 @@ def _is_flat(corners: FloatArray) -> bool:
 
 
 def repeated_faces(faces: IndexArray) -> IndexArray:
-    """Return the faces that have the same three corners as an earlier face."""
+    """Return the numbers of the faces that have the same three corners as an earlier face."""
     if len(faces) == 0:
         return np.zeros(0, dtype=np.int64)
     _, first = np.unique(np.sort(faces, axis=1), axis=0, return_index=True)
@@ -255,7 +261,10 @@ def repeated_faces(faces: IndexArray) -> IndexArray:
 
 
 def _as_solid(raw: RawMesh, findings: list[Finding]) -> tuple[Solid | None, str]:
-    """Return the mesh as a solid if it is one, and the verdict; add the core's findings."""
+    """Return the mesh as a solid, or None, and the verdict; add the core's findings to `findings`.
+
+    If the mesh is closed on the lattice, its open edges become notes.
+    """
     try:
         solid = Solid(raw.vertices, raw.faces)
     except BspcsgError as error:
@@ -280,7 +289,7 @@ def _as_solid(raw: RawMesh, findings: list[Finding]) -> tuple[Solid | None, str]
 
 
 def _overlaps(solid: Solid) -> list[Finding]:
-    """Return the findings about bodies left out, and faces that cross, overlap or repeat."""
+    """Return findings about bodies that are not in the solid, and faces that cross or overlap."""
     source = solid.to_mesh().source
     return [
         replace(found, where=_few(source[list(found.where), 1])) for found in overlaps_of(solid)
@@ -288,9 +297,9 @@ def _overlaps(solid: Solid) -> list[Finding]:
 
 
 def _proof(solid: Solid, findings: list[Finding]) -> Certificate:
-    """Return the result of the exact check of the given coordinates.
+    """Return the result of the exact check of a solid's mesh, with its coordinates as doubles.
 
-    Adds a finding if faces cross there, unless they cross on the lattice already.
+    If faces cross in doubles but not on the lattice, add a finding to `findings`.
     """
     mesh = solid.to_mesh()
     proof = mesh.certificate

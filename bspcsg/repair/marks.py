@@ -1,4 +1,4 @@
-"""The places of all defects of a mesh; a diagnosis names only the first few."""
+"""All edges and triangles of a mesh that have a defect; a diagnosis names only the first ones."""
 
 from dataclasses import dataclass
 
@@ -16,21 +16,21 @@ from .diagnosis import EdgeUses, connected, flat_faces, repeated_faces
 
 @dataclass(frozen=True, eq=False)
 class Marks:
-    """A mesh with its corners joined, and the places of its defects.
+    """A mesh whose equal vertices are joined, and all edges and triangles that have a defect.
 
     Parameters
     ----------
     vertices : (n, 3) float64
     faces : (m, 3) int64
     open, turned, crowded : (k, 2) int64
-        Vertices of the edges with only one triangle, of those whose triangles do not run in
-        opposite directions, and of those with more than two triangles.
+        The two vertices of each edge with only one triangle, of each edge whose triangles do not
+        run in opposite directions, and of each edge with more than two triangles.
     holes : (k,) int64
-        The number of the hole that each open edge borders.
+        For each open edge, the number of the hole that it borders.
     crossings : (c, 2) int64
         Pairs of triangles that cross or overlap.
     flat, repeated : (k,) int64
-        Triangles without area, and triangles with the same corners as another.
+        Triangles without area, and triangles with the same corners as an earlier one.
     """
 
     vertices: FloatArray
@@ -46,7 +46,10 @@ class Marks:
 
 @uncounted
 def marks_of(raw: RawMesh) -> Marks:
-    """Return the places of the defects of a mesh; coordinates that are not finite cross nothing."""
+    """Return all edges and triangles of a mesh that have a defect.
+
+    If a coordinate is not finite, no crossings are found.
+    """
     vertices, same = welded(raw.vertices) if len(raw.vertices) else (raw.vertices, np.zeros(0, int))
     faces = same[raw.faces]
     edges = EdgeUses(faces, len(vertices))

@@ -1,4 +1,4 @@
-"""Closes and orients meshes that are not solids, by pymeshlab in a process of its own."""
+"""Closing and orienting meshes that are not solids, by pymeshlab in a process of its own."""
 
 import json
 import os
@@ -20,13 +20,13 @@ from ..mesh.mesh import Mesh, surfaces_of
 from ..mesh.weld import welded
 from ..processes import run_program
 
-#: The steps in the order in which they are taken.
+#: The steps of a repair in the order in which they are taken.
 STEPS = ("weld", "dedup", "drop", "split", "orient", "fill")
 
 _CHILD = Path(__file__).with_name("child.py")
 _MISSING = 6
 
-#: The largest number of edges around a hole that pymeshlab accepts: it counts in 32 bits.
+#: The largest limit of edges around a hole that pymeshlab accepts, a 32-bit number.
 _MAX_HOLE_EDGES = 2**31 - 1
 
 #: The largest number of names that a message shows.
@@ -41,13 +41,13 @@ class Repair:
     ----------
     mesh : RawMesh
     failed : dict of str to str
-        Steps that failed, with the reason.
+        The reason by the name of each step that failed.
     turned : int
         The number of triangles reversed because they faced inwards.
     dropped : int
-        The number of triangles removed in stray fragments, which bound nothing.
+        The number of removed triangles of stray fragments, pieces of surface that enclose nothing.
     lost : tuple of Finding
-        The names and attributes that were lost, because no triangle's origin is known.
+        Findings about names and attributes, which a repair loses.
     """
 
     mesh: RawMesh
@@ -65,28 +65,28 @@ def repair(
     max_hole: int = 1000,
     timeout: float | None = None,
 ) -> Repair:
-    """Return a mesh with duplicates and strays dropped, faces oriented and holes filled.
+    """Close and orient a mesh: remove duplicates and fragments, orient faces and fill holes.
 
-    Names of several objects and all attributes are dropped, and reported in `lost`.
+    Names of several objects and all attributes are lost, and reported in `lost`.
 
     Parameters
     ----------
     raw : RawMesh
     steps : sequence of str
-        Out of `STEPS`; they are taken in that order: join vertices, drop repeated and flat
-        triangles, drop stray fragments, split edges with more than two triangles, orient, fill
+        Names from `STEPS`; they are taken in the order of `STEPS`: join vertices, drop repeated and
+        flat triangles, drop stray fragments, split edges with more than two triangles, orient, fill
         holes.
     weld : float
         Distance in model units up to which vertices are joined; equal vertices always are.
     max_hole : int
-        Edges around the largest hole that is filled.
+        The largest number of edges around a hole that is filled.
     timeout : float, optional
-        Seconds before giving up.
+        Seconds after which the repair is stopped.
 
     Raises
     ------
     InvalidMeshError
-        If there is no triangle.
+        If the mesh has no triangle.
     InvalidParameterError
         If a step is unknown.
     MissingPartError
@@ -118,7 +118,7 @@ def repair(
     turned = 0 if inward is None else int(inward.sum())
     if inward is not None and turned:
         faces[inward] = faces[inward][:, ::-1]
-    # Join equal points again that were split to be oriented and closed.
+    # Join equal vertices again, which the steps “split” and “orient” may have separated.
     points, same = welded(vertices[faces].reshape(-1, 3))
     called = tuple((name, len(faces)) for name, _ in raw.objects) if len(raw.objects) == 1 else ()
     mesh = RawMesh(points, same.reshape(-1, 3), raw.name, (), called, raw.unit)
@@ -126,7 +126,7 @@ def repair(
 
 
 def losses_of(raw: RawMesh) -> tuple[Finding, ...]:
-    """Return the findings about parts of a mesh that a repair does not keep."""
+    """Return findings about names of objects and attributes, which a repair of `raw` would lose."""
     objects = [name for name, _ in raw.objects if name] if len(raw.objects) > 1 else []
     attributes = () if raw.attributes is None else raw.attributes.names
     kinds = (
@@ -148,8 +148,8 @@ def losses_of(raw: RawMesh) -> tuple[Finding, ...]:
 
 
 def _asked(folder: Path, timeout: float | None) -> dict[str, Any]:
-    """Run the child on a folder; return the steps that failed, and how many faces it dropped."""
-    # Without -P, this package's own folder would hide modules of the standard library.
+    """Run ``child.py`` on a folder; return its report: failed steps, and removed triangles."""
+    # Without -P, modules in the folder of child.py would hide modules of the standard library.
     command = [sys.executable, "-P", os.fspath(_CHILD), os.fspath(folder)]
     try:
         done = run_program(command, timeout)
@@ -171,23 +171,24 @@ def _asked(folder: Path, timeout: float | None) -> dict[str, Any]:
 
 
 def remedy(reason: str) -> str:
-    """Return the command that installs what pymeshlab lacks."""
+    """Return the shell command that installs what is missing, pymeshlab or a system library."""
     if "libGL" in reason or "libOpenGL" in reason or "plug-ins" in reason:
         return "apt-get install --no-install-recommends libgl1 libopengl0"
     return 'pip install "bspcsg[repair]"'
 
 
 def _facing_inwards(mesh: Mesh) -> BoolArray:
-    """Return which faces belong to surfaces that are inside out.
+    """Say for each face whether it belongs to a connected surface that is inside out.
 
-    A surface inside the box of another may be the wall of a cavity, and is not changed.
+    A surface inside the box of another may be the wall of a cavity; it counts as inside out only if
+    the mesh as a whole is.
     """
     if len(mesh.faces) == 0:
         return np.zeros(0, dtype=np.bool_)
     owner = surfaces_of(mesh.faces, len(mesh.vertices))
     corners = mesh.vertices[mesh.faces]
     boxes = boxes_of(corners, owner)
-    # For a surface with holes, the volume as seen from the middle of its box.
+    # The volume relative to the centre of the surface's box, which also suits a surface with holes.
     a, b, c = (corners[:, k] - boxes.mean(axis=1)[owner] for k in range(3))
     volumes = np.bincount(owner, np.einsum("ij,ij->i", np.cross(a, b), c))
     # If the whole mesh is inside out, so are the cavities.

@@ -1,4 +1,4 @@
-"""The files that pages are made of."""
+"""The scripts, styles and templates of which HTML pages are made."""
 
 from functools import cache
 from importlib.resources import files
@@ -19,12 +19,12 @@ def asset(name: str) -> str:
 
 @cache
 def bundle() -> str:
-    """Return the viewer with three.js, compressed; `assets/loader.js` unpacks it."""
+    """Return the 3D viewer with three.js as compressed text; `assets/loader.js` unpacks it."""
     return compressed(asset("viewer.js").encode())
 
 
 def rendered(template: str, **values: Any) -> str:
-    """Return the page that a file in the folder ``templates`` makes of values.
+    """Return the page that a template, a file in the folder ``templates``, makes of values.
 
     Raises
     ------

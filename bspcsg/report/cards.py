@@ -1,4 +1,4 @@
-"""The cards of a report: the choice of cases, and the size of each card."""
+"""The cards of a campaign's report: the choice of cases, and pictures and 3D views that fit."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -14,28 +14,29 @@ from .viewer.packing import packed
 from .viewer.still import camera_for, rings, still
 from .wording import tone, whole
 
-#: The number of characters that a page with so many cards may have. A page with more cards may be
-#: longer in proportion.
+#: A page may have 1 450 000 characters if it has up to 40 cards; with more cards, more in
+#: proportion.
 _PAGE_CHARACTERS, _CARDS_PER_PAGE = 1_450_000, 40
 
 #: The smallest share of a page that is left for cards if the table is long.
 _MIN_CARD_SHARE = 0.3
 
-#: Cells a side that a view is simplified to, until it fits.
+#: Grid cells along the longest side to which a 3D view is simplified, one by one until it fits.
 _CELLS = (128, 64, 40, 24)
 
-#: About the number of characters of the pictures of one card.
+#: An estimate of the number of characters of one card's pictures.
 _PICTURE_CHARACTERS = 10_000
 
-#: The largest size of one view, in equal shares of the characters that are left.
+#: A view may use at most this multiple of an equal share of the characters that are left.
 _MAX_VIEW_SHARES = 2
 
 
 @dataclass(frozen=True)
 class Figure:
-    """A picture of a card; later images are drawn over earlier ones.
+    """A picture on a card: data URLs of images, drawn one over another in order.
 
-    `text` replaces a missing picture; `is_same` is set if it is missing because two sets are equal.
+    `text` replaces a missing picture; `is_same` is true if it is missing because two sets are
+    equal.
     """
 
     caption: str
@@ -46,17 +47,18 @@ class Figure:
 
 @dataclass(frozen=True)
 class Card:
-    """One case, as shown on a page.
+    """The card of one case on the page of a campaign.
 
     Parameters
     ----------
     address : str
-        In the page.
+        The id of the card's element in the page.
     case : CaseRecord
     tone : str
+        The tone of the verdict, see `wording.tone`.
     figures : list of Figure
     model : dict or None
-        The data that the viewer unpacks.
+        The data of the 3D view, which the viewer unpacks.
     note : str
         A note on omitted content, and the reason.
     """
@@ -70,13 +72,14 @@ class Card:
 
 
 class PageBudget:
-    """The characters that may still be spent on cards.
+    """A count of the characters of a page that are left for cards.
 
     Parameters
     ----------
     cards : int
+        The number of cards.
     spent : int
-        The number of characters of the rest of the page.
+        The number of characters of the page without cards.
     page : float, optional
         The limit of characters of the page; by default it depends on the number of cards.
     """
@@ -87,11 +90,11 @@ class PageBudget:
         self.left = max(page - spent, _MIN_CARD_SHARE * page)
 
     def spend(self, characters: int) -> None:
-        """Spend a number of characters."""
+        """Subtract a number of characters that a card uses."""
         self.left -= characters
 
     def allowance(self) -> float:
-        """Return the characters that the view of the next card may use, after its pictures."""
+        """Return the number of characters that the next card's 3D view may use; count the card."""
         cards = max(self._cards, 1)
         self._cards = cards - 1
         free = self.left - self._cards * _PICTURE_CHARACTERS
@@ -99,7 +102,7 @@ class PageBudget:
 
 
 def picked(results: Results, count: int) -> list[CaseRecord]:
-    """Return the cases that get a card: failures first, then cases with meshes, worst first."""
+    """Return the first `count` cases for cards: failures, then cases with meshes, worst first."""
     return sorted(results.cases.values(), key=_urgency)[:count]
 
 
@@ -138,7 +141,7 @@ def cards_of(cases: Iterable[CaseRecord], results: Results, budget: PageBudget) 
 
 
 def _figures(case: CaseRecord, stored: Stored) -> list[Figure]:
-    """Return pictures of the operands, the result and the difference, with one camera."""
+    """Return pictures of a case's operands, result and difference, all with the same camera."""
     if not stored.layers:
         return []
     camera = camera_for(stored.layers, (4, 3))
@@ -180,13 +183,15 @@ def _no_difference(case: CaseRecord) -> Figure:
 def model_within(
     layers: list[Layer], allowance: float, **told: Any
 ) -> tuple[dict[str, Any] | None, str]:
-    """Return the data for the viewer, simplified if necessary, and a note on the changes.
+    """Return the data of a 3D view, simplified if necessary, and a note on omitted content.
+
+    Return None and a note if even the simplest view is too long.
 
     Parameters
     ----------
     layers : list of Layer
     allowance : float
-        Characters that it may have.
+        The largest number of characters of the data.
     **told
         As for `packed`.
     """

@@ -1,4 +1,4 @@
-"""Charts as SVG, in the colours of the page."""
+"""Charts for a page, as paths and labels of SVG."""
 
 import math
 from collections.abc import Sequence
@@ -7,26 +7,26 @@ from typing import NamedTuple
 _WIDTH, _HEIGHT = 360, 190
 _LEFT, _RIGHT, _TOP, _BOTTOM = 42, 8, 8, 32
 
-#: The largest number of steps of a curve: nobody could see more in a picture of this width.
+#: The largest number of steps of a curve: more could not be seen in a picture of this width.
 _MAX_CURVE_STEPS = 200
 
 
 class Mark(NamedTuple):
-    """A label on an axis, and its position in pixels."""
+    """A label on an axis of a chart, and its position along the axis in pixels."""
 
     place: float
     text: str
 
 
 class Curve(NamedTuple):
-    """A line of a chart: its name and its path."""
+    """A curve of a chart: its name and its SVG path."""
 
     name: str
     path: str
 
 
 class Chart(NamedTuple):
-    """The data of a chart for the template: curves, labels of the axes, and the frame in pixels."""
+    """The data of a chart for the page's template: curves, axis labels, and the frame in pixels."""
 
     curves: list[Curve]
     across: list[Mark]
@@ -45,8 +45,8 @@ def share_below(series: Sequence[tuple[str, Sequence[float]]]) -> Chart | None:
     Parameters
     ----------
     series : sequence of (str, sequence of float)
-        Names and values; values up to 0 count as smaller than all others. Without a positive value
-        there is no chart.
+        Names and values of the curves; values up to 0 count as smaller than all positive values.
+        Without a positive value, return None.
     """
     positive = [value for _, values in series for value in values if value > 0]
     if not positive:
@@ -62,7 +62,7 @@ def share_below(series: Sequence[tuple[str, Sequence[float]]]) -> Chart | None:
 
 
 def _path(values: Sequence[float], low: int, high: int) -> str:
-    """Return the step curve of the share of values up to each value."""
+    """Return the SVG path of the cumulative distribution of sorted values, a step curve."""
     count = len(values)
     picked = sorted(
         {round(k * (count - 1) / _MAX_CURVE_STEPS) for k in range(_MAX_CURVE_STEPS + 1)}

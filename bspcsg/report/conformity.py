@@ -1,4 +1,4 @@
-"""The check of JSON values against typed dictionaries."""
+"""Checking of JSON values against typed dictionaries."""
 
 import math
 from types import NoneType, UnionType
@@ -6,7 +6,7 @@ from typing import Any, Union, get_args, get_origin, get_type_hints, is_typeddic
 
 
 def departure(value: Any, kind: Any, place: str = "") -> str:
-    """Return where and why a JSON value does not have a type, or nothing if it does.
+    """Return where and why a JSON value does not have a type, or an empty string if it does.
 
     Parameters
     ----------
@@ -14,7 +14,7 @@ def departure(value: Any, kind: Any, place: str = "") -> str:
     kind : type
         A typed dictionary, or a type that occurs in one.
     place : str
-        The name of the value.
+        The name of the value in the returned text.
     """
     if is_typeddict(kind):
         return _departure_in_dict(value, kind, place)

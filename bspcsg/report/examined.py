@@ -1,4 +1,4 @@
-"""The page of checked meshes, with a card for each mesh and each of its objects."""
+"""The page that `bspcsg check` writes, with a card for each file and for each object."""
 
 import re
 from collections import Counter
@@ -28,10 +28,10 @@ _FILES = ("page.css", "report.css", "loader.js", "table.js")
 
 _SIZE = (320, 240)
 
-#: The verdict on what could not be read.
+#: The verdict on a file that could not be read.
 UNREADABLE = "unreadable"
 
-#: The order of verdicts, worst first, and what each means.
+#: The meanings of verdicts on a mesh, in the order of verdicts, the worst first.
 _MEANINGS = {
     UNREADABLE: "the file is missing, damaged or of an unknown format",
     "refused": "the numbers are too large, or not finite",
@@ -44,20 +44,22 @@ _MEANINGS = {
 
 @dataclass(frozen=True)
 class Sheet:
-    """One mesh, or one object of a file, as shown on the page.
+    """The card of one file, or of one object of a file, on the page of checked meshes.
 
     Parameters
     ----------
     address : str
-        In the page.
+        The id of the card's element in the page.
     file, name : str
-        Names of the file and of the object in it; the latter is empty for the whole file.
+        Names of the file and of the object in it; the object's is empty for the whole file.
     verdict, tone : str
+        The verdict on the mesh, and its tone, which gives the colour: good, warn or bad.
     findings : sequence of Finding
     facts : mapping of str to str
+        Counts and measures of the mesh as text, by name.
     figures : list of Figure
     model : dict or None
-        The data that the viewer unpacks.
+        The data of the 3D view, which the viewer unpacks.
     note : str
         A note on omitted content, and the reason.
     """
@@ -75,12 +77,12 @@ class Sheet:
 
     @property
     def title(self) -> str:
-        """The title of the card."""
+        """The title of the card: the file, and the object's name if it has one."""
         return f"{self.file}: {self.name}" if self.name else self.file
 
 
 class Row(NamedTuple):
-    """One line of the table."""
+    """One row of the table of checked meshes; `card` is the id of the card in the page."""
 
     tone: str
     rank: int
@@ -89,14 +91,14 @@ class Row(NamedTuple):
 
 
 class CheckPage:
-    """A page that is built file by file, so that each mesh is released once it is drawn.
+    """The page of checked meshes, built file by file, so that each mesh is released once drawn.
 
     Parameters
     ----------
     files : int
         The total number of files.
     thin : float, optional
-        Thickness in model units below which walls are marked.
+        Walls thinner than this, in model units, are marked.
     """
 
     def __init__(self, files: int, thin: float | None = None) -> None:
@@ -106,7 +108,7 @@ class CheckPage:
         self._sheets: list[Sheet] = []
 
     def add(self, file: str, whole_file: Examination) -> None:
-        """Add a file, and each of its objects if there are several."""
+        """Add a card for a file, and one for each of its objects if there are several."""
         allowance = self._budget.allowance() / (1 + len(whole_file.objects))
         if whole_file.objects:
             scene = assembled(whole_file)
@@ -158,7 +160,7 @@ class CheckPage:
         self._sheets.append(sheet)
 
     def text(self) -> str:
-        """Return the page.
+        """Return the page as HTML.
 
         Raises
         ------
@@ -205,7 +207,7 @@ def _count(found: Diagnosis, code: str) -> int:
 
 
 def _facts(found: Diagnosis, unit: str) -> dict[str, str]:
-    """Return the facts about a mesh, by name."""
+    """Return counts and measures of a mesh as text, by name; lengths are in `unit`."""
     after = f" {unit}" if unit else ""
     size = ""
     if found.bounds is not None:
@@ -228,7 +230,7 @@ def _facts(found: Diagnosis, unit: str) -> dict[str, str]:
     }
 
 
-#: Names of columns, with the kind of what is in them.
+#: The columns of the table: the name, and whether cells are texts or numbers.
 _COLUMNS = (
     ("verdict", "text"),
     ("file", "text"),
@@ -250,10 +252,10 @@ def _row(sheet: Sheet) -> Row:
 
 
 def _figures(layers: Sequence[Layer], landmarks: Sequence[Landmark]) -> list[Figure]:
-    """Return pictures from two sides, with rings around the landmarks."""
+    """Return pictures of layers from two sides, with rings around the landmarks."""
     if not any(len(layer.faces) for layer in layers):
         return []
-    # No ring around the thinnest wall, which every closed mesh has.
+    # The thinnest wall gets no ring, since every closed mesh has one.
     places = [place.at.tolist() for place in landmarks if not place.name.startswith("thinnest")]
     front = camera_for(layers, _SIZE)
     sides = (("right, front and above", front), ("left, back and below", _behind(front, layers)))

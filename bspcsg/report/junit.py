@@ -1,4 +1,4 @@
-"""JUnit XML for build servers, of campaigns and of checked meshes."""
+"""JUnit XML for build servers, with the results of campaigns or of checked meshes."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -7,7 +7,7 @@ from xml.etree import ElementTree as Xml
 
 from ..campaign.record import CaseRecord, RunRecord
 
-#: The element for each verdict, for a build server; the others passed.
+#: The XML element of a test case by the verdict of a campaign's case; other verdicts are passes.
 _ELEMENTS = {
     "DISAGREE": "failure",
     "subject failed": "failure",
@@ -18,12 +18,12 @@ _ELEMENTS = {
     "oracle failed": "skipped",
 }
 
-#: Characters that XML 1.0 has no way to write.
+#: Characters that XML 1.0 cannot represent.
 _UNWRITABLE = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 class JUnitCase(NamedTuple):
-    """One test case; `element` is "failure", "error" or "skipped", or nothing if it passed."""
+    """One test case of JUnit; `element` is "failure", "error", "skipped", or empty for a pass."""
 
     group: str
     name: str
@@ -36,13 +36,13 @@ class JUnitCase(NamedTuple):
 
 
 def junit_text(cases: Sequence[CaseRecord], runs: Sequence[RunRecord] = ()) -> str:
-    """Return a suite for each operation, with a test case for each case.
+    """Return the JUnit XML of a campaign: a suite for each operation, a test case for each case.
 
     Parameters
     ----------
     cases : sequence of CaseRecord
     runs : sequence of RunRecord
-        The runs whose commands, versions and machine become properties.
+        The runs of the campaign; their commands, versions and machines become properties.
     """
     suites = {
         operation: [_case_of(case) for case in cases if case["operation"] == operation]
@@ -58,14 +58,15 @@ def junit_of(
     started: str = "",
     properties: Sequence[tuple[str, str]] = (),
 ) -> str:
-    """Return the document of named suites.
+    """Return a JUnit XML document.
 
     Parameters
     ----------
     title : str
     suites : mapping of str to sequence of JUnitCase
+        The test cases of each suite, by its name.
     started : str
-        The start time of the run, if it is to be shown.
+        The start time of the run; empty to omit it.
     properties : sequence of (str, str)
         Properties of the run, repeated in every suite.
     """

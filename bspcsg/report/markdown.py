@@ -1,4 +1,4 @@
-"""Campaigns as Markdown, for build summaries and messages."""
+"""Results of campaigns as Markdown, for build summaries and messages."""
 
 from collections.abc import Sequence
 
@@ -13,13 +13,13 @@ _NOTEWORTHY = ("oracle failed", "oracle refused", "within rounding", "refused")
 
 
 def markdown_text(cases: Sequence[CaseRecord], runs: Sequence[RunRecord] = ()) -> str:
-    """Return counts, failures and noteworthy cases as tables.
+    """Return Markdown tables of a campaign: counts by verdict, failures and noteworthy cases.
 
     Parameters
     ----------
     cases : sequence of CaseRecord
     runs : sequence of RunRecord
-        The runs whose commands, versions and machine are shown.
+        The runs of the campaign; their commands, versions and machines are listed.
     """
     failures = [case for case in cases if is_failure(case)]
     blocks = ["# Validation", f"**{conclusion(cases)}**", _counts(cases)]
@@ -68,7 +68,7 @@ def _run(run: RunRecord) -> str:
 
 
 def _row(cells: Sequence[str]) -> str:
-    # A vertical bar would end the cell, a line break the row.
+    # Escape vertical bars, which would end the cell, and line breaks, which would end the row.
     safe = (cell.replace("|", "\\|").replace("\n", " ") for cell in cells)
     return f"| {' | '.join(safe)} |"
 

@@ -1,4 +1,4 @@
-"""The merging of results files, such as the shards of one campaign."""
+"""Merging of results files of campaigns, such as the shards of one campaign."""
 
 import json
 import os
@@ -20,12 +20,12 @@ from .conformity import departure
 def merged(paths: Sequence[str | os.PathLike[str]]) -> Results:
     """Read and merge results files; their order does not matter.
 
-    Of several lines about one case the last one counts; of several files, the one started last.
+    If a case occurs several times, its last line counts, in the file whose run started last.
 
     Raises
     ------
     FormatError
-        If a file cannot be read or is no results file, or no file has a case.
+        If a file cannot be read or is no results file, or if no file has a case.
     """
     everything = Results()
     for results in sorted(map(_read, paths), key=_started):
@@ -57,18 +57,18 @@ def _read(path: str | os.PathLike[str]) -> Results:
 
 
 def _started(results: Results) -> tuple[str, list[str]]:
-    # Keys break ties of times, so that the result does not depend on the order of the files.
+    # For equal times, the keys decide, so that the order of the files does not matter.
     return max((run["started"] for run in results.runs), default=""), sorted(results.cases)
 
 
 def rank(case: CaseRecord) -> int:
-    """Return the rank of a case's verdict among all verdicts, the worst first."""
+    """Return the rank of a case's verdict, 0 for the worst."""
     verdict = case["verdict"]
     return VERDICTS.index(verdict) if verdict in VERDICTS else len(VERDICTS)
 
 
 def versions_of(runs: Iterable[RunRecord]) -> dict[str, list[str]]:
-    """Return the versions of each engine, usually one."""
+    """Return the versions of each engine in all runs, by the engine's name."""
     found: dict[str, set[str]] = {}
     for run in runs:
         for name, version in run["versions"].items():
@@ -77,12 +77,12 @@ def versions_of(runs: Iterable[RunRecord]) -> dict[str, list[str]]:
 
 
 def ordered(results: Results) -> list[CaseRecord]:
-    """Return all cases, the worst verdicts first, then by name."""
+    """Return all cases, sorted by verdict, the worst first, then by name."""
     return sorted(results.cases.values(), key=lambda case: (rank(case), case["case"], case["key"]))
 
 
 def document(results: Results) -> str:
-    """Return all results as one JSON document."""
+    """Return summary, runs and cases of the results as one JSON document."""
     cases = ordered(results)
     found = {**summary_of(cases), "runs": results.runs, "results": cases}
     return json.dumps(found, indent=1, allow_nan=False) + "\n"

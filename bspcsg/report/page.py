@@ -1,4 +1,4 @@
-"""The report of a campaign as one page."""
+"""The page that `bspcsg report` writes: the results of a campaign."""
 
 import re
 from collections.abc import Callable, Iterable, Mapping
@@ -13,7 +13,7 @@ from .merging import ordered, versions_of
 from .table import table
 from .wording import meaning, milliseconds, number, tone, vector, whole
 
-#: About the number of characters of one card without its pictures and its view.
+#: An estimate of the number of characters of one card without its pictures and its 3D view.
 _CARD_TEXT_CHARACTERS = 4_000
 
 _FILES = ("page.css", "report.css", "loader.js", "table.js")
@@ -37,7 +37,7 @@ def report_page(
     title: str = "Validation report",
     watch: Callable[[list[CaseRecord]], Iterable[CaseRecord]] = iter,
 ) -> str:
-    """Return the page about all cases.
+    """Return the page of a campaign's results as HTML.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def report_page(
         The number of cases shown with pictures and all their numbers, failures first.
     title : str
     watch : callable
-        Wraps the cases of the cards, to show progress while they are drawn.
+        Returns an iterable over the cases of cards, which may show progress while they are drawn.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def report_page(
     cases = ordered(results)
     chosen = picked(results, cards)
     columns, rows = table(cases, {case["key"]: f"case-{k + 1}" for k, case in enumerate(chosen)})
-    # Each cell and row adds tags to its text.
+    # Besides its text, each cell and each row has tags.
     spent = sum(60 + sum(4 + len(cell) for cell in row.cells) for row in rows)
     spent += (
         len(bundle())
@@ -96,7 +96,10 @@ def _lead(results: Results) -> str:
 
 
 def _facts(ours: FactsRecord | None, oracles: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    """Return the names of all engines that made a mesh, and rows of facts about the meshes."""
+    """Return the names of the engines that made a mesh, and rows of measures of the meshes.
+
+    The keys are "engines" and "rows".
+    """
     made = [("bspcsg", ours), *((oracle["name"], oracle["facts"]) for oracle in oracles)]
     made = [(name, facts) for name, facts in made if facts is not None]
     rows = [
@@ -108,7 +111,7 @@ def _facts(ours: FactsRecord | None, oracles: Iterable[Mapping[str, Any]]) -> di
 
 
 def _charts(results: Results) -> list[tuple[str, str, Chart]]:
-    """Return title, axis name and chart of each chart with data."""
+    """Return the charts of times and of differences that have data: title, axis name, chart."""
     times: dict[str, list[float]] = {"bspcsg": []}
     ratios = []
     for case in results.cases.values():
@@ -120,7 +123,7 @@ def _charts(results: Results) -> list[tuple[str, str, Chart]]:
         found, bounds = case["set_difference"], case["bounds"]
         if found and bounds and bounds["same_set"] > 0:
             ratios.append(found["thickness"] / bounds["same_set"])
-    # Some engines run only in hard cases, so their curves have few values.
+    # Names tell the number of cases, since an engine may have run in hard cases only.
     timed = [(f"{name}, {whole(len(found))} cases", found) for name, found in times.items()]
     drawn = (
         ("Time of the operation", "seconds", share_below(timed)),

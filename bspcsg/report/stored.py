@@ -1,4 +1,4 @@
-"""The meshes that a campaign kept of a case, as layers of a view."""
+"""Reading of the meshes that a campaign has stored for a case, as layers of a 3D view."""
 
 import os
 import zipfile
@@ -13,14 +13,15 @@ from ..errors import FormatError
 from ..mesh.mesh import Mesh
 from .viewer.layer import COLOURS, DIFFERENCE, RESULT, Layer
 
-#: Operands are seen through when they are shown with the result.
+#: The opacity of operands, which are transparent when they are shown with the result.
 _OPERAND_OPACITY = 0.4
 
 
 class Stored(NamedTuple):
-    """The kept meshes of one case: the operands in order, the result and the difference.
+    """The stored meshes of one case: the operands in order, the result and the difference.
 
-    `difference` is the symmetric difference to the oracle's result; empty if both are equal.
+    `difference` is the symmetric difference of our result and the oracle's; empty if both are
+    equal.
     """
 
     operands: list[Layer]
@@ -29,7 +30,7 @@ class Stored(NamedTuple):
 
     @property
     def layers(self) -> list[Layer]:
-        """All layers with faces; operands are hidden at first, unless the result is empty."""
+        """All layers that have faces; operands are hidden, unless the result is empty."""
         hidden = len(self.result.faces) > 0
         operands = [
             replace(layer, shown=not hidden, opacity=_OPERAND_OPACITY) for layer in self.operands
@@ -39,22 +40,22 @@ class Stored(NamedTuple):
 
 
 def stored_meshes(folder: Path, name: str) -> Stored:
-    """Read the meshes of a case.
+    """Read the stored meshes of a case.
 
     Parameters
     ----------
     folder : Path
         The folder of the results file.
     name : str
-        Path of the meshes in that folder.
+        The path of the file with the meshes, relative to `folder`.
 
     Raises
     ------
     FormatError
-        If the file cannot be read, is not in that folder, or has other content.
+        If the file cannot be read, is not in `folder`, or has other content.
     """
     path = folder / name
-    # The user's own links are followed, but the path in the results must not leave the folder.
+    # Links are followed, but the path in the results must not lead out of the folder.
     if os.path.isabs(name) or os.path.normpath(name).startswith(".."):
         raise FormatError(
             f"{name}: the stored meshes are not read, because this path leads out of the folder of"

@@ -1,4 +1,4 @@
-"""The table of all cases: its columns and cells."""
+"""The table of all cases on the page of a campaign: its columns and cells."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -9,7 +9,7 @@ from .wording import NOTHING, milliseconds, number, tone, whole
 
 
 class Column(NamedTuple):
-    """One column.
+    """One column of the table of cases.
 
     Parameters
     ----------
@@ -17,7 +17,7 @@ class Column(NamedTuple):
     title : str
     kind : {"text", "number"}
     shown : callable
-        Returns the text of the cell of a case.
+        Returns the text of a case's cell.
     """
 
     name: str
@@ -27,7 +27,7 @@ class Column(NamedTuple):
 
 
 class Row(NamedTuple):
-    """One case; `card` is the address of its card in the page, or empty."""
+    """One row of the table of cases; `card` is the id of the case's card in the page, or empty."""
 
     tone: str
     rank: int
@@ -103,7 +103,7 @@ def table(cases: Sequence[CaseRecord], cards: dict[str, str]) -> tuple[list[Colu
     ----------
     cases : sequence of CaseRecord
     cards : dict of str to str
-        By key of a case, the address of its card.
+        The ids of cards in the page, by the keys of their cases.
     """
     rows = [[column.shown(case) for column in COLUMNS] for case in cases]
     used = [k for k in range(len(COLUMNS)) if k < 3 or any(row[k] != NOTHING for row in rows)]

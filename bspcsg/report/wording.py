@@ -1,9 +1,9 @@
-"""Numbers and verdicts as text for a page."""
+"""Formatting of numbers, and meanings and tones of verdicts, for a page."""
 
 import math
 from collections.abc import Sequence
 
-#: The concern that a verdict is to cause, which gives its colour and its sign.
+#: The tone of each verdict, which gives its colour and its sign on a page.
 _TONES = {
     "agree": "good",
     "same set, other topology": "good",
@@ -13,7 +13,7 @@ _TONES = {
     "refused": "mute",
 }
 
-#: The meaning of each verdict, for whoever sees one for the first time.
+#: The meaning of each verdict of a campaign's case, as shown on a page.
 _MEANINGS = {
     "agree": "the same set and the same topology",
     "same set, other topology": "the same set; surfaces that touch are joined in another way",
@@ -27,28 +27,34 @@ _MEANINGS = {
     "crash": "a failure: the process of the case ended before its time",
 }
 
-#: The sign that stands for no number.
+#: The text of a cell without a number.
 NOTHING = "–"
 
 #: The space between thousands.
 _THIN = "\N{NARROW NO-BREAK SPACE}"
 
-#: Powers of ten from and below which numbers are written out.
+#: Numbers from 10**-4 to below 10**9 are written without a power of ten.
 _PLAIN = (-4, 9)
 
 
 def tone(verdict: str) -> str:
-    """Return the tone of a verdict: good, near, warn, mute or bad; bad if it is unknown."""
+    """Return the tone of a verdict, which gives its colour: good, near, warn, mute or bad.
+
+    An unknown verdict has the tone “bad”.
+    """
     return _TONES.get(verdict, "bad")
 
 
 def meaning(verdict: str) -> str:
-    """Return the meaning of a verdict; nothing for an unknown one."""
+    """Return the meaning of a verdict; an empty string for an unknown one."""
     return _MEANINGS.get(verdict, "")
 
 
 def number(value: float | None, digits: int = 6) -> str:
-    """Return a number with so many significant digits, with powers of ten only where they help."""
+    """Return a number as text with `digits` significant digits.
+
+    Very large and very small numbers have a power of ten; None becomes a dash.
+    """
     if value is None:
         return NOTHING
     power = math.floor(math.log10(abs(value))) if value and math.isfinite(value) else 0
@@ -60,12 +66,12 @@ def number(value: float | None, digits: int = 6) -> str:
 
 
 def whole(value: int | None) -> str:
-    """Return a whole number with separated thousands."""
+    """Return an integer as text with separated thousands; None becomes a dash."""
     return NOTHING if value is None else f"{value:,}".replace(",", _THIN)
 
 
 def milliseconds(seconds: float | None) -> str:
-    """Return a time in milliseconds."""
+    """Return a time, given in seconds, as text in milliseconds; None becomes a dash."""
     return (
         NOTHING
         if seconds is None
@@ -76,5 +82,5 @@ def milliseconds(seconds: float | None) -> str:
 
 
 def vector(values: Sequence[float] | None) -> str:
-    """Return the coordinates of a point as text."""
+    """Return the coordinates of a point as text, separated by commas; None becomes a dash."""
     return NOTHING if values is None else ", ".join(f"{value:.6g}" for value in values)

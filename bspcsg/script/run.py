@@ -1,8 +1,8 @@
-"""Python scripts that make a solid: they leave a `result`, or call `show`.
+"""Python scripts that make a solid: they assign a variable `result`, or call `show`.
 
 A script is an ordinary Python program; ``python part.py`` runs it as well, and then `show` opens a
-page in a browser. `run_script` runs it in a process of its own, so that it can be stopped and
-cannot crash its caller; its output goes to standard error, not to the caller's standard output. It
+page in a browser. `run_script` runs it in a separate process, so that it can be stopped and cannot
+crash its caller; its output goes to standard error, not to the caller's standard output. The script
 still has all rights of its user: run no script that you would not run with ``python``.
 """
 
@@ -28,17 +28,17 @@ from ..solid.counting import counted, uncounted
 from ..solid.solid import LastOperation, Solid, expression_of, with_record
 from .values import VALUES, compiled
 
-#: Longest time for a script, in seconds, unless the caller says otherwise.
+#: The default time limit of a script, in seconds.
 TIMEOUT = 600.0
 
-#: The exit code of a stopped process.
+#: The exit code of a process that Ctrl-C ended.
 _STOPPED = 130
 
-#: True if a thread can block signals.
+#: True if this system lets a thread block signals.
 _HOLDS_SIGNALS = hasattr(signal, "pthread_sigmask")
 
-#: The program of the child. Ctrl-C reaches it too and ends it silently; its parent reports it. It
-#: starts with Ctrl-C blocked, because Python would report it during its own start.
+#: The program of the child process. Ctrl-C also reaches the child and ends it silently; the parent
+#: reports it. The child starts with Ctrl-C blocked, since Python would report it during startup.
 _SERVE = (
     f"import os, signal, sys; signal.signal(signal.SIGINT, lambda *_: os._exit({_STOPPED}));"
     f" {_HOLDS_SIGNALS} and signal.pthread_sigmask(signal.SIG_UNBLOCK, {{signal.SIGINT}});"
@@ -46,16 +46,19 @@ _SERVE = (
     " from bspcsg.script.run import serve; serve()"
 )
 
-#: A solid; for the result of an operation, the operation and the transform, which pickling drops.
+#: The result of a script: a solid, or the operation that made it and its transform, which the
+#: pickle of a solid lacks.
 _Made: TypeAlias = Solid | tuple[LastOperation, FactorChain]
 
-#: What a script has shown; None in a process that runs no script for another one.
+#: The solids that the script has passed to `show`; None in a process that is not such a child.
 _shown: list[Solid] | None = None
 
 
 @uncounted
 def show(*solids: Any) -> None:
-    """Show solids; in a script that `run_script` or the command line runs they are its result.
+    """Show solids in a notebook or browser, or make them the result of a script.
+
+    In a script that `run_script` or the command line runs, the solids are only its result.
 
     A notebook displays each solid. Elsewhere, a page with an interactive view of all solids is
     written into the folder for temporary files and opened in the browser. Without a browser, a
@@ -64,7 +67,7 @@ def show(*solids: Any) -> None:
     Parameters
     ----------
     *solids : Solid, Region, Assembly, object, or lists of these
-        Whatever `Solid.from_mesh` takes counts as a solid. A region is shown as a slab.
+        Any object that `Solid.from_mesh` takes counts as a solid. A region is shown as a slab.
 
     Raises
     ------
@@ -82,7 +85,7 @@ def show(*solids: Any) -> None:
 
 
 def _flat(things: Iterable[Any]) -> Iterator[Any]:
-    """Yield things, and the things in lists."""
+    """Yield the given objects; replace each list by its entries, also in nested lists."""
     for thing in things:
         yield from _flat(thing) if isinstance(thing, list) else [thing]
 
@@ -95,26 +98,25 @@ def run_script(
     defines: Mapping[str, Any] | None = None,
     timeout: float | None = TIMEOUT,
 ) -> Solid:
-    """Run a Python script in a process of its own and return the solid it makes.
+    """Run a Python script in a separate process and return the solid that it makes.
 
     Parameters
     ----------
     path : path
-        The script sees its own folder first in ``sys.path`` and ``__name__ == "__main__"``.
+        The script. Its folder is first in ``sys.path``, and its ``__name__`` is ``"__main__"``.
     arguments : sequence of str
-        The words after the path in ``sys.argv``.
+        The entries after the path in ``sys.argv``.
     defines : mapping, optional
         Values of variables by name. Each replaces the value in every assignment to the variable at
         the script's top level; line numbers stay the same.
     timeout : float, optional
-        In seconds, up to a million; None and infinity wait forever.
+        The time limit in seconds, up to a million; None or infinity for no limit.
 
     Returns
     -------
     Solid
         The global variable ``result``, or the union of the solids in it if it is a list, or the
-        union of all that was shown. It knows the operation that made it (see
-        `Solid.last_operation`).
+        union of all shown solids. It has its operation in `Solid.last_operation`.
 
     Raises
     ------
@@ -154,7 +156,7 @@ def _pickled(task: tuple[str, list[str], dict[str, Any], str]) -> bytes:
 
 
 def _run_child(task: bytes, name: str, timeout: float | None) -> int:
-    # -P keeps modules in the current folder from shadowing this package and what it needs.
+    # With -P, modules in the current folder do not shadow this package and its dependencies.
     command = [sys.executable, "-P", "-c", _SERVE]
     package = str(Path(__file__).parents[2])
     search = os.pathsep.join([package, *filter(None, [os.environ.get("PYTHONPATH")])])
@@ -189,7 +191,7 @@ def _run_child(task: bytes, name: str, timeout: float | None) -> int:
 
 @contextlib.contextmanager
 def _interrupts_held() -> Iterator[None]:
-    """Block Ctrl-C in this thread and in processes that it starts, where the system can."""
+    """Block Ctrl-C in this thread and in processes that it starts, if the system supports it."""
     if not _HOLDS_SIGNALS:
         yield
         return
@@ -201,7 +203,7 @@ def _interrupts_held() -> Iterator[None]:
 
 
 def _standard_error() -> int:
-    """Return a file descriptor that a child can write to, whatever standard error is here."""
+    """Return the file descriptor of standard error, or `DEVNULL` if it has none."""
     try:
         return sys.stderr.fileno()
     except (AttributeError, OSError, ValueError):
@@ -225,12 +227,12 @@ def _answer(name: str, arguments: list[str], defines: dict[str, Any]) -> _Made |
 
 
 def _run(program: ModuleType, name: str, defines: dict[str, Any]) -> None:
-    """Run a script as the main program of this process, to its end or until it exits well.
+    """Run a script as the main program of this process, until its end or an exit with code 0.
 
     Raises
     ------
     FormatError
-        If it exits with a message, or with another number than 0; code ``"script_failed"``.
+        If the script exits with a message or with a code other than 0; code ``"script_failed"``.
     """
     code = compiled(Path(name).read_bytes(), name, defines)
     vars(program).update({"__file__": name, VALUES: defines} if defines else {"__file__": name})
@@ -260,18 +262,21 @@ def _result(name: str, variables: dict[str, Any]) -> Solid | BspcsgError:
 
 
 def _has_solids(values: Sequence[Any]) -> bool:
-    """Say whether values are a sequence of solids, and not the vertices and faces of one."""
+    """Return True if an entry is a solid, so that the values are not the arrays of one mesh."""
     return any(isinstance(one, Solid) for one in values)
 
 
 def _with_operation(result: Solid) -> _Made:
-    """Return the data from which the caller gets a solid and the operation that made it."""
+    """Return a solid, or if an operation made it, that operation and the transform.
+
+    The caller in another process makes the solid from them.
+    """
     last = result.last_operation
     return result if last is None else (last, expression_of(result).factors)
 
 
 def _located(error: Exception, name: str) -> BspcsgError:
-    """Return the error with the line of the script in which it arose."""
+    """Return an error whose message begins with the script's name and the line that raised it."""
     detail = words_of(error) if str(error) else ""
     if isinstance(error, SyntaxError) and error.filename == name:
         line, detail = error.lineno, error.msg
@@ -286,14 +291,14 @@ def _located(error: Exception, name: str) -> BspcsgError:
 
 
 def serve() -> None:
-    """Do the task on standard input, in the child process.
+    """Run the script that standard input describes, in the child process.
 
-    The answer is written to a file, completely or not at all.
+    The pickled result or error is written to a file, completely or not at all.
     """
     try:
         name, arguments, defines, answer = pickle.load(sys.stdin.buffer)
     except (EOFError, pickle.UnpicklingError):
-        # The parent was stopped while it wrote the task, and reports that.
+        # The parent was interrupted while it wrote the task, and reports that.
         sys.exit(_STOPPED)
     pickled = pickle.dumps(_answer(name, arguments, defines))
     unfinished = Path(f"{answer}.part")

@@ -1,4 +1,4 @@
-"""Values from a caller that replace the assignments at the top level of a Python script."""
+"""Replacement of values that a Python script assigns to variables at its top level."""
 
 import ast
 from collections import deque
@@ -8,31 +8,34 @@ from types import CodeType
 from ..errors import FormatError
 from ..meant import question
 
-#: The global variable of a script that holds the values by their names.
+#: The global variable of a script whose value is the dictionary of the caller's values.
 VALUES = "__defines__"
 
-#: Statements whose blocks are not part of the top level, but have names of their own.
+#: Statements whose blocks have their own scope, and so are not part of the top level.
 _OTHER_SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 
 
 def compiled(source: bytes, name: str, given: Iterable[str] = ()) -> CodeType:
-    """Return the code of a script in which the given names take their values from `VALUES`.
+    """Compile a script so that the given variables get their values from the dictionary `VALUES`.
 
-    Every assignment to such a name at the top level assigns the given value instead, also inside an
-    ``if`` or a loop; in ``a, b = 1, 2`` the other names keep theirs. Line numbers stay the same.
+    Every assignment to such a variable at the top level assigns the given value instead, also in an
+    ``if`` or a loop; in ``a, b = 1, 2``, only the given variables change. Line numbers stay the
+    same.
 
     Parameters
     ----------
     source : bytes
+        The source code of the script.
     name : str
         The script's name in errors and tracebacks.
     given : iterable of str
+        The names of the variables.
 
     Raises
     ------
     FormatError
-        If the top level assigns no such name (code "unknown_name"); the message lists the names
-        that it assigns.
+        If the top level does not assign one of the variables (code "unknown_name"); the message
+        lists the variables that it assigns.
     SyntaxError, ValueError
         If the source is not Python.
     """
@@ -55,7 +58,7 @@ def _advice(unknown: str, known: list[str]) -> str:
 
 
 def _top_level(tree: ast.Module) -> Iterator[list[ast.stmt]]:
-    """Yield the blocks of statements that run in the script's own scope, outermost first."""
+    """Yield the lists of statements in a script's global scope, outermost first."""
     waiting: deque[ast.AST] = deque([tree])
     while waiting:
         owner = waiting.popleft()
@@ -67,7 +70,7 @@ def _top_level(tree: ast.Module) -> Iterator[list[ast.stmt]]:
 
 
 def _bound(statement: ast.stmt) -> list[str]:
-    """Return the names that an assignment binds; none if the statement is something else."""
+    """Return the names that a statement assigns; empty if it is not an assignment."""
     if isinstance(statement, ast.Assign):
         targets = statement.targets
     elif isinstance(statement, ast.AnnAssign):
@@ -80,7 +83,7 @@ def _bound(statement: ast.stmt) -> list[str]:
 
 
 def _replaced(statement: ast.stmt, wanted: tuple[str, ...]) -> list[ast.stmt]:
-    """Return the statements that replace one that assigns wanted names."""
+    """Return the statements that replace a statement, so that wanted names get other values."""
     names = [name for name in _bound(statement) if name in wanted]
     if not names:
         return [statement]
@@ -104,6 +107,6 @@ def _assignment(name: str, old: ast.stmt) -> ast.stmt:
 
 
 def _value(name: str, old: ast.stmt) -> ast.expr:
-    """Return the expression for a given value, with the location of an old statement."""
+    """Return the expression ``VALUES[name]``, with the line numbers of an old statement."""
     values = ast.Name(VALUES, ast.Load())
     return ast.copy_location(ast.Subscript(values, ast.Constant(name), ast.Load()), old)

@@ -1,4 +1,4 @@
-"""Solids from arrays that this package has made."""
+"""Solids from meshes that this package has computed itself."""
 
 import numpy as np
 
@@ -8,13 +8,16 @@ from ..solid.solid import Solid, from_leaf
 
 
 def from_arrays(vertices: FloatArray, faces: IndexArray) -> Solid:
-    """Return the solid of a mesh whose faces do not cross; check it if snapping could matter."""
+    """Return the solid of a mesh whose faces do not cross.
+
+    The mesh is checked only if snapping to the lattice might make faces cross.
+    """
     own = np.ascontiguousarray(vertices, dtype=np.float64), np.ascontiguousarray(faces)
     return from_leaf(MeshLeaf(*own, trusted=_survives_snapping(*own)))
 
 
 def _survives_snapping(vertices: FloatArray, faces: IndexArray) -> bool:
-    """Say whether corners move to the lattice without flipping a triangle or meeting another."""
+    """Return True if no triangle is so thin that snapping to the lattice might flip it."""
     a, b, c = (vertices[faces[:, corner]] for corner in range(3))
     sides = np.array(
         [
@@ -26,5 +29,5 @@ def _survives_snapping(vertices: FloatArray, faces: IndexArray) -> bool:
     with np.errstate(all="ignore"):
         altitude = np.linalg.norm(np.cross(b - a, c - a), axis=1) / sides.max(axis=0)
         thickness = min(altitude.min(), np.ptp(vertices, axis=0).min())
-        # A thousand steps of the lattice of a solid of this size.
+        # The limit is a thousand steps of the lattice that suits this extent.
         return bool(thickness > 1e-6 * max(1.0, np.abs(vertices).max() / 1000))

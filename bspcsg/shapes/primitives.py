@@ -1,9 +1,9 @@
 """Solids by name: boxes, round bodies and half-spaces.
 
-Names and defaults follow OpenSCAD: bodies stand on the plane z = 0 and have their corner (boxes) or
+Names and defaults follow OpenSCAD: solids stand on the plane z = 0 and have their corner (boxes) or
 axis (round bodies) at the origin, unless ``center=True`` puts their middle there. Round bodies are
 polyhedra with `segments` sides, by default 32 as everywhere in this package, and their vertices lie
-on the true surface. Lengths are in model units; parameters that make no solid raise
+on the true surface. Lengths are in model units; parameters from which no solid can be made raise
 `InvalidParameterError`.
 """
 
@@ -46,7 +46,7 @@ __all__ = [
     "torus",
 ]
 
-# Corners of a face of the unit cube, by corner number 4x + 2y + z.
+# The triangles of the unit cube; corner (x, y, z) has number 4x + 2y + z.
 _BOX_FACES = np.array(
     [
         [0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5],
@@ -58,7 +58,10 @@ _BOX_FACES = np.array(
 
 
 def edge_lengths(size: Any, y: Any = None, z: Any = None) -> FloatArray:
-    """Return three lengths above 0, given as one number, as three, or as a vector."""
+    """Return the lengths along x, y and z, (3,), given as one number, three numbers or a vector.
+
+    Raise `InvalidParameterError` for a length that is not above 0.
+    """
     alone = y is None and z is None
     if not alone and (y is None or z is None):
         raise invalid_parameter("A box needs one edge length or three edge lengths, not two.")
@@ -76,17 +79,17 @@ def box(
     *,
     center: bool = False,
 ) -> Solid:
-    """Return a box.
+    """Return a box with edges parallel to the axes.
 
     Parameters
     ----------
     size : float or (3,) float
-        Edge lengths; one number alone makes a cube.
+        Edge lengths in model units; one number alone makes a cube.
     y, z : float, optional
-        The other two edge lengths, if `size` is the first one. A truth value as second argument
-        means `center`.
+        The edge lengths along y and z, if `size` is the length along x. A truth value as second
+        argument means `center`.
     center : bool
-        True if the middle is at the origin, instead of the lowest corner.
+        True if the middle is at the origin, instead of the corner with the least coordinates.
 
     Examples
     --------
@@ -111,20 +114,20 @@ def cube(
     *,
     center: bool = False,
 ) -> Solid:
-    """Return a cube of this edge length, or a box: another name for `box`."""
+    """Return a cube with edge length `size`, or a box; a synonym of `box`."""
     return box(size, y, z, center=center)
 
 
 @counted
 def sphere(r: Scalar | None = None, segments: int = SEGMENTS, *, d: Scalar | None = None) -> Solid:
-    """Return a sphere about the origin, made of meridians and parallels.
+    """Return a polyhedral sphere about the origin, whose vertices lie on meridians and parallels.
 
     Parameters
     ----------
     r, d : float
-        Radius, or diameter instead.
+        Radius or diameter, in model units; give one of them.
     segments : int
-        Sides of the equator, at least 3; there are half as many bands from pole to pole.
+        Number of sides of the equator, at least 3; there are half as many bands from pole to pole.
 
     Examples
     --------
@@ -136,7 +139,7 @@ def sphere(r: Scalar | None = None, segments: int = SEGMENTS, *, d: Scalar | Non
     bands = max(around // 2, 2)
     refuse_many_corners(around * bands, "This sphere")
     angles = unit_circle(2 * bands)[: bands + 1]
-    # From pole to pole; both poles are on the axis, so each becomes one vertex.
+    # The profile runs from pole to pole; each pole is on the axis and so becomes one vertex.
     profile = np.column_stack([angles[:, 1], -angles[:, 0]]) * size
     return from_arrays(*surface_of_revolution(profile, around, closed=False))
 
@@ -161,13 +164,13 @@ def cylinder(
     h : float
         Height.
     r : float
-        Radius of both ends, unless `r1` or `r2` says otherwise.
+        Radius of both ends, unless `r1` or `r2` is given.
     r1, r2 : float
         Radius of the lower and the upper end; one of them may be 0.
     d, d1, d2 : float
-        Diameters, instead.
+        Diameters, to be given instead of the radii.
     segments : int
-        Sides around, at least 3.
+        Number of sides around the axis, at least 3.
     center : bool
         True if the middle is at z = 0, instead of the lower end.
 
@@ -186,7 +189,7 @@ def cylinder(
     ends = np.array([[low, base], [high, base + height]])
     vertices, sides = surface_of_revolution(ends, around, closed=False)
     cap = triangulate([unit_circle(around)])
-    # A ring has a vertex for each side; an apex is one vertex, and needs no cap.
+    # An apex is a single vertex and needs no cap.
     bottom = cap[:, ::-1] if low else cap[:0]
     top = cap + (len(vertices) - around) if high else cap[:0]
     return from_arrays(vertices, np.concatenate([sides, bottom, top]))
@@ -201,7 +204,7 @@ def cone(
     segments: int = SEGMENTS,
     center: bool = False,
 ) -> Solid:
-    """Return a cone along z with its apex up: a `cylinder` whose upper radius is 0."""
+    """Return a cone of height `h` along z, with its apex up and base radius `r` or diameter `d`."""
     return cylinder(h, r1=radius(r, d, "A cone"), r2=0, segments=segments, center=center)
 
 
@@ -220,11 +223,11 @@ def torus(
     Parameters
     ----------
     r, d : float
-        From the axis to the middle of the tube, or twice that distance.
+        Distance from the axis to the middle of the tube, or twice that distance; give one.
     tube, tube_d : float
-        Radius of the tube, below `r`, or its diameter instead.
+        Radius of the tube, below `r`, or its diameter; give one of them.
     segments, tube_segments : int
-        Sides around the axis and around the tube, at least 3.
+        Number of sides around the axis and around the tube, at least 3 each.
 
     Examples
     --------
@@ -255,16 +258,17 @@ def prism(
     d: Scalar | None = None,
     center: bool = False,
 ) -> Solid:
-    """Return an upright regular prism.
+    """Return a prism along z with a regular polygon as base.
 
     Parameters
     ----------
     sides : int
-        At least 3.
+        Number of sides of the polygon, at least 3.
     h : float
         Height.
     r, d : float
-        From the axis to a vertical edge, or twice that; the first edge is on the x axis.
+        Distance from the axis to the vertical edges, or twice that distance; give one of them. One
+        edge is at y = 0 and positive x.
     center : bool
         True if the middle is at z = 0, instead of the lower end.
 
@@ -280,30 +284,31 @@ def prism(
 
 @counted
 def half_space(normal: str | Vector, offset: Scalar = 0.0) -> Solid:
-    """Return all points x with ``normal . x <= offset``.
+    """Return the solid of all points x with ``normal . x <= offset``, bounded by one plane.
 
     Parameters
     ----------
     normal : "x", "y", "z" or (3,) float
-        Points outwards; need not have unit length.
+        The plane's normal, which points outwards and need not have unit length.
     offset : float
+        The value of ``normal . x`` on the plane.
 
     Raises
     ------
     InvalidMeshError
         If the normal is zero or a number is not finite ("bad_normal").
     LimitError
-        If the plane misses the lattice of the solids that it meets ("too_large").
+        If the plane is outside the lattice of the solids with which it is combined ("too_large").
 
     Notes
     -----
     The numbers count as the decimals they are written as, and transforms move the plane by exact
-    arithmetic. A plane that contains points of the lattice on which it meets other solids stays
-    exact, and is coplanar with faces that have their corners on it. Any other is moved to the
-    nearest parallel plane that does, by at most half a step, as a mesh's coordinates are, and the
-    finding ``half_space_rounded`` says how far. Normals of more than 106 bits, after rotations by
-    odd angles, are rounded to 61 bits, which the finding includes. A half-space by itself chooses a
-    step down to 10**-12 if its plane needs it.
+    arithmetic. When the half-space is combined with other solids, a plane that contains points of
+    their common lattice stays exact, and is coplanar with faces that have their corners on it. Any
+    other plane is moved to the nearest parallel plane that contains lattice points, by at most half
+    a step, and the finding ``half_space_rounded`` gives the distance. Normals of more than 106
+    bits, after rotations by odd angles, are rounded to 61 bits, which the finding includes. A
+    half-space by itself chooses a lattice step down to 10**-12 if its plane needs it.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Solids from plane polygons: extruded along z or revolved around it."""
+"""Solids from plane polygons, extruded along the z axis or revolved around it."""
 
 import math
 from collections.abc import Sequence
@@ -27,10 +27,11 @@ from ..solid.solid import Solid, from_leaf
 from .sweep import RingLayout, strip
 from .twist import Rise, risen
 
-#: Slices of a full turn of twist, as many as round bodies have sides by default.
+#: The default number of slices for a full turn of twist, equal to the default sides of a circle.
 _SLICES_OF_A_TURN = 32
 
-#: Sines of half turns in doubles miss 0 by 2^-53 of their circle; a few turns miss it by multiples.
+#: Points count as on the axis if their distance, relative to the largest coordinate, is at most
+#: this. The sine of a few half turns in doubles differs from 0 by multiples of 2^-53.
 _ROUNDING = 2.0**-50
 
 
@@ -45,27 +46,27 @@ def extrude(
     slices: int | None = None,
     taper: Scalar = 0.0,
 ) -> Solid:
-    """Return the solid that a polygon, possibly concave and with holes, sweeps on its way up.
+    """Return the solid that a polygon, possibly concave and with holes, sweeps along the z axis.
 
     Parameters
     ----------
     polygon : object
         (n, 2) points, a list of such contours, a manifold3d cross section, or a shapely polygon,
-        multipolygon or collection, or a list of these. Contours may run either way round; one that
-        lies inside an odd number of others is a hole. Where contours cross each other, positive
-        winding counts as inside.
+        multipolygon or collection, or a list of these. Contours may run in either direction; a
+        contour inside an odd number of other contours is a hole. If contours cross each other,
+        points with a positive winding number are inside.
     h : float
         Height.
     center : bool
         True if the middle is at z = 0, instead of the lower end.
     twist : float
-        Degrees that the upper end is turned about the z axis, clockwise seen from above, as in
+        Rotation of the upper end about the z axis, in degrees, clockwise seen from above, as in
         OpenSCAD.
     scale : float or (2,) float
-        Size of the upper end relative to the lower one; 0 makes it a point or a line.
+        Scale factor of the upper end, or factors along x and y; 0 makes the end a point or a line.
     slices : int, optional
         The number of parts of the height with straight walls, at least 1. By default one for each
-        32nd of a turn of `twist`. A figure that does not change on the way up needs only one.
+        32nd of a turn of `twist`. Without twist, one is enough.
     taper : float
         Angle in degrees by which walls lean inwards, or outwards if it is negative; between -90 and
         90. Walls end where they meet, as in a roof, which may be lower than `h`.
@@ -73,14 +74,15 @@ def extrude(
     Raises
     ------
     InvalidParameterError
-        If a number is out of its range, or a leaning wall that also turns or shrinks loses its
-        upper edge; the message says where.
+        If a number is out of its range, or `taper` with `twist` or `scale` makes a wall's upper
+        edge vanish; the message names the point.
     LimitError
-        If the solid would have too many corners, or more than a thousand walls vanish.
+        If the solid would have too many corners, or walls meet in a figure of more than a thousand
+        corners.
 
     Notes
     -----
-    Leaning walls that meet on the way up are united.
+    If leaning walls meet below the upper end, the parts inside any of them are united.
 
     Examples
     --------
@@ -134,12 +136,13 @@ def revolve(polygon: Any, *, angle: Scalar = 360.0, segments: int = SEGMENTS) ->
     Parameters
     ----------
     polygon : object
-        As for `extrude`; x becomes the distance from the axis and must not be negative, y becomes
-        the height.
+        A polygon as for `extrude`. Its x becomes the distance from the axis and must not be
+        negative; its y becomes the height.
     angle : float
-        In degrees, above 0 and up to 360.
+        Angle of revolution in degrees, above 0 and up to 360.
     segments : int
-        The number of sides, each of less than a half turn: at least 3 for a full turn.
+        The number of sides over the whole angle, each of less than a half turn: at least 3 for a
+        full turn.
 
     Examples
     --------
@@ -174,18 +177,18 @@ def revolve(polygon: Any, *, angle: Scalar = 360.0, segments: int = SEGMENTS) ->
 
 
 def _with_ends_on_axis(contour: FloatArray) -> FloatArray:
-    """Return a contour with points that are off the axis only by rounding moved onto it."""
+    """Return a contour whose points next to the axis x = 0, up to rounding, are moved onto it."""
     far = np.abs(contour[:, 0]) > _ROUNDING * np.abs(contour).max(initial=0)
     return np.column_stack([np.where(far, contour[:, 0], 0.0), contour[:, 1]])
 
 
 def least_segments(angle: float) -> int:
-    """Return the least number of parts of a turn in degrees, so that each is below a half turn."""
+    """Return the least number of equal parts of an angle in degrees that are below 180 each."""
     return int(abs(angle) // 180) + 1
 
 
 def _swept(rings: RingLayout, start: int, end: int, full: bool) -> IndexArray:
-    """Return the band swept by one edge of the polygon."""
+    """Return the triangles that the polygon's edge from `start` to `end` sweeps around the axis."""
     low, high = rings.ring(start), rings.ring(end)
     if full:
         return strip(low, np.roll(low, -1), high, np.roll(high, -1))

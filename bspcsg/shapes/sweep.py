@@ -1,4 +1,4 @@
-"""Surfaces of revolution, as bare meshes."""
+"""Surfaces of revolution as arrays of vertices and faces."""
 
 import math
 
@@ -10,7 +10,8 @@ from .._types import FloatArray, IndexArray
 def unit_circle(count: int) -> FloatArray:
     """Return (count, 2) points of the unit circle, counter-clockwise from (1, 0).
 
-    Points that are mirror images in the axes or diagonals agree bit by bit.
+    Points that are mirror images in the axes or diagonals have equal coordinates, except for signs
+    and order.
     """
     return np.array([_on_circle(index, count) for index in range(count)])
 
@@ -29,7 +30,7 @@ def _cos_sin_of_quarter(part: int, count: int) -> tuple[float, float]:
     if 2 * part == count:
         return math.sqrt(0.5), math.sqrt(0.5)
     angle = math.pi / 2 * part / count
-    # 1/3 of a quarter turn is 30 degrees, where the sine is rational.
+    # A third of a quarter turn is 30 degrees, whose sine is exactly 0.5.
     return math.cos(angle), 0.5 if 3 * part == count else math.sin(angle)
 
 
@@ -41,18 +42,20 @@ def surface_of_revolution(
     Parameters
     ----------
     profile : (n, 2) float64
-        Distance from the axis, never negative, and height; the material is on the left.
+        Points as distance from the axis, never negative, and height. The inside is on the left.
     segments : int
-        Sides around.
+        Number of sides around the axis.
     closed : bool
         True if the last point is joined to the first.
 
     Returns
     -------
     vertices : (k, 3) float64
-        Point by point; a point on the axis makes one vertex, any other makes `segments`.
+        The vertices of each profile point in turn: one for a point on the axis, otherwise
+        `segments`.
     faces : (m, 3) int64
-        Counter-clockwise seen from outside. Open where an open profile ends off the axis.
+        Triangles, counter-clockwise seen from outside. The surface has a hole where an open profile
+        ends off the axis.
     """
     rings = RingLayout(profile, segments)
     faces = [
@@ -63,13 +66,13 @@ def surface_of_revolution(
 
 
 class RingLayout:
-    """The numbers of the vertices of each profile point, point by point.
+    """The numbering of the vertices of a surface of revolution, one profile point after another.
 
     Parameters
     ----------
     profile : (n, 2) float64
     columns : int
-        The number of positions around the axis that each point takes.
+        The number of positions around the axis for each profile point.
     """
 
     def __init__(self, profile: FloatArray, columns: int) -> None:
@@ -79,12 +82,12 @@ class RingLayout:
         self._starts = np.concatenate([[0], np.cumsum(sizes)])
 
     def ring(self, point: int) -> IndexArray:
-        """Return the (columns,) vertex indices of a profile point, all equal on the axis."""
+        """Return the vertex numbers of a profile point, (columns,); all equal on the axis."""
         start, end = self._starts[point : point + 2]
         return np.resize(np.arange(start, end), self._columns)
 
     def vertices(self, directions: FloatArray) -> FloatArray:
-        """Return the (k, 3) vertices, given the (columns, 2) unit vectors around the axis."""
+        """Return all vertices, (k, 3), given unit vectors around the axis, (columns, 2)."""
         parts = []
         for radius, height in self._profile:
             around = directions * radius if radius else np.zeros((1, 2))
@@ -93,7 +96,7 @@ class RingLayout:
 
 
 def profile_edges(count: int, *, closed: bool) -> list[tuple[int, int]]:
-    """Return the edges between consecutive points."""
+    """Return the edges between consecutive points of a profile, as pairs of point numbers."""
     edges = [(index, index + 1) for index in range(count - 1)]
     return [*edges, (count - 1, 0)] if closed else edges
 
@@ -103,7 +106,7 @@ def _band(start: IndexArray, end: IndexArray) -> IndexArray:
 
 
 def strip(a: IndexArray, b: IndexArray, c: IndexArray, d: IndexArray) -> IndexArray:
-    """Return the triangles of the quads a, b, d, c, without those that equal corners flatten."""
+    """Return two triangles for each quadrilateral a, b, d, c; none with two equal corners."""
     triangles = np.concatenate([np.column_stack([a, b, d]), np.column_stack([a, d, c])])
     proper = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
     return np.compress(proper, triangles, axis=0)

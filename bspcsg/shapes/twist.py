@@ -1,4 +1,4 @@
-"""Extrusions that turn, shrink or lean on the way up."""
+"""Extrusions with twist, scale or slanted walls."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,30 +13,30 @@ from ..geometry.transform import cos_sin
 from ..mesh.weld import welded
 from ..solid.solid import Solid
 
-#: Diagonals are equal if their lengths differ by less than this fraction.
+#: Diagonals count as equal if the relative difference of their lengths is at most this.
 _EQUAL = 1e-5
 
-#: If walls turn back on themselves by less than this (one plus the cosine between their normals),
-#: their corner moves more than a thousand times as far as they do.
+#: The least value of one plus the cosine of the angle between the normals of two adjacent walls.
+#: Below it, their corner moves more than a thousand times as far as the walls.
 _SHARPEST = 1e-6
 
 
 @dataclass(frozen=True)
 class Rise:
-    """The change of a figure from the lower to the upper end.
+    """The change of a figure from the lower to the upper end of an extrusion.
 
     Parameters
     ----------
     height, base : float
-        Length along z, and where it begins.
+        The length along z, and the z of the lower end.
     twist : float
-        Degrees that the upper end is turned clockwise, seen from above.
+        Rotation of the upper end in degrees, clockwise seen from above.
     scale : (float, float)
-        Of the upper end, along x and y.
+        Scale factors of the upper end along x and y.
     slices : int
         The number of levels above the lower end.
     inset : float
-        The distance of the walls of the upper end inside those of the lower one.
+        The distance by which the walls are moved inwards at the upper end.
     """
 
     height: float
@@ -48,21 +48,21 @@ class Rise:
 
     @property
     def is_upright(self) -> bool:
-        """True if the figure does not change."""
+        """True if the figure does not change from the lower to the upper end."""
         return self.only_leans and self.inset == 0
 
     @property
     def only_leans(self) -> bool:
-        """True if walls may lean, but do not turn or shrink."""
+        """True if there is no twist and no scale; walls may be slanted."""
         return self.twist == 0 and self.scale == (1.0, 1.0)
 
     def section(self, points: FloatArray, lean: FloatArray, level: int) -> FloatArray:
-        """Return the points of a level; level 0 is the lower end.
+        """Return the (n, 3) points of the extruded figure at a level; level 0 is the lower end.
 
         Parameters
         ----------
         points, lean : (n, 2) float64
-            The lower end, and how far its corners move inwards up to the upper end.
+            The corners of the lower end, and the vectors by which they move to the upper end.
         """
         part = level / self.slices
         cosine, sine = cos_sin(-self.twist * part)
@@ -73,17 +73,17 @@ class Rise:
 
 
 def risen(contours: Sequence[FloatArray], rise: Rise) -> Solid:
-    """Return the solid that contours sweep on the way up.
+    """Return the extrusion of contours with twist, scale or slanted walls.
 
     Parameters
     ----------
     contours : sequence of (n, 2) float64
-        The inside on their left.
+        Closed outlines with the inside on their left.
 
     Raises
     ------
     InvalidParameterError
-        If a wall that also turns or shrinks leans so far that its edge vanishes.
+        If a slanted wall loses its upper edge and there is also a twist or a scale.
     """
     lean, lost = _lean(contours, rise.inset)
     if lost is not None and rise.only_leans:
@@ -110,7 +110,10 @@ _Place: TypeAlias = tuple[FloatArray, int]
 
 
 def _lean(contours: Sequence[FloatArray], inset: float) -> tuple[FloatArray, _Place | None]:
-    """Return how far each corner moves if all walls move inwards, and where an edge vanishes."""
+    """Return the displacement of each corner, (n, 2), if all walls move inwards by `inset`.
+
+    Also return the first corner whose outgoing edge vanishes, or None.
+    """
     if inset == 0:
         return np.zeros((sum(map(len, contours)), 2)), None
     found = [_corner_moves(contour, inset) for contour in contours]
@@ -123,7 +126,10 @@ def _lean(contours: Sequence[FloatArray], inset: float) -> tuple[FloatArray, _Pl
 
 
 def _corner_moves(contour: FloatArray, inset: float) -> tuple[FloatArray, IndexArray]:
-    """Return how far the corners of a contour move, and which edges vanish."""
+    """Return the displacement of each corner if walls move inwards, and which edges vanish.
+
+    An edge is given by the number of its first corner.
+    """
     along = np.roll(contour, -1, axis=0) - contour
     inward = np.column_stack([-along[:, 1], along[:, 0]])
     inward /= np.linalg.norm(inward, axis=1)[:, None]
@@ -149,8 +155,8 @@ def _band(
 ) -> IndexArray:
     """Return the triangles between two levels, each quadrilateral cut along its shorter diagonal.
 
-    Where the diagonals are equal, the direction of the twist and whether the edge belongs to a hole
-    decide; below an end without area the other diagonal is used.
+    If the diagonals are equal, the direction of the twist and whether the edge belongs to a hole
+    decide. Below an upper end without area, the other diagonal is used.
     """
     start, end = edges.T
     up, down = (
@@ -175,7 +181,7 @@ def _is_flat(level: FloatArray) -> bool:
 def _closed(vertices: FloatArray, faces: IndexArray) -> Solid:
     """Return the solid of a mesh whose corners may coincide and whose faces may cross.
 
-    Contours may cross, and walls that turn or shrink unequally are not plane.
+    Faces may cross because contours cross, or because twisted walls are not plane.
     """
     points, same = welded(vertices)
     triangles = same[faces]

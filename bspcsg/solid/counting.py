@@ -11,9 +11,10 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import wraps
 from threading import Lock
-from typing import Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
 
-from .measure import Measured
+if TYPE_CHECKING:
+    from .solid import Solid
 
 _Parameters = ParamSpec("_Parameters")
 _Result = TypeVar("_Result")
@@ -32,25 +33,25 @@ class Ledger:
         self.outer = outer
         self.is_open = True
         # Keyed by identity, since ``==`` compares solids as sets of points.
-        self._kept: dict[int, tuple[int, Measured]] = {}
+        self._kept: dict[int, tuple[int, Solid]] = {}
         self._ranks = itertools.count()
         # Tasks and threads started in a block may share its ledger.
         self._lock = Lock()
 
     @property
-    def solids(self) -> tuple[Measured, ...]:
+    def solids(self) -> tuple["Solid", ...]:
         """The solids that count, each at the position of its first operand."""
         with self._lock:
             ranked = sorted(self._kept.values(), key=lambda entry: entry[0])
         return tuple(solid for _, solid in ranked)
 
-    def discard(self, solids: Iterable[Measured]) -> int | None:
+    def discard(self, solids: Iterable["Solid"]) -> int | None:
         """Remove solids; return the lowest position that became free."""
         with self._lock:
             gone = [self._kept.pop(id(solid), None) for solid in solids]
         return min((entry[0] for entry in gone if entry is not None), default=None)
 
-    def put(self, solid: Measured, rank: int | None = None) -> None:
+    def put(self, solid: "Solid", rank: int | None = None) -> None:
         """Add a solid once, at a position or at the end."""
         with self._lock:
             place = next(self._ranks) if rank is None else rank
@@ -91,7 +92,7 @@ def _apart() -> Iterator[None]:
         _current.reset(token)
 
 
-def count(made: Measured, operands: Iterable[Measured] = ()) -> None:
+def count(made: "Solid", operands: Iterable["Solid"] = ()) -> None:
     """Count a solid in the current block, instead of its operands."""
     ledger = current()
     if ledger is None:
@@ -114,13 +115,13 @@ def counted(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _
             return function(*args, **kwargs)
         with _apart():
             result = function(*args, **kwargs)
-        if not isinstance(result, Measured):
+        if not isinstance(result, _solid_type()):
             return result
         given = _solids_in((*args, *kwargs.values()))
         # If the operand is used again, the result of this call must still count.
         made = result._alias() if any(result is solid for solid in given) else result
         count(made, given)
-        return made
+        return cast("_Result", made)
 
     return counting
 
@@ -138,10 +139,18 @@ def uncounted(function: Callable[_Parameters, _Result]) -> Callable[_Parameters,
     return silent
 
 
-def _solids_in(arguments: Iterable[Any]) -> list[Measured]:
+def _solids_in(arguments: Iterable[Any]) -> list["Solid"]:
     """Return the solids among arguments, also inside lists."""
-    found: list[Measured] = []
+    solid_type = _solid_type()
+    found: list[Solid] = []
     for argument in arguments:
         entries = argument if isinstance(argument, (list, tuple)) else (argument,)
-        found.extend(entry for entry in entries if isinstance(entry, Measured))
+        found.extend(entry for entry in entries if isinstance(entry, solid_type))
     return found
+
+
+def _solid_type() -> type["Solid"]:
+    """Return the class `Solid`, whose module imports this one."""
+    from .solid import Solid
+
+    return Solid

@@ -9,21 +9,23 @@ kept and the expression released. There are two guarantees, used by two kinds of
 """
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, overload
 
 from .._core import Tree
-from .._types import ProgramLine, WindingRule
+from .._types import FloatArray, ProgramLine, Scalar, SideArray, Vector, WindingRule
 from ..attributes.attributes import Attributes, Given
 from ..attributes.material import Material
-from ..errors import BspcsgError, core_errors
+from ..errors import BspcsgError, Finding, core_errors, deprecated
 from ..geometry.chain import UNMOVED, FactorChain, common_prefix
 from ..geometry.transform import Factors
-from ..mesh import interop, visuals
+from ..mesh import interop, leaving, visuals
 from ..mesh.mesh import Mesh
 from ..owned import owning
 from ..parameters import (
+    SEGMENTS,
     no_options,
     not_negative,
     of_kind,
@@ -32,10 +34,9 @@ from ..parameters import (
     truth_value,
     winding_rule,
 )
-from .convertible import Convertible
+from .components import Components
 from .counting import count, counted, uncounted
 from .describe import describe
-from .edged import Edged
 from .expression import ExpressionNode, Placed, complement, evaluate, operation
 from .leaf import (
     ConstantLeaf,
@@ -48,13 +49,32 @@ from .leaf import (
     tagged,
     tree_of,
 )
-from .measure import residues_of_volume
-from .modelled import Modelled
+from .measure import (
+    LONGEST_VOLUME,
+    exact_volume,
+    findings_of,
+    residues_of_volume,
+    rounded_volume,
+    volume_near,
+    volume_residues,
+)
 from .movable import Movable
 from .point_set import PointSet
 from .profile import Profile
 from .program import Operator
+from .sides import sides_of
 from .source_attributes import SourceAttributes, inherited, later_attributes
+from .triangles import Triangles, triangles_of
+
+if TYPE_CHECKING:
+    import manifold3d
+    import trimesh
+
+    from ..bsp import HitLists, Hits, Region
+    from ..modelling.bodies.placing import Anchor
+    from ..modelling.making.edges import EdgeSelection
+    from ..modelling.making.faces import FaceSelection
+    from ..verify.check import CheckReport
 
 #: The largest number of faces of a result whose mesh is made for `repr`, which takes some
 #: hundredths of a second.
@@ -62,7 +82,7 @@ _MAX_FACES_FOR_REPR = 20_000
 
 
 @owning
-class Solid(Convertible, Edged, Modelled, Movable, PointSet):
+class Solid(Movable, PointSet):
     """A closed triangle mesh as a set of points.
 
     A point is inside if the winding number of the faces satisfies the rule; faces may cross,
@@ -237,6 +257,13 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         return cls(*arrays, **{**visuals.attributes_from(mesh, *arrays), **options})
 
     @classmethod
+    def load(cls, path: str | os.PathLike[str], **options: Any) -> "Solid":
+        """Read a mesh file; the suffix names the format (see `bspcsg.load`)."""
+        from ..io import load
+
+        return load(path, **options)
+
+    @classmethod
     @counted
     def empty(cls) -> "Solid":
         """Return the empty set."""
@@ -281,33 +308,6 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         """Complement: everything outside."""
         return from_node(*complement(Placed(self._node, self._factors)))
 
-    @uncounted
-    def equals(self, other: "Solid") -> bool:
-        """Say whether both are the same set of points, exactly; so says ``==``, too."""
-        return (self ^ of_kind(Solid, other, "other")).is_empty
-
-    @uncounted
-    def isdisjoint(self, other: "Solid") -> bool:
-        """Say whether the two have no volume in common; contact is allowed."""
-        return (self & of_kind(Solid, other, "other")).is_empty
-
-    def _is_alike(self, other: object) -> bool:
-        return isinstance(other, Solid)
-
-    @uncounted
-    def _size_key(self) -> object:
-        if self.normalized().is_bounded:
-            return residues_of_volume(self)
-        outside = self._outside()
-        # If both are unbounded, no cheap test can distinguish solids.
-        bounded = outside.is_bounded
-        return ("outside", residues_of_volume(outside)) if bounded else "unbounded"
-
-    @counted
-    def _moved(self, factors: Factors) -> "Solid":
-        kept = tuple(factor for factor in factors if not factor.is_identity)
-        return from_node(self._node, self._factors.under(kept)) if kept else self
-
     # Results
 
     @property
@@ -346,6 +346,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         return _mesh_of(self.tree, self._source_attributes)
 
     def _divided_mesh(self) -> Mesh:
+        """Return the reduced boundary, with faces divided where edges lie inside them."""
         reduced = self.normalized()
         with core_errors():
             divided = reduced.tree.divided()
@@ -372,32 +373,989 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
                 )
         return self if self._reduced is None else self._reduced
 
-    @counted
-    def tagged(self, **values: Any) -> "Solid":
-        """Return the solid with face attributes that have one value on all faces.
+    @property
+    def vertices(self) -> FloatArray:
+        """Vertices of the mesh, (n, 3) float64, in model units, read-only."""
+        return self.to_mesh().vertices
 
-        Parameters
-        ----------
-        **values : number, text or array
-            Values by attribute name; they replace attributes of the same name. ``color`` is one
-            colour: ``"orange"``, ``"#ff8800"``, floats from 0 to 1, or whole numbers from 0 to
-            255. Half-spaces have no faces, so they stay without attributes.
+    @property
+    def faces(self) -> Triangles:
+        """Triangles of the mesh, (m, 3) int64, indices of `vertices`, read-only.
 
-        Raises
-        ------
-        InvalidParameterError
-            If the colour is invalid.
+        Call it, as ``solid.faces()``, to select faces: flat ones, and round ones such as the wall
+        of a bore (see `FaceSelection`). Neighbouring facets belong to one round face if they bend
+        by at most 30 degrees, or another ``angle``, and neither is more than twice as wide as the
+        other; ``all=True`` returns the facets one by one.
 
         Examples
         --------
         >>> import bspcsg as csg
-        >>> part = csg.cube(2).tagged(layer=1) - csg.cube(1).tagged(layer=2)
-        >>> sorted({*part.to_mesh().face_attributes["layer"].tolist()})
-        [1, 2]
+        >>> part = csg.cylinder(10, d=8)
+        >>> part.faces.shape, len(part.faces()), len(part.faces(all=True))
+        ((124, 3), 3, 34)
+        >>> part.faces().sort_by("z")[-1].normal.tolist()
+        [[0.0, 0.0, 1.0]]
         """
-        leaf = self._leaf()
-        told = tagged(leaf, values)
-        return self if told is leaf else from_leaf(told)
+        return triangles_of(self, self.to_mesh().faces)
+
+    @property
+    def sources(self) -> tuple[int, ...]:
+        """Identities of the input meshes, in the order of their numbers in `Mesh.source`."""
+        return tuple(self.tree.sources)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """The findings about the inputs and the mesh, which is made and checked for this.
+
+        "self_overlap" means that the mesh is not the boundary of the solid, and names triangles
+        that cross or overlap others; `normalized` returns the solid with its boundary as mesh.
+        "crossing" means that an input crosses itself by less than a step of the lattice. "flat"
+        names triangles with area on the lattice, but none in the doubles of the mesh. The mesh's
+        `certificate` has no other faults.
+        """
+        return findings_of(self)
+
+    @property
+    def pitch(self) -> int:
+        """Exponent of the lattice step: it is ``10**pitch`` model units."""
+        return self.tree.pitch
+
+    # History
+
+    @property
+    def last_operation(self) -> "LastOperation | None":
+        """The operation that made this solid; None for a mesh, a loaded or a copied solid.
+
+        Only the last evaluation is kept, with its program and operands. If each result of a chain
+        is queried, one operation is kept, however long the chain. If only the last result is
+        queried, the whole chain was one operation, and that is kept.
+        """
+        content = evaluate(self._node)
+        if not isinstance(content, TreeLeaf) or content.record is None:
+            return None
+        record = content.record
+        operands = tuple(from_leaf(leaf) for leaf in record.leaves)
+        program = [(name, list(lines)) for name, lines in record.program]
+        return LastOperation(program, operands, from_node(self._node))
+
+    def profile(self) -> Profile:
+        """Return the profile of the solid's evaluation, stage by stage; empty for a mesh.
+
+        Operations on two different unchanged meshes take the fast path; `Profile.handed_on` has the
+        reason why an evaluation could not.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> part = csg.cube(2) - csg.cube(1).translate(1.5, 1.5, 1.5)
+        >>> [stage.name for stage in part.profile().stages]
+        ['candidates', 'contacts', 'faces']
+        """
+        content = evaluate(self._node)
+        return Profile.of(content.result) if isinstance(content, TreeLeaf) else Profile()
+
+    # Queries
+
+    @property
+    def is_empty(self) -> bool:
+        """True if the solid has no volume."""
+        return self.normalized().tree.is_empty
+
+    @property
+    def is_bounded(self) -> bool:
+        """True if the solid fits into some box."""
+        return self.tree.is_bounded
+
+    @uncounted
+    def equals(self, other: "Solid") -> bool:
+        """Say whether both are the same set of points, exactly; so says ``==``, too."""
+        return (self ^ of_kind(Solid, other, "other")).is_empty
+
+    @uncounted
+    def isdisjoint(self, other: "Solid") -> bool:
+        """Say whether the two have no volume in common; contact is allowed."""
+        return (self & of_kind(Solid, other, "other")).is_empty
+
+    def intersects(self, other: "Solid") -> bool:
+        """Say whether the solids have a point in common; touching surfaces suffice.
+
+        To test for common volume, negate `isdisjoint`.
+
+        Raises
+        ------
+        UnboundedError
+            If one of them reaches to infinity.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> side = csg.cube(1).translate(1, 0, 0)
+        >>> csg.cube(1).intersects(side), csg.cube(1).isdisjoint(side)
+        (True, True)
+        """
+        from ..modelling.bodies.gaps import intersects
+
+        return intersects(self, other)
+
+    def _is_alike(self, other: object) -> bool:
+        return isinstance(other, Solid)
+
+    @uncounted
+    def _size_key(self) -> object:
+        if self.normalized().is_bounded:
+            return residues_of_volume(self)
+        outside = self._outside()
+        # If both are unbounded, no cheap test can distinguish solids.
+        bounded = outside.is_bounded
+        return ("outside", residues_of_volume(outside)) if bounded else "unbounded"
+
+    @uncounted
+    def _outside(self) -> "Solid":
+        """Return the complement with its reduced boundary."""
+        return (~self).normalized()
+
+    def classify(self, points: Any) -> SideArray:
+        """Classify points as inside, outside or on the boundary, exactly.
+
+        Parameters
+        ----------
+        points : (k, 3) array_like of float
+            In model units; snapped to the lattice. For a bounded solid, points may lie anywhere.
+
+        Returns
+        -------
+        (k,) int8
+            +1 inside, 0 on the boundary, -1 outside.
+        """
+        return sides_of(interop.points_array(points), self.normalized().tree)
+
+    def min_gap(self, other: "Solid") -> float:
+        """Return the least distance between points of the two solids, in model units.
+
+        It is 0 if they touch or overlap, and infinite if one is empty.
+
+        Raises
+        ------
+        UnboundedError
+            If one of them reaches to infinity, and they do not overlap.
+
+        Notes
+        -----
+        Overlap is decided exactly. Otherwise boxes around triangles exclude distant pairs, and the
+        nearest triangles are compared in fractions; the answer is rounded.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> csg.cube(1).min_gap(csg.cube(1).translate(4, 5, 0))
+        5.0
+        """
+        from ..modelling.bodies.gaps import min_gap
+
+        return min_gap(self, other)
+
+    def closest_points(self, other: "Solid") -> tuple[FloatArray, FloatArray]:
+        """Return a point of this solid and one of the other that are nearest, (3,) float64 each.
+
+        If there are several such pairs, the choice is reproducible. If the solids overlap, both
+        points are one common point.
+
+        Raises
+        ------
+        InvalidParameterError
+            If one of them is empty.
+        UnboundedError
+            If one of them reaches to infinity, and they do not overlap.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> p, q = csg.cube(1).closest_points(csg.cube(1).translate(2, 3, 4))
+        >>> p.tolist(), q.tolist()
+        ([1.0, 1.0, 1.0], [2.0, 3.0, 4.0])
+        """
+        from ..modelling.bodies.gaps import closest_points
+
+        return closest_points(self, other)
+
+    @overload
+    def ray_cast(self, origin: Vector, direction: Vector) -> "Hits": ...
+    @overload
+    def ray_cast(self, origin: FloatArray, direction: Any) -> "Hits | HitLists": ...
+    def ray_cast(self, origin: Any, direction: Any) -> "Hits | HitLists":
+        """Return where rays meet the surface, nearest first, each point once.
+
+        Parameters
+        ----------
+        origin, direction : (3,) or (n, 3) array_like of float
+            The ray holds the points ``origin + t * direction`` with t ≥ 0.
+
+        Returns
+        -------
+        Hits or HitLists
+            The hits of one ray (see `bspcsg.bsp.Hits`), or for arrays a list of them.
+
+        Raises
+        ------
+        InvalidMeshError
+            For a direction of length zero, or numbers that are not finite.
+        UnboundedError
+            If the surface reaches to infinity.
+
+        Notes
+        -----
+        The hits are exact. For many calls, make one `bspcsg.bsp.RayCaster` and reuse it.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> csg.cube(2).ray_cast((1, 0.5, -1), (0, 0, 1)).t
+        array([1., 3.])
+        """
+        from ..modelling.bodies.casting import ray_cast
+
+        return ray_cast(self, origin, direction)
+
+    # Measures
+
+    @property
+    def volume(self) -> float:
+        """Volume of the set in cubic model units, rounded once."""
+        return rounded_volume(self)
+
+    @property
+    def volume_exact(self) -> Fraction:
+        """Volume of the set in cubic model units, exactly.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity; so for all measures.
+        LimitError
+            If it might be a fraction of more than 200 000 digits; see `exact_volume`.
+        """
+        return self.exact_volume()
+
+    def exact_volume(self, most_digits: int = LONGEST_VOLUME) -> Fraction:
+        """Return the volume of the set in cubic model units, exactly.
+
+        The denominator grows by that of about one constructed corner for each corner. Reducing the
+        fraction takes time quadratic in the number of digits, and cannot be interrupted.
+
+        Parameters
+        ----------
+        most_digits : int
+            The largest allowed number of decimal digits of numerator and denominator.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity.
+        LimitError
+            If they might have more digits; the message has the number.
+        """
+        return exact_volume(self, most_digits)
+
+    @property
+    def volume_near(self) -> Fraction:
+        """Volume to within 2**-100 cubic lattice steps; deprecated, see `exact_volume`."""
+        deprecated("Solid.volume_near", "volume or exact_volume")
+        return volume_near(self)
+
+    @property
+    def volume_residues(self) -> tuple[int, int] | None:
+        """Six times the volume modulo two primes; deprecated, compare solids by ``==``."""
+        deprecated("Solid.volume_residues", "== or exact_volume")
+        return volume_residues(self)
+
+    @property
+    def area(self) -> float:
+        """Surface area in square model units, the same as that of the complement.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid and its complement both reach to infinity.
+        """
+        reduced = self.normalized()
+        return (reduced if reduced.is_bounded else self._outside()).to_mesh().area
+
+    @property
+    def centroid(self) -> FloatArray:
+        """Centre of volume, (3,) float64, in model units; NaN for the empty set."""
+        return self.normalized().to_mesh().centroid
+
+    @property
+    def inertia(self) -> FloatArray:
+        """Moments of inertia about the centroid at density 1, (3, 3) float64; NaN if empty.
+
+        In model units to the fifth power.
+        """
+        return self.normalized().to_mesh().inertia
+
+    @property
+    def bounds(self) -> FloatArray | None:
+        """Lowest and highest coordinates, (2, 3) float64, or None for the empty set."""
+        return self.normalized().to_mesh().bounds
+
+    @property
+    def euler_number(self) -> int:
+        """Vertices - edges + faces of the mesh."""
+        return self.normalized().to_mesh().euler_number
+
+    @property
+    def surface_count(self) -> int:
+        """Number of connected surfaces; the wall of a closed cavity is one of its own.
+
+        This number was formerly `components`, which now has the parts, each with its cavities.
+        Surfaces that touch only in a point or an edge count separately, even if the edge lies
+        inside a face that belongs to both and that the mesh does not divide there.
+        """
+        return self._divided_mesh().surface_count
+
+    @property
+    def genus(self) -> int:
+        """Number of handles, summed over all connected surfaces."""
+        return self._divided_mesh().genus
+
+    def normals(self, sharp_angle: Scalar = 30.0) -> FloatArray:
+        """Return unit normals for shading, one for each corner of each triangle.
+
+        Parameters
+        ----------
+        sharp_angle : float
+            Corners of faces that meet in edges bent by no more than this share the mean of their
+            normals, weighted by the angles at the corner; in degrees from 0 to 180. With 0 these
+            are the normals of the faces.
+
+        Returns
+        -------
+        (m, 3, 3) float64
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> csg.cube(1).normals().shape
+        (12, 3, 3)
+        """
+        from ..modelling.bodies.shading import normals
+
+        return normals(self, sharp_angle)
+
+    def curvature(self) -> tuple[FloatArray, FloatArray]:
+        """Return the Gaussian and the mean curvature at each vertex, (n,) float64 each.
+
+        The curvatures of the polyhedron, divided by a third of the area of the triangles around the
+        vertex: the angle defect, in 1 / unit², and half of the bend of the edges, in 1 / unit. Both
+        are positive where the solid is convex.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> gaussian, mean = csg.sphere(2, segments=64).curvature()
+        >>> round(float(mean.mean()), 1)
+        0.5
+        """
+        from ..modelling.bodies.shading import curvature
+
+        return curvature(self)
+
+    # Motions
+
+    @counted
+    def _moved(self, factors: Factors) -> "Solid":
+        kept = tuple(factor for factor in factors if not factor.is_identity)
+        return from_node(self._node, self._factors.under(kept)) if kept else self
+
+    def align(
+        self,
+        *,
+        x: "Anchor | None" = None,
+        y: "Anchor | None" = None,
+        z: "Anchor | None" = None,
+        to: "Vector | Solid" = (0, 0, 0),
+    ) -> "Solid":
+        """Return the solid moved so that its box meets a point or the box of another solid.
+
+        Parameters
+        ----------
+        x, y, z : {"min", "center", "max"} or a pair of these, optional
+            For each axis, the place of this solid's box and the place of the other box to which it
+            moves; one name stands for both. Without it the solid does not move along the axis.
+        to : (3,) float or Solid
+
+        Raises
+        ------
+        InvalidParameterError
+            If a place has another name, or a solid is empty.
+        UnboundedError
+            If a solid reaches to infinity.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> csg.cube(2).align(x="center", y="center", z="min").bounds[0].tolist()
+        [-1.0, -1.0, 0.0]
+        >>> table, lamp = csg.box((8, 8, 1)), csg.cube(2)
+        >>> lamp.align(x="center", z=("min", "max"), to=table).bounds[0].tolist()
+        [3.0, 0.0, 1.0]
+        """
+        from ..modelling.bodies.placing import align
+
+        return align(self, {"x": x, "y": y, "z": z}, to)
+
+    # Modelling
+
+    def split(self, normal: "str | Vector | Solid", offset: Scalar = 0.0) -> "tuple[Solid, Solid]":
+        """Split the solid by a plane or by another solid.
+
+        Both parts have the cut as a face; their union is exactly the solid.
+
+        Parameters
+        ----------
+        normal : "x", "y", "z", (3,) float, or Solid
+            The normal of the plane, of any length; or the solid to cut with.
+        offset : float
+            The plane holds the points x with ``normal . x == offset``.
+
+        Returns
+        -------
+        Solid, Solid
+            The part with ``normal . x <= offset`` and the rest; for a cut by a solid, the part
+            inside that solid and the rest. Either may be empty.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the normal is zero or a number is not finite ("bad_normal").
+
+        Notes
+        -----
+        The plane is that of `bspcsg.half_space`: the given one if it contains lattice points, else
+        the nearest parallel one that does. In a block (see `bspcsg.block`) neither part counts.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> below, above = csg.cube(2).split((0, 0, 1), 0.5)
+        >>> below.volume, above.volume
+        (2.0, 6.0)
+        >>> inside, outside = csg.cube(2).split(csg.cube(1))
+        >>> inside.volume, outside.volume
+        (1.0, 7.0)
+        """
+        from ..modelling.bodies.parts import split
+
+        return split(self, normal, offset)
+
+    def trim(self, normal: str | Vector, offset: Scalar = 0.0) -> "Solid":
+        """Return the part on the side to which a plane's normal points: the second part of `split`.
+
+        Parameters
+        ----------
+        normal : "x", "y", "z" or (3,) float
+            Need not have unit length.
+        offset : float
+            The part with ``normal . x >= offset`` stays.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the normal is zero or a number is not finite ("bad_normal").
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> csg.cube(2).trim((0, 0, 1), 0.5).bounds[0].tolist()
+        [0.0, 0.0, 0.5]
+        """
+        from ..modelling.bodies.parts import trim
+
+        return trim(self, normal, offset)
+
+    def decompose(self) -> "list[Solid]":
+        """Return the connected parts, the largest volume first; none for the empty set.
+
+        The wall of a cavity belongs to the part around it. Parts that touch only in a point or an
+        edge are separate.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Notes
+        -----
+        If there are several parts, each is the solid of its mesh: corners off the lattice are
+        rounded to it, or to a finer lattice if nothing would be left. A part that is too thin for
+        doubles is left out. In a block (see `bspcsg.block`) no part counts.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> pair = csg.cube(1) | csg.cube(2).translate(5, 0, 0)
+        >>> [part.volume for part in pair.decompose()]
+        [8.0, 1.0]
+        """
+        from ..modelling.bodies.parts import decompose
+
+        return decompose(self)
+
+    @property
+    def components(self) -> "tuple[Solid, ...]":
+        """The connected parts, each with its cavities, the largest volume first (see `decompose`).
+
+        Formerly this was the number of connected surfaces, now `surface_count`. The number of parts
+        is ``len(solid.components)``. A comparison with a number still uses the number of surfaces,
+        with a `DeprecationWarning`.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> hollow = csg.cube(3) - csg.cube(1).translate(1, 1, 1)
+        >>> len(hollow.components), hollow.surface_count
+        (1, 2)
+        """
+        return Components.of(self)
+
+    @uncounted
+    def edges(self, *, all: bool = False, angle: Scalar = 30.0) -> "EdgeSelection":  # noqa: A002
+        """Return the sharp edges of the solid as a selection (see `EdgeSelection`).
+
+        Lines between the facets of a round surface do not count. The rim of a bore does; it
+        consists of one edge for each facet.
+
+        Parameters
+        ----------
+        all : bool
+            True for all edges between plane faces, also between facets.
+        angle : float
+            Degrees; the normals of the faces at an edge differ by more than this.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the angle is not in the range from 0 to below 180.
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> part = csg.box(30, 20, 10) - csg.cylinder(10, d=8).translate(15, 10, 0)
+        >>> len(part.edges().parallel("z")), len(part.edges(all=True).parallel("z"))
+        (4, 36)
+        """
+        from ..modelling.making.edges import edges_of
+
+        return edges_of(self, all=all, angle=angle)
+
+    @counted
+    def chamfer(self, edges: "EdgeSelection", size: Scalar) -> "Solid":
+        """Return the solid with chamfered edges.
+
+        Material is removed along convex edges and added along concave ones. At corners the new
+        surfaces meet. If a concave edge ends between two convex ones, or the other way around, it
+        is chamfered first, and the two continue along the end of its new surface. If all edges of a
+        face with perpendicular walls are selected, as of an extruded text, short edges may vanish.
+
+        Parameters
+        ----------
+        edges : EdgeSelection
+            Some of the solid's own.
+        size : float
+            Distance from the edge to the new surface, on both faces, in model units.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the faces have no room, if convex and concave edges meet in another way, or if a
+            corner of more than three faces is not convex; the message names the place.
+        LimitError
+            If more than 10 000 edges are chosen.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> part = csg.box(10, 10, 10)
+        >>> part.chamfer(part.edges().parallel("z"), 1).volume
+        980.0
+        """
+        from ..modelling.making.blends import chamfer
+
+        return chamfer(self, edges, size)
+
+    @counted
+    def fillet(self, edges: "EdgeSelection", radius: Scalar, segments: int = SEGMENTS) -> "Solid":
+        """Return the solid with rounded edges.
+
+        Material is removed along convex edges and added along concave ones, up to a cylinder that
+        touches both faces. Where three selected edges of one kind meet, the corner is part of a
+        ball. Convex and concave edges that meet are rounded one after the other, and short edges of
+        a face may vanish, as in `chamfer`.
+
+        Parameters
+        ----------
+        edges : EdgeSelection
+            Some of the solid's own.
+        radius : float
+            In model units.
+        segments : int
+            Sides of a full circle, at least 4; all edges get as many sides as the sharpest needs.
+
+        Raises
+        ------
+        InvalidParameterError
+            As for `chamfer`, or if more than three rounded edges meet. If edges of both kinds meet,
+            the later ones run along the facets of the earlier fillets, which have no room if they
+            are narrower than the radius; the message names the place.
+        LimitError
+            If more than 10 000 edges are chosen, or the solid would have too many corners.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> part = csg.box(4, 3, 2)
+        >>> part.fillet(part.edges(), 0.5) == csg.rounded_box((4, 3, 2), 0.5)
+        True
+        """
+        from ..modelling.making.blends import fillet
+
+        return fillet(self, edges, radius, segments)
+
+    @counted
+    def hole(
+        self,
+        face: "FaceSelection",
+        at: Any = None,
+        *,
+        d: Scalar | None = None,
+        r: Scalar | None = None,
+        depth: Scalar | None = None,
+        segments: int = SEGMENTS,
+    ) -> "Solid":
+        """Return the solid with round holes, perpendicular to a face.
+
+        Parameters
+        ----------
+        face : FaceSelection
+            One flat face. It may come from the solid before other holes were made.
+        at : (3,) or (n, 3) float, optional
+            The centres of the holes: one or more points on the face. By default its middle.
+        d, r : float
+            Diameter, or radius instead.
+        depth : float, optional
+            Depth of the holes. By default they go through the whole solid.
+        segments : int
+            Sides around, at least 3.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the selection is not one flat face, the solid has no such face at a point, or a
+            number is out of range.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> plate = csg.box(30, 20, 5)
+        >>> top = plate.faces().sort_by("z")[-1]
+        >>> plate.hole(top, [(5, 5, 5), (25, 5, 5)], d=4).genus
+        2
+        >>> plate.hole(top, r=4, depth=2, segments=4).volume
+        2936.0
+        """
+        from ..modelling.making.drilling import hole
+
+        return hole(self, face, at, d=d, r=r, depth=depth, segments=segments)
+
+    @counted
+    def counterbore(
+        self,
+        face: "FaceSelection",
+        at: Any = None,
+        *,
+        d: Scalar | None = None,
+        r: Scalar | None = None,
+        head_d: Scalar | None = None,
+        head_r: Scalar | None = None,
+        head_depth: Scalar,
+        depth: Scalar | None = None,
+        segments: int = SEGMENTS,
+    ) -> "Solid":
+        """Return the solid with holes that are wider at a face, for cylindrical heads of screws.
+
+        Parameters
+        ----------
+        face : FaceSelection
+        at : (3,) or (n, 3) float, optional
+        d, r : float
+        depth : float, optional
+        segments : int
+            As for `hole`; the depth is that of the whole hole.
+        head_d, head_r : float
+            Diameter of the wide part, or radius instead.
+        head_depth : float
+            Depth of the wide part.
+
+        Raises
+        ------
+        InvalidParameterError
+            As for `hole`, or if the wide part is not wider or not less deep than the hole.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> plate = csg.box(30, 20, 8)
+        >>> top = plate.faces().sort_by("z")[-1]
+        >>> screwed = plate.counterbore(top, d=4.5, head_d=8, head_depth=4.4)
+        >>> screwed.genus, len(screwed.faces())
+        (1, 9)
+        """
+        from ..modelling.making.drilling import counterbore
+
+        return counterbore(
+            self,
+            face,
+            at,
+            d=d,
+            r=r,
+            head_d=head_d,
+            head_r=head_r,
+            head_depth=head_depth,
+            depth=depth,
+            segments=segments,
+        )
+
+    @counted
+    def countersink(
+        self,
+        face: "FaceSelection",
+        at: Any = None,
+        *,
+        d: Scalar | None = None,
+        r: Scalar | None = None,
+        head_d: Scalar | None = None,
+        head_r: Scalar | None = None,
+        angle: Scalar = 90.0,
+        depth: Scalar | None = None,
+        segments: int = SEGMENTS,
+    ) -> "Solid":
+        """Return the solid with holes that open as a cone at a face, for flat heads of screws.
+
+        Parameters
+        ----------
+        face : FaceSelection
+        at : (3,) or (n, 3) float, optional
+        d, r : float
+        depth : float, optional
+        segments : int
+            As for `hole`; the depth is that of the whole hole.
+        head_d, head_r : float
+            Diameter of the cone in the face, or radius instead.
+        angle : float
+            Degrees from side to side of the cone: 90 for metric screws, 82 for those in inches.
+
+        Raises
+        ------
+        InvalidParameterError
+            As for `hole`, or if the cone is not wider, or deeper than the hole.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> plate = csg.box(30, 20, 5)
+        >>> top = plate.faces().sort_by("z")[-1]
+        >>> screwed = plate.countersink(top, [(5, 10, 5), (25, 10, 5)], d=4.5, head_d=9)
+        >>> screwed.genus, len(screwed.faces())
+        (2, 10)
+        """
+        from ..modelling.making.drilling import countersink
+
+        return countersink(
+            self,
+            face,
+            at,
+            d=d,
+            r=r,
+            head_d=head_d,
+            head_r=head_r,
+            angle=angle,
+            depth=depth,
+            segments=segments,
+        )
+
+    def offset(self, r: Scalar, *, segments: int = SEGMENTS) -> "Solid":
+        """Return the solid thickened by a ball, or made thinner if `r` is negative.
+
+        The result is the union of balls about all points of the solid; for a negative `r`, the set
+        of points whose ball lies in the solid. The ball is a polyhedron (see `bspcsg.sphere`) with
+        its corners at the distance `r`, some of them on the axes. Faces perpendicular to an axis
+        move by `r`, others by up to 1 - cos²(180° / `segments`) less.
+
+        Parameters
+        ----------
+        r : float
+            In model units.
+        segments : int
+            Sides of the ball's equator, at least 4, rounded up to a multiple of 4.
+
+        Raises
+        ------
+        InvalidParameterError
+            If a parameter is out of its range.
+        LimitError
+            If more than 10 million faces bound what the ball touches (see `bspcsg.minkowski`).
+        UnboundedError
+            If the solid and its complement both reach to infinity.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> csg.cube(4).offset(-1) == csg.cube(2).translate(1, 1, 1)
+        True
+        >>> csg.cube(2).offset(1).bounds.tolist()
+        [[-1.0, -1.0, -1.0], [3.0, 3.0, 3.0]]
+        """
+        from ..modelling.bodies.offsetting import offset
+
+        return offset(self, r, segments)
+
+    def rounded(self, r: Scalar, *, segments: int = SEGMENTS, inside: bool = False) -> "Solid":
+        """Return the solid with its edges rounded: the points that a ball inside it can cover.
+
+        Parameters
+        ----------
+        r : float
+            Radius of the ball, in model units; parts thinner than the ball vanish.
+        segments : int
+            As for `offset`, as are the errors.
+        inside : bool
+            True to fill concave edges instead, where a ball outside cannot reach.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> die = csg.cube(10).rounded(1)
+        >>> die.bounds.tolist(), die < csg.cube(10)
+        ([[0.0, 0.0, 0.0], [10.0, 10.0, 10.0]], True)
+        """
+        from ..modelling.bodies.offsetting import rounded
+
+        return rounded(self, r, segments, inside)
+
+    def refine(self, n: int | None = None, *, edge_length: Scalar | None = None) -> "Solid":
+        """Return the solid with smaller triangles, for `warp` and other functions of corners.
+
+        Corners stay, and new ones lie on the edges and in the faces, rounded to the lattice. If no
+        corner had to be rounded, the set is the same.
+
+        Parameters
+        ----------
+        n : int
+            Each edge is divided into n equal parts, each triangle into n².
+        edge_length : float
+            Alternatively, halve edges until none is longer, in model units.
+
+        Raises
+        ------
+        InvalidParameterError
+            If not exactly one of the two is given, or it is out of range.
+        LimitError
+            If there would be more than ten million triangles.
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> fine = csg.cube(1).refine(4)
+        >>> len(fine.faces), fine == csg.cube(1)
+        (192, True)
+        """
+        from ..modelling.bodies.refining import refine
+
+        return refine(self, n, edge_length)
+
+    def warp(
+        self, f: Callable[[FloatArray], Any], *, winding: WindingRule | None = None
+    ) -> "Solid":
+        """Return the solid with its corners moved by a function; faces stay flat (see `refine`).
+
+        Parameters
+        ----------
+        f : callable
+            Takes all corners at once, (n, 3) float64 in model units, and returns their new
+            positions, an array of the same shape. It may turn the solid inside out.
+        winding : {"positive", "nonzero", "even-odd"}, optional
+            The winding rule for a result that crosses itself. By default such a result is refused;
+            but crossings of touching surfaces that come only from rounding are mended.
+
+        Raises
+        ------
+        InvalidMeshError
+            If faces cross or overlap afterwards ("self_crossing"; `where` lists some), nothing is
+            left of any face ("empty_mesh"), or `f` returns another shape or numbers that are not
+            finite.
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> wedge = csg.cube(2).warp(lambda p: p * [1, 1, 0.5] + p[:, :1] * [0, 0, 0.25])
+        >>> wedge.volume, len(wedge.faces)
+        (4.0, 12)
+        """
+        from ..modelling.bodies.warping import warp
+
+        return warp(self, f, winding)
+
+    def smooth(self, n: int, *, sharp_angle: Scalar = 60.0) -> "Solid":
+        """Return the solid with faces bent smoothly through its corners, each in n² triangles.
+
+        Parameters
+        ----------
+        n : int
+            The number of parts of each edge.
+        sharp_angle : float
+            Edges that bend more than this stay sharp, in degrees from 0 to 180.
+
+        Raises
+        ------
+        InvalidMeshError
+            If bent faces cross ("self_crossing"; `where` lists them).
+        LimitError
+            If there would be more than ten million triangles.
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Notes
+        -----
+        Cubic patches over the triangles, after Vlachos, Peters, Boyd, Mitchell 2001, "Curved PN
+        triangles". The border of a patch follows from the normals at both ends of an edge, on both
+        sides.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> can = csg.cylinder(h=2, r=1, segments=8)
+        >>> round(can.volume, 2), round(can.smooth(8).volume, 1)
+        (5.66, 6.2)
+        """
+        from ..modelling.bodies.smoothing import smooth
+
+        return smooth(self, n, sharp_angle)
 
     @counted
     def simplify(self, tolerance: float) -> "Solid":
@@ -455,43 +1413,185 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         given = self._leaf().given_pitch
         return self if tree is None else from_leaf(TreeLeaf(tree, given_pitch=given))
 
-    @uncounted
-    def _outside(self) -> "Solid":
-        return (~self).normalized()
+    @counted
+    def tagged(self, **values: Any) -> "Solid":
+        """Return the solid with face attributes that have one value on all faces.
 
-    # History
+        Parameters
+        ----------
+        **values : number, text or array
+            Values by attribute name; they replace attributes of the same name. ``color`` is one
+            colour: ``"orange"``, ``"#ff8800"``, floats from 0 to 1, or whole numbers from 0 to
+            255. Half-spaces have no faces, so they stay without attributes.
 
-    @property
-    def last_operation(self) -> "LastOperation | None":
-        """The operation that made this solid; None for a mesh, a loaded or a copied solid.
-
-        Only the last evaluation is kept, with its program and operands. If each result of a chain
-        is queried, one operation is kept, however long the chain. If only the last result is
-        queried, the whole chain was one operation, and that is kept.
-        """
-        content = evaluate(self._node)
-        if not isinstance(content, TreeLeaf) or content.record is None:
-            return None
-        record = content.record
-        operands = tuple(from_leaf(leaf) for leaf in record.leaves)
-        program = [(name, list(lines)) for name, lines in record.program]
-        return LastOperation(program, operands, from_node(self._node))
-
-    def profile(self) -> Profile:
-        """Return the profile of the solid's evaluation, stage by stage; empty for a mesh.
-
-        Operations on two different unchanged meshes take the fast path; `Profile.handed_on` has the
-        reason why an evaluation could not.
+        Raises
+        ------
+        InvalidParameterError
+            If the colour is invalid.
 
         Examples
         --------
         >>> import bspcsg as csg
-        >>> part = csg.cube(2) - csg.cube(1).translate(1.5, 1.5, 1.5)
-        >>> [stage.name for stage in part.profile().stages]
-        ['candidates', 'contacts', 'faces']
+        >>> part = csg.cube(2).tagged(layer=1) - csg.cube(1).tagged(layer=2)
+        >>> sorted({*part.to_mesh().face_attributes["layer"].tolist()})
+        [1, 2]
         """
-        content = evaluate(self._node)
-        return Profile.of(content.result) if isinstance(content, TreeLeaf) else Profile()
+        leaf = self._leaf()
+        told = tagged(leaf, values)
+        return self if told is leaf else from_leaf(told)
+
+    # Conversion
+
+    @overload
+    def slice(
+        self,
+        offset: Scalar = 0.0,
+        normal: str | Vector = (0, 0, 1),
+        *,
+        origin: Vector | None = None,
+    ) -> "Region": ...
+    @overload
+    def slice(self, offset: Vector, normal: str | Vector = (0, 0, 1)) -> "list[Region]": ...
+    def slice(
+        self, offset: Any = 0.0, normal: str | Vector = (0, 0, 1), *, origin: Vector | None = None
+    ) -> "Region | list[Region]":
+        """Return the section by a plane as a region of the plane (`bspcsg.Region`).
+
+        The boundary is cut exactly, by the plane that `half_space` uses for these numbers: the
+        given plane if it contains lattice points, else the nearest parallel one that does. Each
+        corner of the section is rounded to the nearest lattice point, so corners with lattice
+        coordinates are exact.
+
+        Parameters
+        ----------
+        offset : float or (n,) float
+            The plane consists of the points x with ``normal . x == offset``: by default a height z.
+            Several offsets give a list of sections.
+        normal : "x", "y", "z" or (3,) float
+            Need not have unit length. The region is seen from where it points: z gives coordinates
+            (x, y), x gives (y, z), y gives (z, x), negative axes exchange the two; for others see
+            `bspcsg.bsp.plane_frame`, whose coordinates are rounded once more.
+        origin : (3,) float, optional
+            A point of the plane, instead of `offset`.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the normal is zero or a number is not finite.
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Notes
+        -----
+        A face in the plane counts as above it: the section is the limit from the minus side. For a
+        box standing on z = 0 it is empty at z = 0 and full at the top.
+        """
+        from ..bsp.sets.slicing import slice_solid
+
+        return slice_solid(self, offset, normal, origin=origin)
+
+    @uncounted
+    def project(self) -> "Region":
+        """Return the projection along z onto the plane z = 0: all (x, y) of points of the solid.
+
+        To project along another direction, rotate the solid first.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Notes
+        -----
+        The mesh is projected: corners off the lattice are first rounded to it.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> csg.torus(3, 1, segments=4).rotate(90, "x").project().bounds.tolist()
+        [[-4.0, -1.0], [4.0, 1.0]]
+        """
+        from ..modelling.planar.shadows import shadow
+
+        return shadow(self)
+
+    def to_trimesh(self) -> "trimesh.Trimesh":
+        """Return a `trimesh.Trimesh` with the same vertices and faces, and the attributes.
+
+        The visual has ``"color"``, or a single material with texture coordinates ``"uv"`` of
+        vertices; else faces show the colours of their materials. All other arrays of vertices and
+        faces keep their names, and the metadata have the materials and the values of corners.
+        `Solid.from_mesh` reads all of that back.
+
+        Warns
+        -----
+        LossWarning
+            If a trimesh cannot show an attribute: colours of corners, pictures of several
+            materials.
+        """
+        return leaving.trimesh_of(self.normalized().to_mesh())
+
+    def to_manifold(self) -> "manifold3d.Manifold":
+        """Return a `manifold3d.Manifold`; ask its ``status()`` whether it was accepted.
+
+        Numeric attributes become vertex properties: ``"properties"`` first, then the others in
+        order, colours as four numbers from 0 to 1. `Solid.from_mesh` restores their names, also
+        after Manifold's operations, if all operands had the same attributes.
+
+        Warns
+        -----
+        LossWarning
+            If an attribute is text, as materials are, or not finite.
+        """
+        return leaving.manifold_of(self.normalized().to_mesh())
+
+    def to_csg(self, *, flat: bool = False) -> str:
+        """Return the expression that made the solid as a `.csg` script (see `bspcsg.csg.dumps`)."""
+        from ..csg.loading import dumps
+
+        return dumps(self, flat=flat)
+
+    def save(self, path: str | os.PathLike[str], **options: Any) -> None:
+        """Write the mesh to a file; the suffix names the format (see `bspcsg.save`)."""
+        from ..io import save
+
+        save(self, path, **options)
+
+    def show(self) -> None:
+        """Show the solid in a notebook or in a browser (see `bspcsg.show`)."""
+        from ..script.run import show
+
+        show(self)
+
+    @uncounted
+    def validate(self, **options: Any) -> "CheckReport":
+        """Compare the operation that made this solid with manifold3d (see `bspcsg.validate`)."""
+        from ..verify.check import check_result
+
+        return check_result(self, **options)
+
+    def check(self, **options: Any) -> "CheckReport":
+        """Call `validate`; deprecated."""
+        deprecated("Solid.check", "validate")
+        return self.validate(**options)
+
+    def _repr_html_(self) -> str | None:
+        """Return the HTML for a notebook: an interactive view, or the reason why there is none."""
+        from ..report.viewer.notebook import solid_html
+
+        return solid_html(self)
+
+    def _repr_svg_(self) -> str | None:
+        """Return a picture as SVG, for notebooks that show neither HTML nor PNG."""
+        from ..report.viewer.notebook import solid_svg
+
+        return solid_svg(self)
+
+    def _repr_png_(self) -> bytes | None:
+        """Return a picture as PNG, for notebooks that show nothing else; None without Pillow."""
+        from ..report.viewer.notebook import solid_png
+
+        return solid_png(self)
 
     # As a value
 
@@ -517,6 +1617,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
             return None
 
     def _alias(self) -> "Solid":
+        """Return a copy as another object, with all cached results."""
         other = from_node(self._node, self._factors)
         other._placed, other._mesh, other._reduced = self._placed, self._mesh, self._reduced
         return other

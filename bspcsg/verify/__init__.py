@@ -1,1 +1,1 @@
-"""Checks of results: other engines' answers, and exact rulings between them."""
+"""Checks of results against other engines, and exact counts that settle disagreements."""

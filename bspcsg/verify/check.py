@@ -1,11 +1,11 @@
-"""Checks the result of an operation against manifold3d's answer, as sets.
+"""Check the result of an operation against manifold3d's result, as sets of points.
 
-Both engines get the same operands: ours as they are, manifold3d the reduced boundaries of ours, in
-double precision (it has no notion of winding numbers, so a mesh that overlaps itself would mean
-something else to it). The rounded mesh that we deliver is read back and compared with manifold3d's
-mesh: the set of points around which the two wind differently is built exactly. The verdict depends
-on the thickness t of its thickest piece. Let s be the lattice step, u the distance of neighbouring
-doubles at the farthest coordinate, and e the tolerance that manifold3d reports:
+manifold3d gets the reduced boundaries of our operands, in double precision (it has no notion of
+winding numbers, so a mesh that overlaps itself would mean another set to it). Our rounded mesh is
+compared with manifold3d's mesh: the symmetric difference, the set of points at which their winding
+numbers differ, is built exactly. The verdict depends on the thickness t of its thickest piece. Let
+s be the lattice step, u the distance of neighbouring doubles at the largest coordinate, and e the
+tolerance that manifold3d reports:
 
 * t ≤ 2 s + 8 u: the same set (both meshes are snapped by up to √3/2 steps per vertex; s is the
   step of the coarsest lattice that vertices were snapped to);
@@ -54,19 +54,22 @@ __all__ = [
     "validate",
 ]
 
-#: The extent of the comparison: measures and some points first, or always the sets.
+#: What is compared. "quick": measures and sample points, and the sets only if these differ; "full":
+#: always the sets.
 Depth: TypeAlias = Literal["quick", "full"]
 
-#: Allowances: lattice steps, neighbouring doubles and tolerances of manifold3d.
+#: Differences up to STEPS lattice steps plus ULPS distances of neighbouring doubles thick are no
+#: differences; TOLERANCES tolerances of manifold3d more are rounding.
 STEPS, ULPS, TOLERANCES = 2, 8, 4
 
-#: The largest number of pieces of a dispute that are decided, the thickest first.
+#: The largest number of pieces of a symmetric difference in which crossings are counted, the
+#: thickest first.
 _MAX_PIECES_SETTLED = 50
 
 
 @uncounted
 def validate(op: SetOp, *operands: Solid) -> CheckReport:
-    """Carry out an operation and compare the result with manifold3d's.
+    """Carry out a set operation, and return the comparison of its result with manifold3d's.
 
     Parameters
     ----------
@@ -93,7 +96,7 @@ def check_result(
     operands: Sequence[Solid] | None = None,
     depth: Depth = "full",
 ) -> CheckReport:
-    """Compare a result with manifold3d's result for the same operands.
+    """Compare a solid with manifold3d's result of the same operation on the same operands.
 
     Parameters
     ----------
@@ -101,15 +104,15 @@ def check_result(
     op : {"union", "intersection", "difference", "xor"}, optional
         The operation that made the result; by default the evaluation that the solid remembers.
     operands : sequence of Solid, optional
-        The solids it was made from; needed with `op`.
+        The solids that the result was made from; needed with `op`.
     depth : {"full", "quick"}
-        Whether to build the symmetric difference with manifold3d's mesh always, or only where
-        volume, area, parts, Euler number or the sides of points near the seam differ.
+        "full" always builds the symmetric difference with manifold3d's mesh; "quick" only if
+        volume, area, parts, Euler number or the classification of sample points differ.
 
     Raises
     ------
     InvalidParameterError
-        If nothing is known about how the solid was made.
+        If no operation is given and the solid remembers none.
     UnboundedError
         If the result reaches to infinity.
     """
@@ -118,19 +121,19 @@ def check_result(
 
 @dataclass(frozen=True, eq=False)
 class Examination:
-    """A report and the meshes that it is based on.
+    """The report of a check, with the meshes that it is based on.
 
     Parameters
     ----------
     report : CheckReport
     program : sequence of (str, list of int)
     came : list of Solid
-        The operands; unbounded ones are cut to a box. Fewer if manifold3d was not asked.
+        The operands, unbounded ones intersected with a box; empty if manifold3d was not asked.
     ours : Mesh
     theirs : Mesh or None
-        manifold3d's, if it gave one.
+        The mesh of manifold3d's result, if it gave one.
     difference : Mesh or None
-        The boundary of the symmetric difference, if there is one.
+        The boundary of the symmetric difference, if it was built and is not empty.
     """
 
     report: CheckReport
@@ -142,7 +145,7 @@ class Examination:
 
     @property
     def operands(self) -> list[Mesh]:
-        """The operands' meshes, as they were given."""
+        """The meshes of the operands in `came`."""
         return _meshes_of(self.came)
 
 
@@ -152,7 +155,7 @@ def examine(
     operands: Sequence[Solid] | None = None,
     depth: Depth = "full",
 ) -> Examination:
-    """Compare as `check_result` does, and keep the meshes."""
+    """Compare a result as `check_result` does, and return the report with the meshes."""
     if op is not None and operands is not None:
         return _Check(op, program_of(op, len(operands)), list(operands), result, depth).run()
     last = result.last_operation
@@ -166,14 +169,15 @@ def examine(
 
 
 def same_set_bound(pitch: int, *meshes: Mesh, snapped_by: float = 0.0) -> float:
-    """Return the thickness up to which meshes on a lattice differ by rounding only.
+    """Return the thickness, in model units, up to which meshes on a lattice differ by rounding.
 
     Parameters
     ----------
     pitch : int
     *meshes : Mesh
     snapped_by : float
-        The most that coordinates moved onto a lattice, if that was once coarser.
+        The largest distance by which snapping moved coordinates, if to a coarser lattice than
+        `pitch`.
     """
     step = max(10.0**pitch, 2 * snapped_by)
     reach = max((float(np.abs(mesh.vertices).max(initial=0)) for mesh in meshes), default=0.0)
@@ -216,8 +220,8 @@ class _Check:
         return self._compared(mesh, ours, answer)
 
     def _asked(self, inside: Mesh | None) -> Answer:
-        """Return the oracle's answer; notes are made for all operands, even if one is refused."""
-        # Make each mesh when manifold3d takes it, and free it then: manifold3d has its own copy.
+        """Return manifold3d's answer; add the notes for all operands even if it refuses one."""
+        # A generator, so that each mesh is freed once manifold3d has its own copy.
         given = (self._reduced(n, solid) for n, solid in enumerate(self.came, 1))
         try:
             return oracle.ask(self.program, given, inside)
@@ -226,7 +230,7 @@ class _Check:
             raise
 
     def _fault(self, mesh: Mesh, ours: Facts) -> str:
-        """Return the defect of our own result, if any, regardless of the oracle's answer."""
+        """Return the defect of our own mesh as text, or "" if it has none."""
         if ours.open_edges:
             return f"the result has {ours.open_edges} open edges"
         status = oracle.status_of(mesh) if self.depth == "full" else "NoError"
@@ -241,24 +245,24 @@ class _Check:
         return ""
 
     def _film(self, *meshes: Mesh) -> float:
-        """Return how thick a film rounding may leave between our set and meshes of the set."""
+        """Return the thickness that rounding may leave between our set and meshes of it."""
         snapped_by = self.result.tree.snapped_by
         return same_set_bound(self.result.pitch, *meshes, snapped_by=snapped_by)
 
     def _box(self, mesh: Mesh) -> Solid | None:
-        """Return a box around everything that is bounded, if an operand is not."""
+        """Return a box around the mesh and all bounded operands; None if all are bounded."""
         if all(operand.is_bounded for operand in self.operands):
             return None
         bounds = [mesh.bounds, *(operand.bounds for operand in self.operands if operand.is_bounded)]
         corners = np.concatenate([box for box in bounds if box is not None] or [np.zeros((1, 3))])
         low, high = corners.min(axis=0), corners.max(axis=0)
-        # Whole numbers lie on every lattice that is not coarser than the unit.
+        # Integers lie on every lattice whose step is at most 1.
         margin = np.ceil((high - low).max() / 8 + 1)
         low, high = np.floor(low - margin), np.ceil(high + margin)
         return box_of(high - low).translate(low)
 
     def _cut(self, number: int, solid: Solid, box: Solid | None) -> Solid:
-        """Return an operand; cut it to the box if it is unbounded."""
+        """Return an operand, intersected with the box if it is unbounded."""
         if box is None or solid.is_bounded:
             return solid
         self.notes.append(
@@ -268,7 +272,7 @@ class _Check:
         return solid & box
 
     def _reduced(self, number: int, solid: Solid) -> Mesh:
-        """Return the reduced boundary of an operand, and note if it differs from the operand."""
+        """Return the reduced boundary of an operand; add a note if it differs from the operand."""
         reduced = passing_mesh(solid.normalized())
         if solid.normalized() is not solid:
             faces = passing_mesh(solid).faces
@@ -312,14 +316,14 @@ class _Check:
         return self._report(verdict, reason, ours, theirs, found, (same, rounding))
 
     def _alike(self, mesh: Mesh, other: Mesh, film: float) -> int | None:
-        """Return the number of points that agree, or None if the sets have to be compared."""
+        """Return the number of sample points that agree, or None if the sets must be compared."""
         if self.depth == "full" or measures_differ(mesh, other, film):
             return None
         compared, is_other = sides_differ(mesh, other, film)
         return None if is_other else compared
 
     def _ruling(self, ours: Mesh, theirs: Mesh, pieces: MeshPieces, rounding: float) -> Ruling:
-        """Return whom the given operands support in the pieces thicker than rounding explains."""
+        """Return which engine is right in all pieces thicker than rounding explains."""
         disputed = pieces.thicker_than(rounding)[:_MAX_PIECES_SETTLED]
         points = [pieces.points_in(piece) for piece in disputed]
         return settle(self.program, _meshes_of(self.came), ours, theirs, points)
@@ -361,7 +365,7 @@ def _judged(
     rounding: float,
     mesh: Mesh,
 ) -> tuple[Verdict, str]:
-    """Return the verdict on two meshes, where `mesh` is ours, and its reason."""
+    """Return the verdict on our mesh and manifold3d's, and the reason as text."""
     gap = abs(ours.volume - theirs.volume)
     forgiven = volume_of_film(ours, theirs, rounding)
     if found.thickness > rounding:

@@ -1,7 +1,7 @@
-"""Compares two solids: whether they are the same set, and how they differ.
+"""Compare two solids: whether they are the same set, and how far apart their boundaries are.
 
-Equality is decided exactly. The distance of the boundaries is estimated from points on the boundary
-of the symmetric difference: everywhere else the boundaries coincide, so even a small bump on a
+Equality is decided exactly. The distance of the boundaries is estimated from sample points on the
+boundary of the symmetric difference: elsewhere the boundaries coincide, so even a small bump on a
 large body is sampled.
 """
 
@@ -19,29 +19,29 @@ from ..solid.solid import Solid
 from .discrepancy import SetDifference, measured
 from .verdict import Facts
 
-#: Added to a distance, as a fraction of the largest coordinate: far more than its rounding.
+#: A bound of the rounding of distances, as a fraction of the largest coordinate.
 _SLACK = 1e-12
 
-#: The numbers of points, and of pairs of a point and a triangle, that are processed together. They
+#: The numbers of points, and of pairs of a point and a triangle, in one array operation, which
 #: bound the memory.
 _POINTS_PER_BATCH, _PAIRS_PER_BATCH = 1000, 1 << 16
 
 
 @dataclass(frozen=True)
 class SetComparison:
-    """The difference of two solids.
+    """The result of comparing two solids as sets.
 
     Parameters
     ----------
     a, b : Facts
-        Of the reduced boundaries.
+        The facts about the reduced boundary of each solid.
     difference : SetDifference
         The symmetric difference; its volume is zero only if the sets are equal.
     hausdorff : float or None
-        A lower bound of the Hausdorff distance of the boundaries in model units, from samples; None
-        if it was not measured or one set is empty.
+        A lower bound of the Hausdorff distance of the boundaries in model units, from sample
+        points; None if it was not measured or one set is empty.
     samples : int
-        The number of points measured.
+        The number of sample points.
     """
 
     a: Facts
@@ -52,22 +52,22 @@ class SetComparison:
     samples: int = 0
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything as JSON values."""
+        """Return all fields as JSON values."""
         return asdict(self)
 
 
 @uncounted
 def compare(a: Solid, b: Solid, samples: int = 10_000, seed: int = 0) -> SetComparison:
-    """Compare two solids as sets.
+    """Compare two solids as sets, and estimate the distance of their boundaries.
 
     Parameters
     ----------
     a, b : Solid
-        Bounded.
+        The solids, which must be bounded.
     samples : int
-        The number of points of the difference to measure; 0 for none.
+        The number of sample points on the boundary of the difference; 0 to measure no distance.
     seed : int
-        Of the random points.
+        The seed of the random points.
 
     Raises
     ------
@@ -97,16 +97,16 @@ def compare(a: Solid, b: Solid, samples: int = 10_000, seed: int = 0) -> SetComp
 def hausdorff(
     a: Mesh, b: Mesh, difference: Mesh | None, samples: int, seed: int = 0
 ) -> tuple[float, float, int]:
-    """Return lower bounds of the distances of each mesh from the other, and the number of points.
+    """Return lower bounds of the distances from a to b and from b to a, and the number of points.
 
     Parameters
     ----------
     a, b : Mesh
     difference : Mesh or None
-        The boundary of their symmetric difference, which contains every part that only one of them
-        has; None if there is none.
+        The boundary of their symmetric difference, on which the points lie; None if it is empty.
     samples : int
-        The number of points on its faces, and the largest number of its vertices.
+        The number of random points on the faces of `difference`, and the largest number of its
+        vertices.
     seed : int
     """
     if difference is None or not all(len(one.faces) for one in (a, b, difference)):
@@ -116,7 +116,7 @@ def hausdorff(
 
 
 def _sampled(mesh: Mesh, count: int, rng: np.random.Generator) -> FloatArray:
-    """Return vertices, at most `count` of them, and as many random points on the faces."""
+    """Return at most `count` vertices of a mesh, and `count` random points on its faces."""
     vertices = mesh.vertices[np.unique(mesh.faces)]
     if len(vertices) > count:
         vertices = rng.choice(vertices, count, replace=False)
@@ -132,7 +132,7 @@ def _sampled(mesh: Mesh, count: int, rng: np.random.Generator) -> FloatArray:
 
 
 def _farthest(mesh: Mesh, points: FloatArray) -> float:
-    """Return the largest distance of the points from a mesh."""
+    """Return the largest distance of any of the points from a mesh."""
     return float(distances(mesh, points).max(initial=0.0))
 
 
@@ -148,7 +148,7 @@ def distances(mesh: Mesh, points: FloatArray) -> FloatArray:
 
 
 class _Surface:
-    """Triangles, (m, 3, 3), in a tree; distances are exact to within a slack."""
+    """Triangles, (m, 3, 3), in a box tree, to which distances are computed within a slack."""
 
     def __init__(self, corners: FloatArray, slack: float) -> None:
         self._corners, self._slack = corners, slack
@@ -156,11 +156,11 @@ class _Surface:
         self._boxes = corners.min(axis=1), corners.max(axis=1)
 
     def distances(self, points: FloatArray) -> FloatArray:
-        """Return the distance of each point from the nearest triangle."""
+        """Return the distance of each point from the nearest triangle, (k,)."""
         found = np.full(len(points), np.inf)
         near = self._tree.near_leaves(points)
         each = np.repeat(np.arange(len(points)), near.shape[1])
-        # The triangles in leaves nearby bound the search for the nearest one.
+        # The distances to triangles in nearby leaves bound the search for the nearest triangle.
         self._lower(found, points, np.column_stack([each, near.ravel()]))
         search = Nearness(BoxTree.of_points(points), self._tree, self._limit(found))
         for pairs in search.leaves():
@@ -172,7 +172,7 @@ class _Surface:
         return (found + self._slack) ** 2
 
     def _lower(self, found: FloatArray, points: FloatArray, pairs: BoxPairs) -> None:
-        """Lower the distances found to those of triangles in leaves."""
+        """Replace distances in `found` by smaller ones to triangles of the paired leaves."""
         numbers, rows = self._tree.members(pairs[:, 1])
         owners = pairs[rows, 0]
         for at in range(0, len(owners), _PAIRS_PER_BATCH):

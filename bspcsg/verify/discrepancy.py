@@ -1,4 +1,4 @@
-"""The difference of two meshes as sets, and its thickness.
+"""The symmetric difference of two meshes as sets, and its thickness.
 
 A volume alone does not distinguish rounding from error: a film of one lattice step over a large
 body has more volume than a small missing part. So the symmetric difference is built exactly,
@@ -19,18 +19,18 @@ from ..solid.solid import Solid
 
 @dataclass(frozen=True)
 class SetDifference:
-    """The symmetric difference of two sets.
+    """The volume, area and thickness of the symmetric difference of two sets.
 
     Parameters
     ----------
     volume : float
-        Of the difference on the lattice, rounded once; zero only if the sets are equal.
+        The volume of the difference on the lattice, rounded once; zero only if the sets are equal.
     area : float
     thickness : float
-        The thickness of its thickest piece, in model units: twice the volume divided by the area.
-        For a film that is its thickness, for a cube a third of its side.
+        The thickness of the thickest connected piece, in model units: twice its volume divided by
+        its area, which for a film is its thickness and for a cube a third of its side.
     place : tuple of float or None
-        A point of that piece.
+        A point of the thickest piece.
     """
 
     volume: float
@@ -48,7 +48,7 @@ def difference_of(
     ----------
     a, b : Mesh
     pitch : int
-        Of the lattice to which both meshes are snapped.
+        The pitch of the lattice to which both meshes are snapped.
     film : float
         The thickness in model units below which differences need not be exact.
 
@@ -56,7 +56,7 @@ def difference_of(
     -------
     SetDifference
     Pieces or None
-        The pieces of the difference, if it is not empty.
+        The connected pieces of the difference; None if it is empty.
 
     Raises
     ------
@@ -72,12 +72,12 @@ def difference_of(
 def measured(
     volume: float, mesh: Mesh, film: float = 0.0
 ) -> tuple[SetDifference, MeshPieces | None]:
-    """Return the size of a difference with this volume and boundary, and its pieces, if any."""
+    """Return the `SetDifference` of a volume with this boundary mesh, and the pieces or None."""
     if len(mesh.faces) == 0 or mesh.area == 0:
         return SetDifference(volume), None
     pieces = MeshPieces.of(mesh, film)
     worst = pieces.thickest
-    # The exact volume also counts parts that rounding to doubles has flattened.
+    # The exact volume includes parts that have no volume after rounding to doubles.
     thickness = max(float(pieces.thickness[worst]), 2 * volume / mesh.area)
     return SetDifference(volume, mesh.area, thickness, pieces.corner_of(worst)), pieces
 
@@ -85,8 +85,8 @@ def measured(
 def _where_windings_differ(a: Mesh, b: Mesh, pitch: int) -> Solid:
     """Return the set of points at which the winding numbers of the two meshes differ.
 
-    Both meshes are taken as one, the second inside out: its winding number is the difference, and
-    faces that the meshes share cancel before any geometry is done.
+    The winding number of both meshes together, the second inside out, is the difference; faces that
+    the meshes share cancel by their corners alone.
     """
     count = len(a.vertices)
     vertices, same = welded(np.concatenate([a.vertices, b.vertices]))
@@ -100,12 +100,12 @@ def _where_windings_differ(a: Mesh, b: Mesh, pitch: int) -> Solid:
     except InvalidMeshError as error:
         if error.code != "empty_mesh":
             raise
-        # The faces that are left have no area on the lattice.
+        # The remaining faces have no area on the lattice.
         return Solid.empty()
 
 
 def _cancelled(faces: IndexArray) -> IndexArray:
-    """Return the faces without pairs that have the same corners in opposite order."""
+    """Return the faces after removing pairs with the same corners in opposite order."""
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
     first = faces.argmin(axis=1)
     rows = np.arange(len(faces))

@@ -1,9 +1,9 @@
-"""Tests whether two meshes agree in everything that is cheap to measure.
+"""Test whether two meshes agree in everything that is cheap to measure.
 
-These are volume, area, bounds, parts and Euler number, and the sides of points near the seam, where
-faces from several operands meet. The test finds missing, surplus or moved parts, but not two errors
-that cancel in all measures and are away from the points. To be sure, build the symmetric
-difference.
+These are volume, area, bounds, parts and Euler number, and whether points near the seam, where
+faces from several operands meet, are inside. The test finds missing, surplus or moved parts, but
+not two errors that cancel in all measures and are far from the points; only the symmetric
+difference finds these.
 """
 
 import numpy as np
@@ -14,21 +14,22 @@ from ..mesh.pieces import Point
 from .referee import Columns
 from .verdict import Facts
 
-#: Relative error of volumes and areas summed in doubles.
+#: The relative error of volumes and areas that are summed in doubles.
 SUMMING = 1e-11
 
-#: The largest number of faces at the seam that are probed, each on both sides.
+#: The largest number of faces at the seam with sample points, one on each side.
 _MAX_FACES_PROBED = 16
 
-#: The distance of a point from its face, in multiples of the distance that rounding moves surfaces.
+#: The distance of a sample point from its face, in multiples of the film between both surfaces.
 _CLEAR = 64.0
 
-#: The least distance of a point from its face, in multiples of the root of the face's area.
+#: The least distance of a sample point from its face, in multiples of the square root of twice the
+#: face's area.
 _NEAR = 0.01
 
 
 def measures_differ(mesh: Mesh, other: Mesh, film: float) -> bool:
-    """Return whether a measure of two meshes differs by more than a film between them explains.
+    """Return true if a measure of two meshes differs by more than a film between them explains.
 
     Parameters
     ----------
@@ -54,12 +55,12 @@ def _bounds_differ(mesh: Mesh, other: Mesh, film: float) -> bool:
 
 
 def volume_of_film(ours: Facts, theirs: Facts, film: float) -> float:
-    """Return by how much volumes may differ if the surfaces are a film apart."""
+    """Return the largest difference of volumes if both surfaces are at most `film` apart."""
     return film * (ours.area + theirs.area) + SUMMING * abs(ours.volume)
 
 
 def areas_differ(ours: Facts, theirs: Facts, mesh: Mesh, film: float) -> bool:
-    """Return whether the areas differ by more than that of a film along all edges of our mesh."""
+    """Return true if the areas differ by more than `film` times the length of all our edges."""
     gap = abs(ours.area - theirs.area) - SUMMING * ours.area
     return gap > 0 and gap > film * _edge_length(mesh)
 
@@ -70,7 +71,7 @@ def _edge_length(mesh: Mesh) -> float:
 
 
 def sides_differ(ours: Mesh, theirs: Mesh, film: float) -> tuple[int, bool]:
-    """Return the number of points near the seam that were compared, and whether one differs."""
+    """Return the number of sample points near the seam, and whether a point is in one mesh only."""
     points = _points_at_seam(ours, film)
     first, second = Columns(ours), Columns(theirs)
     sides = [(first.is_inside(point), second.is_inside(point)) for point in points]
@@ -79,7 +80,7 @@ def sides_differ(ours: Mesh, theirs: Mesh, film: float) -> tuple[int, bool]:
 
 
 def _points_at_seam(mesh: Mesh, film: float) -> list[Point]:
-    """Return points on both sides of faces at the seam, or of any faces if there is no seam."""
+    """Return points on both sides of faces at the seam, or of other faces if there is no seam."""
     faces = np.flatnonzero(_is_at_seam(mesh))
     if len(faces) == 0:
         faces = np.arange(len(mesh.faces))

@@ -1,7 +1,7 @@
-"""The answers of another engine to the same questions: manifold3d runs programs.
+"""The oracle: manifold3d carries out the same program of set operations.
 
-manifold3d knows no complements, so every value here is a bounded solid with a flag that says
-whether its complement is meant; De Morgan's laws reduce all operations to those of bounded solids.
+manifold3d has no complements, so every value here is a bounded solid with a flag that is true for
+its complement; De Morgan's laws reduce all operations to operations on bounded solids.
 """
 
 from collections.abc import Iterable, Sequence
@@ -22,24 +22,24 @@ if TYPE_CHECKING:
 
 
 class OracleRefusedError(Exception):
-    """manifold3d cannot take the question: an operand is unbounded or was refused."""
+    """manifold3d cannot carry out the program: the result is unbounded or an operand refused."""
 
 
 class OracleFailedError(Exception):
-    """manifold3d took the question and gave no usable answer."""
+    """manifold3d carried out the program but raised an error or gave an invalid result."""
 
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """The answer of manifold3d to a program.
+    """The result of manifold3d for a program.
 
     Parameters
     ----------
     mesh : Mesh
-        Its result; `source` is zero.
+        The resulting mesh; its `source` is zero.
     tolerance : float
-        The largest distance in model units below which it does not distinguish points, over
-        operands and result.
+        The largest tolerance of manifold3d over operands and result: points within this distance,
+        in model units, may be merged.
     """
 
     mesh: Mesh
@@ -47,13 +47,13 @@ class Answer:
 
 
 def name() -> str:
-    """Return the oracle's name and version."""
+    """Return the text "manifold3d" with its version."""
     return f"manifold3d {_version()}"
 
 
 @cache
 def _version() -> str:
-    """Return the version from the name of the metadata folder, which is faster than reading it."""
+    """Return manifold3d's version from the name of its metadata folder, which is fastest."""
     import manifold3d
 
     found = list(Path(manifold3d.__file__).parent.glob("manifold3d-*.dist-info"))
@@ -65,22 +65,22 @@ def _version() -> str:
 
 
 def status_of(mesh: Mesh) -> str:
-    """Return manifold3d's status for a mesh, in double precision; ``"NoError"`` accepts it."""
+    """Return manifold3d's status of a mesh in double precision; ``"NoError"`` means accepted."""
     return "NoError" if len(mesh.faces) == 0 else str(interop.to_manifold(mesh).status().name)
 
 
 def ask(
     program: Sequence[ProgramLine], operands: Iterable[Mesh], inside: Mesh | None = None
 ) -> Answer:
-    """Return manifold3d's answer to a program.
+    """Return manifold3d's result of a program of set operations.
 
     Parameters
     ----------
     program : sequence of (str, list of int)
-        In the form that the core takes.
+        The lines (operation, operands), in the form that the core takes.
     operands : iterable of Mesh
     inside : Mesh, optional
-        Only the part of the result inside this mesh is wanted.
+        A mesh; the result is intersected with it.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def ask(
 def _result_of(
     program: Sequence[ProgramLine], operands: Iterable[Mesh], inside: Mesh | None
 ) -> "tuple[manifold3d.Manifold, float]":
-    """Return manifold3d's result and the largest tolerance, and free its operands."""
+    """Return manifold3d's resulting solid and the largest tolerance of operands and result."""
     solids = [_taken(number, operand) for number, operand in enumerate(operands, 1)]
     limit = None if inside is None else interop.to_manifold(inside)
     # An empty solid's tolerance is negative.
@@ -127,7 +127,7 @@ def _taken(number: int, operand: Mesh) -> "manifold3d.Manifold":
     status = solid.status().name
     if status != "NoError":
         raise OracleRefusedError(f"manifold3d refuses operand {number}: {status}")
-    # It accepts inverted meshes silently, and its results for them mean nothing.
+    # manifold3d accepts inverted meshes silently, but its results for them are meaningless.
     if solid.volume() <= 0 < operand.volume:
         raise OracleRefusedError(f"operand {number} has no positive volume in manifold3d")
     return solid

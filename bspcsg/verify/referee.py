@@ -1,7 +1,7 @@
-"""Rules where two engines disagree: counts crossings exactly, without any tree.
+"""The referee: settles where two engines disagree by exact counts of crossings.
 
-It classifies a point of the dispute against the operands by counting, in integers, how a ray from
-the point crosses their triangles. It shares no code with the core.
+It decides whether a point is inside the operands by counting, in integers, how a ray from the point
+crosses their triangles. It shares no code with the core.
 """
 
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ from ..solid.program import TRUTH
 
 
 class Ruling(Enum):
-    """Whom the counts support, at all points that could be decided."""
+    """Which engine the exact counts of crossings support, at all points that they decide."""
 
     OURS = "ours"
     THEIRS = "theirs"
@@ -31,16 +31,16 @@ def settle(
     theirs: Mesh,
     pieces: Sequence[Sequence[Point]],
 ) -> Ruling:
-    """Decide who is right in every piece of a dispute.
+    """Decide which of two results is right in every piece of their symmetric difference.
 
     Parameters
     ----------
     program : sequence of (str, list of int)
     operands : sequence of Mesh
-        A point is inside where the winding number is positive.
+        The operands; a point is inside one if its winding number is positive.
     ours, theirs : Mesh
     pieces : sequence of sequences of points
-        Some points for each piece, at least one of which should be inside the piece.
+        Points for each piece of the difference, at least one of which should be inside it.
     """
     rulings = {_settled_piece(program, operands, ours, theirs, points) for points in pieces}
     return rulings.pop() if len(rulings) == 1 else Ruling.UNCLEAR
@@ -52,7 +52,7 @@ def count_agreeing(
     ours: Mesh,
     points: Sequence[Point],
 ) -> tuple[int, int]:
-    """Return at how many points our result is right, and at how many that was decided."""
+    """Return at how many points our result is right, and the number of points that were decided."""
     agreeing = settled = 0
     for point in points:
         inside = is_inside(ours, point)
@@ -83,12 +83,12 @@ def _settled_piece(
 
 
 def is_inside(mesh: Mesh, point: Point) -> bool | None:
-    """Return whether the winding number is positive, exactly; None if every ray grazes an edge."""
+    """Return whether a point's winding number is positive; None if each axis ray grazes an edge."""
     return Columns(mesh).is_inside(point)
 
 
 class Columns:
-    """A mesh whose triangles are looked up along each axis, for many points.
+    """A mesh prepared to classify many points by rays along the axes.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ class Columns:
         self._extents: dict[int, tuple[FloatArray, FloatArray]] = {}
 
     def is_inside(self, point: Point) -> bool | None:
-        """Return whether the winding number is positive; None if every ray grazes an edge."""
+        """Return whether a point's winding number is positive; None if all axis rays meet edges."""
         for axis in range(3):
             winding = self._winding_along(point, axis)
             if winding is not None:
@@ -108,7 +108,7 @@ class Columns:
         return None
 
     def _winding_along(self, point: Point, axis: int) -> int | None:
-        """Return the winding number, by a ray along an axis that must not touch an edge."""
+        """Return a point's winding number by a ray along an axis; None if it touches an edge."""
         order = [axis, (axis + 1) % 3, (axis + 2) % 3]
         start = [point[k] for k in order]
         winding = 0
@@ -120,7 +120,7 @@ class Columns:
         return winding
 
     def _met(self, point: Point, order: list[int]) -> FloatArray:
-        """Return the (k, 3, 3) corners of triangles whose boxes a ray meets, axes reordered."""
+        """Return the (k, 3, 3) corners, axes reordered, of triangles whose boxes a ray meets."""
         across, other = order[1:]
         low, high = self._extent(across)
         near = np.flatnonzero((low <= point[across]) & (high >= point[across]))
@@ -131,7 +131,7 @@ class Columns:
         return met
 
     def _extent(self, axis: int) -> tuple[FloatArray, FloatArray]:
-        """Return the lowest and the highest coordinate of each triangle along an axis."""
+        """Return the least and the greatest coordinate of each triangle along an axis, (m,)."""
         if axis not in self._extents:
             a, b, c = self._mesh.vertices[:, axis][self._mesh.faces.T]
             lowest, highest = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
@@ -140,7 +140,10 @@ class Columns:
 
 
 def _crossing(triangle: FloatArray, start: list[float]) -> int | None:
-    """Return +1 if the ray leaves through the triangle, -1 if it enters, 0 if it misses."""
+    """Return 1 if the ray leaves through the triangle, -1 if it enters, 0 if not, None if unclear.
+
+    Unclear is a ray that meets an edge or starts on the triangle.
+    """
     numbers = _whole([*triangle.ravel().tolist(), *start])
     a, b, c, ray = (numbers[k : k + 3] for k in range(0, 12, 3))
     areas = [_doubled_area(b, c, ray), _doubled_area(c, a, ray), _doubled_area(a, b, ray)]
@@ -149,7 +152,7 @@ def _crossing(triangle: FloatArray, start: list[float]) -> int | None:
     if 0 in areas:
         return None
     whole = sum(areas)
-    # The distance to the triangle's plane, times `whole`, which may be negative.
+    # The signed distance along the ray to the triangle's plane, times `whole`.
     ahead = sum(area * (p[0] - ray[0]) for area, p in zip(areas, (a, b, c), strict=True))
     if ahead == 0:
         return None
@@ -159,12 +162,12 @@ def _crossing(triangle: FloatArray, start: list[float]) -> int | None:
 
 
 def _whole(numbers: list[float]) -> list[int]:
-    """Return doubles as integer multiples of one power of two."""
+    """Return doubles as integers, all multiplied by one power of two."""
     ratios = [number.as_integer_ratio() for number in numbers]
     scale = lcm(*(below for _, below in ratios))
     return [above * (scale // below) for above, below in ratios]
 
 
 def _doubled_area(a: list[int], b: list[int], c: list[int]) -> int:
-    """Return twice the signed area, seen against the ray."""
+    """Return twice the signed area of a triangle's projection along the ray."""
     return (b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1])

@@ -1,4 +1,4 @@
-"""The losses of a file format: compares the mesh that was written with the mesh read back."""
+"""The losses of a file format: compare the mesh that was written with the mesh read back."""
 
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -14,34 +14,34 @@ from ..mesh.weld import welded
 from ..solid.counting import uncounted
 from ..solid.solid import Solid
 
-#: The largest number of names that a message shows.
+#: The largest number of names in a message.
 _MAX_NAMES_SHOWN = 4
 
 
 @dataclass(frozen=True)
 class Losses:
-    """The difference of two meshes that should be the same.
+    """The differences between a mesh that was written and the mesh read back.
 
     Parameters
     ----------
     triangles, points : tuple of int
-        Numbers before and after; points are distinct positions.
+        The numbers before and after; points are distinct positions of vertices.
     shift : float or None
-        Largest change of a coordinate in model units; None if triangles do not correspond.
+        The largest change of a coordinate, in model units; None if the numbers of triangles differ.
     size : float
-        Largest extent, in model units.
+        The largest extent of the written mesh, in model units.
     volume : tuple of float
-        Signed, before and after.
+        The signed volume before and after.
     solid : tuple of bool
-        True where the mesh bounds a set, before and after.
+        Whether the mesh bounds a set, before and after.
     names : tuple of str
-        Names of objects that were lost.
+        The names of objects that were lost.
     passed_by : tuple of str
-        Parts of the input that its reader reported as left out.
+        The parts of the input file that its reader reported as left out.
     dropped : tuple of str
-        Kinds of data in the input that a triangle mesh cannot store.
+        The kinds of data in the input file that a triangle mesh cannot store.
     attributes : tuple of str
-        Names of attributes that were lost or changed.
+        The names of attributes that were lost or changed.
     """
 
     triangles: tuple[int, int]
@@ -57,11 +57,11 @@ class Losses:
 
     @property
     def any(self) -> bool:
-        """True if anything was lost."""
+        """True if at least one loss is reported."""
         return bool(self.sentences())
 
     def sentences(self) -> list[str]:
-        """Return the losses, in a few words each."""
+        """Return one short text for each loss."""
         found = [sentence.rstrip(".") for sentence in self.passed_by]
         found += [", ".join(self.dropped)] if self.dropped else []
         if self.triangles[0] != self.triangles[1]:
@@ -88,18 +88,18 @@ class Losses:
         return found
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything as JSON values."""
+        """Return all fields and `any` as JSON values."""
         return {**asdict(self), "any": self.any}
 
 
 @uncounted
 def losses_between(before: RawMesh, after: RawMesh) -> Losses:
-    """Return the losses on the way from one mesh to the other.
+    """Return the losses between a mesh that was written and the mesh read back.
 
     Parameters
     ----------
     before, after : RawMesh
-        The mesh that was written, with the reports of its own file's reader, and the mesh read
+        The mesh that was written, with the reports of the reader of its own file, and the mesh read
         back.
     """
     kept = {name for name, _ in after.objects} | {after.name}
@@ -119,7 +119,7 @@ def losses_between(before: RawMesh, after: RawMesh) -> Losses:
 
 
 def _changed_attributes(before: RawMesh, after: RawMesh) -> tuple[str, ...]:
-    """Return the attributes that were lost or have changed anywhere."""
+    """Return the names of attributes that are missing after or differ at a corner."""
     if before.attributes is None:
         return ()
     found = []
@@ -149,7 +149,7 @@ def _points(raw: RawMesh) -> int:
 
 
 def _shift(before: RawMesh, after: RawMesh) -> float | None:
-    """Return how far corners moved, if the triangles are in the same order."""
+    """Return the largest change of a coordinate; None if the numbers of triangles differ."""
     if len(before.faces) != len(after.faces):
         return None
     with np.errstate(over="ignore"):

@@ -1,4 +1,4 @@
-"""The report of a check: verdicts and facts about meshes, as words and as JSON values."""
+"""The report of a check: the verdict and facts about both meshes, as text and JSON values."""
 
 from dataclasses import asdict, dataclass
 from enum import StrEnum
@@ -9,7 +9,7 @@ from .discrepancy import SetDifference
 
 
 class Verdict(StrEnum):
-    """The result of a check."""
+    """The outcome of comparing our result with manifold3d's."""
 
     AGREE = "agree"
     OTHER_TOPOLOGY = "same set, other topology"
@@ -22,16 +22,16 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True)
 class Facts:
-    """The facts about a mesh.
+    """The numbers of elements, the measures and the topology of a mesh.
 
     Parameters
     ----------
     vertices, triangles : int
     volume, area : float
-        In model units.
+        The volume and the area, in model units.
     euler_number, components : int
     open_edges : int
-        Directed edges without exactly one opposite, by index.
+        The number of directed edges without exactly one opposite edge of the same vertex indices.
     """
 
     vertices: int
@@ -44,7 +44,7 @@ class Facts:
 
     @classmethod
     def of(cls, mesh: Mesh) -> "Facts":
-        """Return the facts of a mesh."""
+        """Return the facts about a mesh."""
         return cls(
             len(mesh.vertices),
             len(mesh.faces),
@@ -56,7 +56,7 @@ class Facts:
         )
 
     def __str__(self) -> str:
-        """Return one line."""
+        """Return the facts as one line of text."""
         closed = "closed" if self.open_edges == 0 else f"{self.open_edges} open edges"
         return (
             f"{self.triangles} triangles, volume {self.volume:.12g}, area {self.area:.12g}, "
@@ -66,26 +66,27 @@ class Facts:
 
 @dataclass(frozen=True)
 class CheckReport:
-    """The outcome of one comparison.
+    """The report of comparing our result with manifold3d's.
 
     Parameters
     ----------
     operation : str
     verdict : Verdict
     reason : str
-        Why the verdict is not `Verdict.AGREE`, or empty.
+        The reason for any other verdict than `Verdict.AGREE`, else empty.
     ours : Facts
     theirs : Facts or None
     set_volume : float
-        The volume of our set before its vertices were rounded, itself rounded once.
+        The volume of our set before its vertices were rounded to doubles.
     set_difference : SetDifference or None
     same_set_bound, rounding_bound : float
-        Thicknesses up to which sets count as the same, and as within rounding; in model units.
+        The thicknesses up to which sets count as equal, and as equal within rounding, in model
+        units.
     oracle : str
     notes : tuple of str
-        The changes made to operands for manifold3d.
+        Texts about operands that were changed for manifold3d.
     probes : int
-        If measures were compared instead of sets, the number of points whose sides were compared.
+        The number of sample points that were classified, if measures were compared instead of sets.
     """
 
     operation: str
@@ -103,18 +104,18 @@ class CheckReport:
 
     @property
     def ok(self) -> bool:
-        """True if nothing speaks against the result, even if the oracle gave no answer."""
+        """True unless the verdict is `DISAGREE` or `SUBJECT_FAILED`."""
         return self.verdict not in (Verdict.DISAGREE, Verdict.SUBJECT_FAILED)
 
     @property
     def compared(self) -> Literal["nothing", "measures", "sets"]:
-        """The parts of the engines' answers that were compared."""
+        """What was compared: the sets, only the measures of the meshes, or nothing."""
         if self.set_difference is not None:
             return "sets"
         return "measures" if self.verdict is Verdict.AGREE else "nothing"
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything as JSON values."""
+        """Return all fields, `ok` and `compared` as JSON values."""
         found = {**asdict(self), "verdict": str(self.verdict), "ok": self.ok}
         found["notes"] = list(self.notes)
         found["compared"] = self.compared
@@ -125,13 +126,13 @@ class CheckReport:
         return found
 
     def summary(self) -> str:
-        """Return the verdict and its basis, in one line."""
+        """Return the verdict and its reason, or what was compared, as one line of text."""
         if self.reason:
             return f"{self.verdict}: {self.reason}"
         return f"{self.verdict} with {self.oracle}: {self._difference()}"
 
     def __str__(self) -> str:
-        """Return a few lines for people."""
+        """Return the summary, the facts of both meshes and the notes as lines of text."""
         lines = [f"{self.operation}: {self.summary()}", f"  ours       {self.ours}"]
         if self.theirs is not None:
             lines.append(f"  oracle     {self.theirs}  ({self.oracle})")

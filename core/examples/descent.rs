@@ -11,18 +11,18 @@ use bspcsg::tree::node::{Branch, Deferred, Node};
 use bspcsg::tree::solid::Solid;
 use support::{applied, Shape};
 
-/// The plane z = `HEIGHT` is drawn, between lattice coordinates, so that it holds no vertex.
+/// The height of the plane z = `HEIGHT`, between lattice coordinates, so that it contains no vertex.
 const HEIGHT: f64 = 1_100_000.25;
 
-/// The lattice square that is drawn: its low corner and its side.
+/// The low corner of the lattice square that is drawn; `SIDE` is the length of its sides.
 const LOW: [f64; 2] = [-100_000.0, -100_000.0];
 const SIDE: f64 = 2_700_000.0;
 
-/// Pixels across the square, and below it for the legend.
+/// The width of the drawn square in pixels; `LEGEND` is the height of the legend below it.
 const WIDTH: f64 = 640.0;
 const LEGEND: f64 = 92.0;
 
-/// Colours and what they mean.
+/// The colours of cells, and what each colour means.
 const MEANINGS: [(&str, &str); 4] = [
     ("#cfe3f5", "A alone matters: its faces are listed again"),
     ("#f9dcc0", "B alone matters: the same, turned around"),
@@ -45,7 +45,7 @@ fn main() {
     println!("{}</svg>", picture.join("\n"));
 }
 
-/// Collects the leaves of a tree that the plane meets, each with the number of its meaning.
+/// Collects the leaves of a tree that the plane meets, each with the index of its meaning in `MEANINGS`.
 fn collect(root: &Branch, solids: &[Solid; 2], cells: &mut Vec<(Cell, usize)>) {
     let mut open = vec![root.clone()];
     while let Some(branch) = open.pop() {
@@ -86,7 +86,7 @@ fn double(c: i64) -> f64 {
     c as f64
 }
 
-/// A point of the plane in pixels; y points up.
+/// Converts a point of the plane to pixels, with y pointing up.
 fn place([x, y]: [f64; 2]) -> [f64; 2] {
     [
         (x - LOW[0]) * WIDTH / SIDE,
@@ -105,7 +105,7 @@ fn square(cell: &Cell, meaning: usize) -> String {
     )
 }
 
-/// The segments in which the plane cuts the triangles of a surface.
+/// Draws the segments in which the plane cuts the triangles of a surface.
 fn section(shape: &Shape) -> String {
     let corner = |v: i64| shape.vertices[usize::try_from(v).expect("an index")].map(double);
     let cut = |face: &[i64; 3]| -> Option<String> {
@@ -117,7 +117,7 @@ fn section(shape: &Shape) -> String {
     shape.faces.iter().filter_map(cut).collect()
 }
 
-/// Return the point in which an edge crosses the plane.
+/// Returns the point in which an edge crosses the plane; `None` if it does not.
 fn crossing(p: [f64; 3], q: [f64; 3]) -> Option<[f64; 2]> {
     let t = (HEIGHT - p[2]) / (q[2] - p[2]);
     (0.0..1.0)
@@ -135,7 +135,7 @@ fn head() -> String {
     )
 }
 
-/// Write what the colours mean, and how many of the drawn cells have each.
+/// Draws the colours with their meanings, and how many of the drawn cells have each colour.
 fn legend(cells: &[(Cell, usize)]) -> String {
     let line = |(i, (colour, text)): (usize, &(&str, &str))| {
         let y = WIDTH + 14.0 + 20.0 * double(i64::try_from(i).expect("small"));

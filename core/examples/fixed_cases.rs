@@ -1,7 +1,7 @@
-//! Fixed cases for counting instructions: `fixed_cases CASE`, one of [`CASES`].
+//! Fixed cases whose instructions are counted: `fixed_cases CASE`, one of [`CASES`].
 //!
-//! Everything happens on the main thread, inside [`measured`], so that a profiler which counts
-//! within that function alone sees neither the making of the meshes nor idle threads.
+//! Everything runs on the main thread, inside [`measured`], so that a profiler that counts only within this
+//! function counts neither the making of the meshes nor idle threads.
 
 #[path = "../tests/support/mod.rs"]
 mod support;
@@ -27,16 +27,16 @@ use bspcsg::tree::solid::Solid;
 
 use support::{applied, normalized, Numbers, Shape};
 
-/// Lattice steps to a unit of these models.
+/// The number of lattice steps in a unit of these models.
 const UNIT: i64 = 1_000_000_000;
 
-/// A mesh as a caller has it.
+/// A mesh as arrays, as a caller passes it.
 struct Arrays {
     vertices: Vec<[f64; 3]>,
     faces: Vec<[i64; 3]>,
 }
 
-/// The making of a case's meshes and the work that is measured, by the case's name.
+/// The cases: the name of each, and a function that makes its meshes and runs the measured work.
 const CASES: [(&str, fn()); 12] = [
     ("pair", || {
         let [a, b] = spheres(6);
@@ -112,14 +112,14 @@ fn main() {
     case();
 }
 
-/// Do the work that is counted.
+/// Runs the work whose instructions are counted.
 #[inline(never)]
 fn measured(work: impl FnOnce() -> usize) {
     let triangles = work();
     println!("{}", black_box(triangles));
 }
 
-/// Two spheres that cross, of 20 triangles each, divided in four so many times.
+/// Two spheres that cross: icosahedra whose triangles were divided in four `levels` times.
 fn spheres(levels: u32) -> [Arrays; 2] {
     let places = [[0; 3], [700_000_001, 500_000_003, 500_000_009]];
     places.map(|at| arrays(&sphere(at, 1.0, levels)))
@@ -149,7 +149,7 @@ fn pitch_exponent(pitch: Pitch) -> i32 {
     i32::try_from(pitch.exponent()).expect("a small exponent")
 }
 
-/// An operation with two meshes, arrays in to arrays out.
+/// Applies an operation to two meshes, from arrays to arrays; returns the number of triangles.
 fn pair(op: SetOp, a: &Arrays, b: &Arrays) -> usize {
     let [a, b] = [a, b].map(built);
     triangles(&applied(op, &a, &b))
@@ -160,7 +160,7 @@ fn built(mesh: &Arrays) -> Solid {
     Solid::of_source(Arc::new(source), false)
 }
 
-/// Thin tetrahedra side by side, and the same a step further along them: the long sides of both lie
+/// Two bundles of thin tetrahedra side by side, the second one step along them: the long sides of both lie
 /// in the same planes.
 fn bundles(count: i64) -> [Solid; 2] {
     let along = [[UNIT / 20, 0, 0], [0, UNIT / 20, 0], [0, 0, 20 * UNIT]];
@@ -177,14 +177,14 @@ fn bundles(count: i64) -> [Solid; 2] {
     })
 }
 
-/// One of 64 boxes through a plate, eight in a row.
+/// One of 64 boxes that pass through a plate, eight in each row.
 fn hole(number: i64) -> Solid {
     let low = [number % 8 * UNIT, number / 8 * UNIT, -UNIT].map(|c| c + UNIT / 4);
     let high = [low[0] + UNIT / 2, low[1] + UNIT / 2, 2 * UNIT];
     Shape::cuboid(low, high).solid()
 }
 
-/// Differences one after the other, with the volume after each as sums kept in the nodes give it.
+/// Subtracts tools one after another, and computes the volume after each from sums cached in the nodes.
 fn chain(block: Solid, tools: &[Solid]) -> usize {
     let mut solid = block;
     for tool in tools {
@@ -194,7 +194,7 @@ fn chain(block: Solid, tools: &[Solid]) -> usize {
     triangles(&solid)
 }
 
-/// The facets of a unit sphere.
+/// The facets of a unit sphere as a scene for rays.
 fn scene(levels: u32) -> Scene<3> {
     let ball = arrays(&sphere([0; 3], 1.0, levels));
     let corner = |v: i64| ball.vertices[usize::try_from(v).expect("a vertex")];
@@ -202,7 +202,7 @@ fn scene(levels: u32) -> Scene<3> {
     Scene::new(&facets, None).expect("facets on the lattice")
 }
 
-/// The rays of an eye that sees the unit sphere, so many in a row: origins and directions.
+/// The rays of an eye that sees the unit sphere, `width` in each row: origins and directions.
 fn camera(width: i32) -> [Vec<f64>; 2] {
     let across = |pixel: i32| f64::from(2 * pixel + 1 - width) / f64::from(width);
     let pixels = (0..width).flat_map(|y| (0..width).map(move |x| [x, y]));
@@ -212,19 +212,19 @@ fn camera(width: i32) -> [Vec<f64>; 2] {
     [origins, directions]
 }
 
-/// The number of rays that hit, with the boxes divided on the way.
+/// The number of rays that hit a facet; the boxes are divided on the way.
 fn hits(scene: &Scene<3>, origins: &[f64], heads: &[f64]) -> usize {
     let found = Rays { origins, heads }.first(scene).expect("good rays");
     found.iter().flatten().count()
 }
 
-/// The number of rays that hit in a tree that grows on the way.
+/// The number of rays that hit a facet, in a tree that grows with them.
 fn visits(tree: &StabTree<Dim3, 3>, origins: &[f64], directions: &[f64]) -> usize {
     let (found, _) = test_rays(tree, origins, directions).expect("good rays");
     found.iter().flatten().count()
 }
 
-/// A union of many solids in one expression.
+/// Unites many solids in one expression; returns the number of triangles.
 fn expression(solids: &[Solid]) -> usize {
     let count = u32::try_from(solids.len()).expect("few");
     let operands = (0..count).map(Term::Operand);

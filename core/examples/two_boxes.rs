@@ -51,7 +51,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// A minus B, of two closed triangle meshes.
+/// Returns A minus B for two closed triangle meshes.
 fn difference(a: (&[[f64; 3]], &[[i64; 3]]), b: (&[[f64; 3]], &[[i64; 3]])) -> Result<Solid> {
     let solid = |(vertices, faces)| {
         let source = import(vertices, faces, None)?;
@@ -71,7 +71,7 @@ fn difference(a: (&[[f64; 3]], &[[i64; 3]]), b: (&[[f64; 3]], &[[i64; 3]])) -> R
     Ok(part)
 }
 
-/// The corners of a box, the lowest first.
+/// The corners of a box; bit `i` of a corner's index is set if the corner is high along axis `i`.
 fn corners(low: [f64; 3], high: [f64; 3]) -> Vec<[f64; 3]> {
     let corner = |k: usize| [0, 1, 2].map(|axis| [low, high][k >> axis & 1][axis]);
     (0..8).map(corner).collect()

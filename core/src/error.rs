@@ -1,10 +1,10 @@
-//! The one error type of the crate.
+//! The error type of the crate.
 
 pub mod panics;
 
 use std::fmt;
 
-/// The kinds of errors, as stable names for programs.
+/// The kinds of errors, each with a stable name for programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ErrorKind {
@@ -14,21 +14,21 @@ pub enum ErrorKind {
     NonFinite,
     /// A face names a vertex that does not exist.
     IndexOutOfRange,
-    /// An array does not have the shape it should.
+    /// An array does not have the shape that the call needs.
     Shape,
-    /// Coordinates do not fit the lattice.
+    /// A coordinate or coefficient does not fit the lattice.
     TooLarge,
-    /// More facets than an exhaustive search takes.
+    /// There are more facets than an exhaustive search can handle, or a number is too long.
     TooMany,
     /// A mesh without faces of positive area.
     EmptyMesh,
-    /// A mesh or a measure of an unbounded solid was asked for.
+    /// The caller asked for a mesh or a measure of an unbounded solid.
     Unbounded,
     /// The caller asked to stop.
     Cancelled,
-    /// A half-space needs a finite normal that is not zero.
+    /// The normal of a half-space, or the direction of a ray, is zero or not finite.
     BadNormal,
-    /// Operands live on lattices of different pitch.
+    /// Operands are on lattices of different pitch.
     PitchMismatch,
     /// A facet without extent: a segment of zero length, a polygon of zero area.
     Degenerate,
@@ -36,18 +36,18 @@ pub enum ErrorKind {
     NonPlanar,
     /// The outline of a polygon crosses or touches itself.
     NotSimple,
-    /// A mesh that was declared to bound a set without overlaps has some.
+    /// A mesh that was declared to bound a set without overlaps overlaps itself.
     NotReduced,
-    /// Stored data is not what it claims to be.
+    /// Stored bytes are damaged or contradict themselves.
     BadSnapshot,
     /// Another thread was using the object when the process was forked.
     Forked,
-    /// A broken invariant: a defect of this library.
+    /// An invariant is broken: a defect of this library.
     Internal,
 }
 
 impl ErrorKind {
-    /// The stable name used as `code` in Python.
+    /// The stable name of the kind, used as `code` in Python.
     #[must_use]
     pub const fn code(self) -> &'static str {
         match self {
@@ -73,7 +73,7 @@ impl ErrorKind {
     }
 }
 
-/// An error: what, where, and what to do about it.
+/// An error: its kind, the numbers of the faces, vertices or rows concerned, and a message with a remedy.
 ///
 /// # Example
 /// ```
@@ -90,12 +90,12 @@ pub struct Error {
 }
 
 impl Error {
-    /// An error without a place.
+    /// Makes an error that concerns no particular face, vertex or row.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
         Self::at(kind, Vec::new(), message)
     }
 
-    /// An error at numbered places (faces, vertices or rows, as the message says).
+    /// Makes an error about numbered faces, vertices or rows, as the message says.
     pub fn at(kind: ErrorKind, place: Vec<u64>, message: impl Into<String>) -> Self {
         Self {
             kind,
@@ -104,7 +104,7 @@ impl Error {
         }
     }
 
-    /// A broken invariant.
+    /// Makes an internal error: an invariant is broken.
     pub fn internal(message: impl Into<String>) -> Self {
         Self::new(ErrorKind::Internal, message)
     }
@@ -114,12 +114,12 @@ impl Error {
         self.kind
     }
 
-    /// The faces, vertices or rows concerned.
+    /// The numbers of the faces, vertices or rows concerned.
     pub fn place(&self) -> &[u64] {
         &self.place
     }
 
-    /// The sentence for a person.
+    /// The message, a sentence for people.
     pub fn message(&self) -> &str {
         &self.message
     }

@@ -1,11 +1,10 @@
-//! Interrupts: a caller may stop work that has become too long.
+//! Interrupts: a caller may stop work that takes too long.
 //!
-//! Every loop that can run long polls. Where the call it works for has been stopped, the poll
-//! unwinds to [`Call::run`], which answers `Cancelled`; so a routine that has nothing to refuse needs
-//! no error of its own. What calls share is never left half made: values that are kept are put in
-//! their place only when they are complete.
+//! Every loop that can run long polls. If the call that it works for was stopped, the poll unwinds to
+//! [`Call::run`], which returns `Cancelled`; so a routine that refuses nothing needs no error of its own.
+//! Data that calls share are never left half made: caches are set only when their values are complete.
 //!
-//! Polls are counted and the state is looked at once in [`UNITS_BETWEEN_LOOKS`] of them, so that a poll costs
+//! Polls are counted, and only one in [`UNITS_BETWEEN_LOOKS`] reads the shared state, so that a poll costs
 //! about as much as an addition.
 //!
 //! # Source
@@ -20,19 +19,21 @@ use std::time::{Duration, Instant};
 use crate::error::panics::caught;
 use crate::error::{Error, ErrorKind, Result};
 
-/// Units of work between two looks. A unit takes between 10 ns and some microseconds (an element of
-/// a pass; a pair of elements; an exact question), so looks are 10 µs to some milliseconds apart.
+/// The units of work between two reads of the shared state. A unit takes between 10 ns and some microseconds
+/// (an element of a pass; a pair of elements; an exact question), so these are 10 µs to some milliseconds
+/// apart.
 const UNITS_BETWEEN_LOOKS: usize = 1 << 10;
 
-/// The time between two questions to a caller: two threads work less than a tenth of a second in it.
+/// The time between two checks whether the caller wants to stop, in which threads do less than a tenth of a
+/// second of work.
 pub const ASK_EVERY: Duration = Duration::from_millis(30);
 
-/// The number of no call.
+/// Stands for the number of a call where there is none.
 const NO_CALL: u64 = 0;
 
 static NEXT: AtomicU64 = AtomicU64::new(1);
 
-/// The number of calls that are being stopped.
+/// The number of calls that were stopped and have not ended.
 static STOPPING: AtomicUsize = AtomicUsize::new(0);
 
 static STOPPED: Mutex<Vec<u64>> = Mutex::new(Vec::new());
@@ -43,7 +44,7 @@ thread_local! {
     static CALLER: Cell<Option<Caller>> = const { Cell::new(None) };
 }
 
-/// A call that can be stopped while it runs.
+/// A call of the core, which can be stopped while it runs.
 ///
 /// # Example
 /// ```
@@ -64,26 +65,26 @@ pub struct Call {
     number: u64,
 }
 
-/// The call that a thread works for; tasks that it hands to other threads carry it on.
+/// The call that a thread works for; work that a thread gives to other threads takes it along.
 #[derive(Clone, Copy, Debug)]
 pub struct Task {
     call: u64,
 }
 
-/// Work that a caller may give to other threads: it is done once.
+/// A share of work that a caller may give to other threads; it runs once.
 pub type Share<'a> = &'a mut (dyn FnMut() + Send);
 
-/// The abilities of a caller who works himself.
+/// What a caller provides that runs a call on its own thread.
 #[derive(Clone, Copy)]
 pub struct CallerHooks {
-    /// Return whether to stop; the work cannot know by itself.
+    /// Returns true if the call should stop, for example because of a signal.
     pub wants_to_stop: fn() -> bool,
-    /// Have threads of a pool do a share of the work for a task's call, and wait; do nothing if the
-    /// system starts none.
+    /// Runs a share of the work, for the call of a task, in a pool, and waits; does nothing if the system
+    /// starts no threads.
     pub hand_over: fn(Task, Share<'_>),
 }
 
-/// The caller of work on this thread.
+/// The caller whose own thread runs the work, and when it was last asked whether to stop.
 #[derive(Clone, Copy)]
 struct Caller {
     hooks: CallerHooks,
@@ -91,7 +92,7 @@ struct Caller {
 }
 
 impl Call {
-    /// A call that nobody has stopped.
+    /// Makes a call that is not stopped.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -99,30 +100,30 @@ impl Call {
         }
     }
 
-    /// Makes the work of the call end at its next polls.
+    /// Stops the call: its work ends at its next polls.
     pub fn stop(&self) {
         self.task().stop();
     }
 
-    /// The task of those who work for the call.
+    /// The task that stands for the call on other threads.
     #[must_use]
     pub fn task(&self) -> Task {
         Task { call: self.number }
     }
 
-    /// Does the call's work.
+    /// Runs the work of the call.
     ///
     /// # Errors
-    /// Those of the work; `Cancelled`; `Internal` for a panic.
+    /// The errors of the work; `Cancelled`; `Internal` for a panic.
     pub fn run<T>(&self, work: impl FnOnce() -> Result<T>) -> Result<T> {
         caught(|| self.task().run(work))
     }
 
-    /// Does the call's work on the caller's own thread, who is asked now and then whether to stop,
-    /// and to have large shares done in a pool.
+    /// Runs the work of the call on the caller's own thread; the caller is regularly asked whether to stop,
+    /// and may run large shares in a pool.
     ///
     /// # Errors
-    /// Those of the work; `Cancelled`.
+    /// The errors of the work; `Cancelled`.
     pub fn run_here<T>(&self, hooks: CallerHooks, work: impl FnOnce() -> Result<T>) -> Result<T> {
         let asked = Instant::now();
         let caller = Caller { hooks, asked };
@@ -149,13 +150,13 @@ impl Drop for Call {
 }
 
 impl Task {
-    /// Return the call that this thread works for.
+    /// Returns the task of the call that this thread works for.
     #[must_use]
     pub fn current() -> Self {
         CURRENT.get()
     }
 
-    /// Makes the work of the call end at its next polls.
+    /// Stops the call of this task: its work ends at its next polls.
     pub fn stop(self) {
         let mut stopped = STOPPED.lock().unwrap_or_else(PoisonError::into_inner);
         if !stopped.contains(&self.call) {
@@ -164,9 +165,9 @@ impl Task {
         }
     }
 
-    /// Works for this task's call, unless that has been stopped; on any thread.
+    /// Runs work for this task's call, on any thread; unwinds at once if the call was stopped.
     pub fn run<T>(self, work: impl FnOnce() -> T) -> T {
-        // Tasks that wait begin even where others of the call have ended, and may be short.
+        // A task may begin after others of its call have ended, and may be too short to poll.
         if self.is_stopped() {
             end();
         }
@@ -182,7 +183,7 @@ impl Task {
     }
 }
 
-/// A thread's value that returns when this is dropped.
+/// Sets a thread-local value, and restores the previous one when this is dropped.
 struct RestoredOnDrop<T: Copy + 'static> {
     place: &'static std::thread::LocalKey<Cell<T>>,
     value: T,
@@ -201,19 +202,19 @@ impl<T: Copy> Drop for RestoredOnDrop<T> {
     }
 }
 
-/// Work for other threads that goes on to be done for what this thread works for.
+/// Wraps work for other threads, so that it runs there for the call that this thread works for.
 pub fn carried<A, T>(work: impl Fn(A) -> T) -> impl Fn(A) -> T {
     let task = Task::current();
     move |argument| task.run(|| work(argument))
 }
 
-/// Notes a unit of work; ends the call if it has been stopped.
+/// Counts a unit of work; unwinds if the call was stopped.
 #[inline]
 pub fn poll() {
     spend(1);
 }
 
-/// Notes so many units of work; ends the call if it has been stopped.
+/// Counts `units` units of work; unwinds if the call was stopped.
 #[inline]
 pub fn spend(units: usize) {
     match UNITS_LEFT.get().checked_sub(units) {
@@ -231,7 +232,7 @@ fn check_stopped() {
     }
 }
 
-/// Unwinds to where the call began.
+/// Unwinds to the start of the call.
 fn end() -> ! {
     let text = "the caller stopped the call";
     resume_unwind(Box::new(Error::new(ErrorKind::Cancelled, text)))
@@ -252,10 +253,10 @@ fn caller_wants_to_stop() -> bool {
     (caller.hooks.wants_to_stop)()
 }
 
-/// Do a share of the work in a pool if the call's caller works himself and has one.
+/// Runs a share of the work in a pool, if the call runs on its caller's thread and the caller has a pool.
 ///
 /// # Errors
-/// What the work needs, where nobody has done it.
+/// `needs`, the data of the work, if the work was not run.
 pub fn handed_over<W: Send, T: Send>(needs: W, work: impl Fn(W) -> T + Sync) -> Result<T, W> {
     let Some(caller) = CALLER.get() else {
         return Err(needs);
@@ -266,7 +267,7 @@ pub fn handed_over<W: Send, T: Send>(needs: W, work: impl Fn(W) -> T + Sync) -> 
     match (value, needs) {
         (Some(value), _) => Ok(value),
         (None, Some(needs)) => Err(needs),
-        // Who began the share gave it up with the call.
+        // The thread that began the share unwound because the call was stopped.
         (None, None) => end(),
     }
 }
@@ -329,7 +330,7 @@ mod tests {
         assert!(Call::new().run(passes).is_ok());
     }
 
-    /// A caller who does shares himself, and wants to stop.
+    /// A caller that runs shares itself, and wants to stop.
     const IMPATIENT: CallerHooks = CallerHooks {
         wants_to_stop: || true,
         hand_over: |task, share| task.run(share),

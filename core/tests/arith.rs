@@ -27,13 +27,13 @@ fn power(exponent: u32) -> BigInt {
     BigInt::from(1) << exponent
 }
 
-/// A limb as carries and quotient guesses dislike it.
+/// Limbs at which carries and guesses of quotients are hardest, and random ones.
 fn limb() -> impl Strategy<Value = u64> {
     let corner = prop::sample::select(vec![0, 1, u64::MAX, u64::MAX - 1, 1 << 63, (1 << 63) - 1]);
     prop_oneof![3 => corner, 3 => any::<u64>(), 1 => (any::<u64>(), 0u32..64).prop_map(|(x, s)| x >> s)]
 }
 
-/// Integers of every length and both signs, extremes included, except the least one.
+/// Integers of every length and both signs, with the extreme ones, but not the least.
 fn int<const N: usize>() -> impl Strategy<Value = Int<N>> {
     let bits = prop_oneof![2 => Just(Int::<N>::BITS - 1), 1 => 0..Int::<N>::BITS];
     (prop::collection::vec(limb(), N), bits, any::<bool>()).prop_map(|(limbs, bits, negative)| {
@@ -54,7 +54,7 @@ fn divisor() -> impl Strategy<Value = u128> {
         .prop_map(|divisor| divisor.max(1))
 }
 
-/// Doubles as multiples of 2^-1074, with infinity as the value that follows the largest.
+/// A double, by its bits, as a multiple of 2^-1074; infinity is the value after the largest double.
 fn double_in_least_steps(bits: u64) -> BigInt {
     let (exponent, fraction) = (bits >> 52, bits & ((1 << 52) - 1));
     match u32::try_from(exponent).unwrap() {
@@ -63,7 +63,7 @@ fn double_in_least_steps(bits: u64) -> BigInt {
     }
 }
 
-/// Return whether `value` is nearest to `numerator / denominator`, and even where two are.
+/// Returns true if `value` is the double nearest to `numerator / denominator`, the even one of two.
 fn is_nearest(value: f64, numerator: &BigInt, denominator: &BigInt) -> bool {
     if (*numerator < BigInt::ZERO) != value.is_sign_negative() {
         return false;
@@ -79,7 +79,7 @@ fn is_nearest(value: f64, numerator: &BigInt, denominator: &BigInt) -> bool {
     above && below
 }
 
-/// The laws of a single width.
+/// Makes the tests of the laws for each width.
 macro_rules! width_laws {
     ($($name:ident: $n:literal),*) => {$(
         mod $name {
@@ -192,7 +192,7 @@ macro_rules! width_laws {
                     prop_assert!(is_nearest(ratio_to_f64(&c, &a.abs()), &big(&c), &big(&a.abs())));
                 }
 
-                /// Ratios at, just below and just above the middle of two doubles.
+                /// Ratios at, just below and just above the middle between two doubles.
                 #[test]
                 fn ties(m in 1i64 << 53..1 << 54, b in positive::<N>(), nudge in -1i64..=1) {
                     let a = b.mul_i64::<{ N + 2 }>(m | 1) + Int::from_i64(nudge);
@@ -281,7 +281,7 @@ proptest! {
         prop_assert!(is_nearest(value, &big(&num), &den));
     }
 
-    /// Ties whose only excess lies far below the quotient's last bit.
+    /// Ratios between two doubles whose excess over the middle lies far below the quotient's last bit.
     #[test]
     fn ties_of_long_numerators(m in 1u64 << 53..1 << 54, shift in 1u32..1000, nudge in -1..=1) {
         let num = (BigInt::from(m | 1) << shift) + nudge;

@@ -1,11 +1,11 @@
-//! The widths of the exact predicates: the derived table, and points that press against it.
+//! The widths of the exact predicates: the derived table, and points that reach the bounds.
 
 use bspcsg::arith::bounds::{self, limbs_for, COORDINATE_BITS};
 use bspcsg::arith::Int;
 use num_bigint::BigInt;
 use proptest::prelude::*;
 
-/// Each bound as a multiple of the coordinate's bits plus a constant.
+/// Each bound is a multiple of the coordinate's bits plus a constant.
 #[test]
 fn bounds_are_linear_in_the_coordinate() {
     type Row = (fn(u32) -> u32, u32, u32);
@@ -56,10 +56,10 @@ fn limbs_hold_the_sign() {
 
 type Point = [i64; 3];
 
-/// `(normal, offset)`, positive where normal · x + offset is.
+/// A plane: normal and offset, positive where normal · x + offset is.
 type Plane = ([i128; 3], Int<3>);
 
-/// `(x, y, z, w)`.
+/// A point in homogeneous coordinates `(x, y, z, w)`.
 type Meet = [Int<6>; 4];
 
 fn coordinate() -> impl Strategy<Value = i64> {

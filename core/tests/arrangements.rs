@@ -1,4 +1,4 @@
-//! The arrangement of two meshes against the descent: two ways to one set.
+//! Compares the arrangement of two meshes with the descent: both must make the same set.
 
 use bspcsg::merge::arrangement::arranged;
 use bspcsg::merge::descent::descend::Descent;
@@ -13,7 +13,7 @@ use super::support::{assert_same_set, manifold_mesh, normalized, volume, Numbers
 
 const REACH: i64 = 60;
 
-/// The ways to combine two operands.
+/// The expressions of two operands that are tested.
 fn terms() -> [Vec<Term>; 6] {
     let with = |more: Vec<Term>| [vec![Term::Operand(0), Term::Operand(1)], more].concat();
     [
@@ -26,7 +26,7 @@ fn terms() -> [Vec<Term>; 6] {
     ]
 }
 
-/// The values by the arrangement, where it has one, and by the descent.
+/// The value of an expression by the arrangement and by the descent; `None` if the arrangement declines.
 fn both_ways(terms: Vec<Term>, solids: &[Solid; 2]) -> Option<[Solid; 2]> {
     let expression = Expression::new(terms).expect("well formed");
     let sources = Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect());
@@ -41,7 +41,7 @@ fn both_ways(terms: Vec<Term>, solids: &[Solid; 2]) -> Option<[Solid; 2]> {
     Some([found.root, expected].map(solid))
 }
 
-/// Compares both ways for pairs of shapes; returns how many pairs the arrangement took.
+/// Compares both algorithms for pairs of shapes; returns how many expressions the arrangement evaluated.
 fn compared(count: usize, mut pair: impl FnMut() -> [Solid; 2]) -> usize {
     let mut taken = 0;
     for k in 0..count {
@@ -85,7 +85,7 @@ fn spheres_are_combined_as_by_the_descent() {
     assert!(taken > 30, "{taken}");
 }
 
-/// Meshes that overlap themselves, and such as are inside out in part.
+/// Meshes that overlap themselves, some of them inside out in part.
 #[test]
 fn overlapping_meshes_are_combined_as_by_the_descent() {
     let mut numbers = Numbers::new(3);

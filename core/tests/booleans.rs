@@ -1,4 +1,4 @@
-//! Booleans of small solids end to end, with exact volumes.
+//! Set operations on small solids end to end, with exact volumes.
 
 use std::sync::Arc;
 

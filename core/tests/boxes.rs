@@ -1,6 +1,6 @@
 //! Chains and expressions of boxes on a coarse lattice, against sets of unit cubes.
 //!
-//! Faces lie in common planes, edges in faces, and what earlier steps left meets new boxes in parts.
+//! Faces lie in common planes, edges in faces, and remains of earlier steps partly meet new boxes.
 
 use bspcsg::geometry::plane::{normal, Lattice};
 use bspcsg::merge::expression::Term;
@@ -9,7 +9,7 @@ use bspcsg::tree::solid::Solid;
 
 use super::support::{applied, combined, inside, manifold_mesh, volume, Numbers, Ratio, Shape};
 
-/// Cubes along an edge of the region.
+/// The number of cubes along an edge of the region.
 const SIDE: i64 = 11;
 
 /// A set of cubes of side 2, the first at the origin.
@@ -46,7 +46,7 @@ impl Cubes {
     }
 }
 
-/// A box of at least `least` cubes along each edge, some with vertices inside their sides.
+/// A box of at least `least` cubes along each edge; some boxes have vertices inside their sides.
 fn any_box(numbers: &mut Numbers, least: i64) -> (Solid, Cubes) {
     let low = [0; 3].map(|_| numbers.below(SIDE - least + 1));
     let high = low.map(|c| c + least + numbers.below(SIDE - least - c + 1));
@@ -58,8 +58,8 @@ fn any_box(numbers: &mut Numbers, least: i64) -> (Solid, Cubes) {
     (shape.solid(), Cubes::of(low, high))
 }
 
-/// The same solid with each triangle divided around a lattice point strictly inside it, if there is
-/// one near its centre: no other face's plane goes through that point.
+/// The same solid with each triangle divided at a lattice point strictly inside it, if one is near its
+/// centre: no other face's plane contains that point.
 fn divided(shape: &Shape) -> Shape {
     let mut vertices = shape.vertices.clone();
     let mut faces = Vec::new();
@@ -105,7 +105,7 @@ fn chains_of_boxes_are_sets_of_cubes() {
     }
 }
 
-// Found: boxes of more than 64 intervals left their kernel.
+// Found: the kernel of axis-parallel faces declined boxes of more than 64 intervals.
 #[test]
 fn expressions_of_many_boxes_are_sets_of_cubes() {
     let mut numbers = Numbers::new(12);

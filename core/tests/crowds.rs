@@ -1,4 +1,4 @@
-//! Many operands in one place: evaluated in groups, they make what they make one after the other.
+//! Many operands in one region: evaluated in groups, they make what single operations in succession make.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ use super::support::{
     normalized, volume, Numbers, Shape,
 };
 
-/// An expression over operands 0 … count − 1 with nested operations, each operand named once.
+/// Random lines of nested operations over operands 0 … count − 1, in which each operand occurs once.
 fn any_terms(numbers: &mut Numbers, count: u32) -> Vec<Term> {
     let mut terms: Vec<Term> = (0..count).map(Term::Operand).collect();
     let mut open: Vec<u32> = (0..count).collect();
@@ -42,7 +42,7 @@ fn any_terms(numbers: &mut Numbers, count: u32) -> Vec<Term> {
     terms
 }
 
-/// The same for lists of operands of which some are one set.
+/// A random expression over operands of which some are equal, and for each operand the first equal one.
 fn with_twins(numbers: &mut Numbers, count: u32) -> (Expression, Vec<u32>) {
     let expression = Expression::new(any_terms(numbers, count)).expect("well formed");
     let kinds = 1 + numbers.below(i64::from(count));
@@ -88,7 +88,7 @@ fn copies_of_meshes_change_no_byte() {
     }
 }
 
-/// The mesh of one list of all operands.
+/// The mesh of one operation over all operands: its vertices and triangles.
 fn listed(solids: &[Solid], list: fn(Vec<u32>) -> Term) -> (Vec<[f64; 3]>, Vec<[VertexId; 3]>) {
     let count = u32::try_from(solids.len()).expect("few");
     let lines = vec![list((0..count).collect())];
@@ -96,7 +96,7 @@ fn listed(solids: &[Solid], list: fn(Vec<u32>) -> Term) -> (Vec<[f64; 3]>, Vec<[
     (made.vertices, made.triangles)
 }
 
-/// The value of an expression for operands that are inside where a bit is set.
+/// The value of an expression at a point, where operand k is inside if bit k of `inside` is set.
 fn value(expression: &Expression, inside: u32) -> bool {
     expression.value(|k| inside >> k & 1 == 1, &mut Vec::new())
 }
@@ -141,7 +141,7 @@ fn an_operand_in_both_parts_is_not_parted() {
         .is_none());
 }
 
-/// The lines of an expression carried out one after the other.
+/// Evaluates the lines of an expression one after another.
 fn stepwise(solids: &[Solid], terms: &[Term]) -> Solid {
     let mut made: Vec<Solid> = Vec::new();
     for term in terms {
@@ -178,7 +178,7 @@ fn solids_in_one_place_make_what_they_make_one_after_the_other() {
         let count = 3 + round % 8;
         let any = |numbers: &mut Numbers| match numbers.below(4) {
             0 => Shape::any_cuboid(numbers, 40).solid(),
-            // One mesh that may overlap itself.
+            // A mesh that may overlap itself.
             3 => Shape::any_cuboid(numbers, 40)
                 .with(Shape::any_tetrahedron(numbers, 40))
                 .unchecked(),
@@ -191,7 +191,7 @@ fn solids_in_one_place_make_what_they_make_one_after_the_other() {
     }
 }
 
-// Found: many half-spaces, turned cubes, shells in one place took minutes.
+// Found: many half-spaces, turned cubes or shells in one region took minutes.
 #[test]
 fn half_spaces_in_one_place_make_what_they_make_one_after_the_other() {
     let mut numbers = Numbers::new(33);
@@ -243,12 +243,12 @@ fn a_shell_that_is_turned_around_takes_away() {
     let beside = Shape::cuboid([20, 20, 20], [60; 3]);
     let shape = Shape::cuboid([0; 3], [40; 3]).with(inner).with(beside);
     let united = normalized(&shape.unchecked(), Rule::Positive);
-    // Inside the inner one the numbers of the outer and the inner cancel.
+    // Inside the inner shell the winding numbers of both shells cancel.
     let points = [[15, 15, 15], [25, 25, 25], [5, 5, 5], [50, 50, 50]];
     assert_eq!(inside(&united, &points), [false, true, true, true]);
 }
 
-/// A sphere with some corners in any places, so that its faces cross each other.
+/// A sphere with some vertices moved to random points, so that its faces cross each other.
 fn crumpled(numbers: &mut Numbers, size: i64) -> Shape {
     let mut shape = Shape::sphere([0; 3], double(size), 2);
     for vertex in shape.vertices.iter_mut().step_by(9) {
@@ -257,7 +257,7 @@ fn crumpled(numbers: &mut Numbers, size: i64) -> Shape {
     shape
 }
 
-/// A tube of so many rings that passes through itself once.
+/// A tube of `rings` rings that passes through itself once.
 fn eight(rings: i64) -> Shape {
     let sides = 12;
     let at = |ring: i64, side: i64| {
@@ -305,7 +305,7 @@ fn a_shell_that_crosses_itself_bounds_what_it_winds_around() {
     }
 }
 
-/// Some faces are cut where a mesh overlaps itself; what is left of all is one list, not a tree.
+/// Faces are cut where a mesh overlaps itself, and all that is left is one list, not a tree of cells.
 #[test]
 fn what_crosses_itself_in_one_place_costs_no_tree() {
     for rings in [60, 120] {
@@ -319,7 +319,7 @@ fn what_crosses_itself_in_one_place_costs_no_tree() {
     }
 }
 
-/// Only where surfaces cross on the lattice the mesh stays as it is, and one such place is enough.
+/// A mesh is kept as it is only if its surfaces cross on the lattice, and one such crossing suffices.
 #[test]
 fn a_mesh_says_that_it_crosses_itself_without_being_united() {
     let mut askew = Shape::cuboid([-80, -90, -2], [-70, 95, 2]);

@@ -1,4 +1,4 @@
-//! Trees deeper than any stack: a chain of 10^5 cuts on a stack of 256 KiB.
+//! Trees deeper than any stack allows: a chain of 10^5 cuts on a stack of 256 KiB.
 
 use std::sync::Arc;
 use std::thread;
@@ -94,7 +94,7 @@ fn deep_strips_are_split_across_and_merged() {
     });
 }
 
-/// A convex polygon is a chain for every pivot policy.
+/// The tree of a convex polygon is a chain for every pivot policy.
 #[test]
 fn autopartition_of_a_convex_polygon_is_a_chain() {
     on_a_small_stack(|| {

@@ -1,4 +1,4 @@
-//! Residuals and owners of expressions, against their truth tables and their steps.
+//! Residuals and owners of expressions, compared with truth tables and with evaluation step by step.
 
 use bspcsg::merge::expression::{Expression, Term};
 use bspcsg::merge::residual::{Residual, Twin};
@@ -7,7 +7,7 @@ use super::support::Numbers;
 
 const OPERANDS: u32 = 6;
 
-/// An expression of all operands and some lines over them, lists with repeated names among them.
+/// A random expression of all operands and some lines over them, with repeated names in lists.
 fn any_expression(numbers: &mut Numbers) -> Expression {
     let mut terms: Vec<Term> = (0..OPERANDS).map(Term::Operand).collect();
     for _ in 0..=numbers.below(9) {
@@ -38,7 +38,8 @@ fn value_of(residual: &Residual, bits: u32) -> bool {
     }
 }
 
-/// Whatever is put in first, what is left has the values of the whole, and names nothing known.
+/// If known operands are replaced by their values, the residual has the values of the whole, and names none
+/// of them.
 #[test]
 fn residuals_have_the_values_of_the_whole() {
     let mut numbers = Numbers::new(31);
@@ -51,13 +52,13 @@ fn residuals_have_the_values_of_the_whole() {
             let bits = told & known | free & !known;
             let expected = whole.value(|k| has(bits, k), &mut Vec::new());
             let context = format!("{whole:?} with {known:b} as {told:b} in round {round}");
-            // What is known already must not be asked for.
+            // Operands that are known must not change the value of the residual.
             assert_eq!(value_of(&left, bits ^ known), expected, "{context}");
         }
     }
 }
 
-/// An expression taken apart has the values of the whole.
+/// An expression divided into two parts has the values of the whole.
 #[test]
 fn parts_make_the_whole() {
     let mut numbers = Numbers::new(32);
@@ -75,7 +76,7 @@ fn parts_make_the_whole() {
     }
 }
 
-/// The operands of a small expression.
+/// The number of operands of a small expression.
 const FEW: u32 = 4;
 
 /// An expression in which symmetric differences have two arguments, as programs of Python do.
@@ -98,7 +99,7 @@ fn any_terms(numbers: &mut Numbers) -> (Vec<Term>, Expression) {
     (terms, expression)
 }
 
-/// A solid as it is about a place: whether it is inside on the two sides, and whose face is there.
+/// Whether a solid is inside on the two sides of a surface, and whose face is there.
 #[derive(Clone, Copy)]
 struct Step {
     sides: [bool; 2],
@@ -124,7 +125,7 @@ impl Step {
     }
 }
 
-/// The owner of a place if lines are carried out one by one, two arguments at a time.
+/// The owner of a surface if lines are evaluated one by one, with two arguments at a time.
 fn owner_by_steps(terms: &[Term], sides: [u32; 2]) -> Option<u32> {
     let mut steps: Vec<Step> = Vec::new();
     for term in terms {
@@ -167,9 +168,9 @@ fn any_sides() -> impl Iterator<Item = [u32; 2]> {
     (0..1 << (2 * FEW)).map(|bits: u32| [bits & ((1 << FEW) - 1), bits >> FEW])
 }
 
-// Found: where three faces coincide, or one operand stands in two places, a volume that was asked
-// for on the way changed owners and triangles.
-/// A result of steps has the faces of one that is evaluated in one go.
+// Found: where three faces coincide, or one operand occurs twice, a volume that was computed between steps
+// changed owners and triangles.
+/// The boundary of a result evaluated in steps has the owners of one evaluated at once.
 #[test]
 fn owners_are_those_of_steps() {
     let mut numbers = Numbers::new(33);
@@ -193,7 +194,7 @@ fn owner_of_rest(rest: &Residual, sides: [u32; 2]) -> Option<u32> {
     }
 }
 
-/// The rest of an expression of which some operands are known has the owners of the whole.
+/// The residual of an expression with some known operands has the owners of the whole.
 #[test]
 fn owners_stay_where_operands_are_known() {
     let mut numbers = Numbers::new(34);
@@ -211,7 +212,7 @@ fn owners_stay_where_operands_are_known() {
     }
 }
 
-/// For each operand the first one that equals it.
+/// A random choice of equal operands: for each operand the first one that equals it.
 fn any_firsts(numbers: &mut Numbers) -> Vec<u32> {
     let mut firsts: Vec<u32> = Vec::new();
     for k in 0..FEW {
@@ -221,8 +222,8 @@ fn any_firsts(numbers: &mut Numbers) -> Vec<u32> {
     firsts
 }
 
-/// The rest of an expression of which some operands are copies has the owners of the whole, and one of
-/// which some have the faces of others an owner with the same faces.
+/// The residual of an expression in which some operands are copies has the owners of the whole; if operands
+/// only share faces with others, its owner has the same faces.
 #[test]
 fn owners_stay_where_operands_are_equal() {
     let mut numbers = Numbers::new(35);

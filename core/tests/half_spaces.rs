@@ -1,7 +1,7 @@
-//! Half-spaces and solids in one half of space: the tree of a result does not cover its whole cell.
+//! Half-spaces and solids on one side of a plane: the tree of such a result does not cover its whole cell.
 //!
-//! No operand's boundary may be crossed by a cut of the descent's cells but that of half-spaces, so
-//! only with these the two sides of a cell that the tree leaves out can differ.
+//! A cut of the descent's cells crosses only the boundaries of half-spaces there, so only with half-spaces
+//! the two sides of a cell that the tree leaves out can differ.
 
 use std::sync::Arc;
 
@@ -18,19 +18,19 @@ use bspcsg::tree::solid::Solid;
 
 use super::support::{applied, located, normalized, Shape};
 
-/// Lattice steps of the radius of balls.
+/// The radius of balls in lattice steps.
 const RADIUS: i64 = 1 << 20;
 
-/// The same, as balls take it.
+/// The radius of balls as a double.
 const BALL: f64 = (1u32 << 20) as f64;
 
-/// The places of balls: each octant, and the middle.
+/// The centres of balls: one in each octant, and the origin.
 fn places() -> impl Iterator<Item = Lattice> {
     let is_place = |p: &Lattice| p.iter().all(|c| *c != 0) || *p == [0; 3];
     grid(3 * RADIUS, 0).filter(is_place)
 }
 
-/// Points in and around balls and beside all planes, on no side of a ball.
+/// Points in and around balls and beside all planes, none of them on a boundary.
 fn points() -> Vec<Lattice> {
     let near = grid(3 * RADIUS, 101);
     let far = grid(1 << 40, 17);
@@ -38,7 +38,7 @@ fn points() -> Vec<Lattice> {
     near.chain(far).chain(beside).collect()
 }
 
-/// The corners, middles of sides and of edges, and the middle of a cube.
+/// The corners, the centres of sides and edges, and the centre of a cube, all shifted.
 fn grid(half: i64, shift: i64) -> impl Iterator<Item = Lattice> {
     let along = [-half, 0, half].map(|k| k + shift);
     let at = move |k: usize| [along[k / 9], along[k / 3 % 3], along[k % 3]];
@@ -59,7 +59,7 @@ fn spaces() -> impl Iterator<Item = Solid> {
     })
 }
 
-/// The side of a point that lies on no boundary.
+/// The label of a point; `None` if it lies on a boundary.
 fn side(location: Location) -> Option<Label> {
     match location {
         Location::Inside => Some(Label::In),
@@ -68,7 +68,7 @@ fn side(location: Location) -> Option<Label> {
     }
 }
 
-/// Return a result, after points were found where its operands say, in it and in a copy.
+/// Returns a result, after its points, and those of a copy, were compared with the operands.
 fn combined(op: SetOp, [a, b]: [&Solid; 2], points: &[Lattice], context: &str) -> Solid {
     let result = applied(op, a, b);
     let copy = Snapshot::of(&result).solid().expect("a snapshot");
@@ -87,13 +87,13 @@ fn ball(levels: u32, at: Lattice) -> Solid {
     Shape::sphere(at, BALL, levels).solid()
 }
 
-/// A ball that is inside out, made right by a rule: its boundary went through a kernel.
+/// A ball that is inside out, corrected by a winding rule: so its boundary went through a kernel.
 fn righted(at: Lattice) -> Solid {
     let ball = Shape::sphere(at, BALL, 0).inverted();
     normalized(&ball.unchecked(), Rule::Nonzero)
 }
 
-// Found: half-spaces with meshes of more than 16 384 faces, or with results, were wrong far from
+// Found: half-spaces combined with meshes of more than 16 384 faces, or with results, were wrong far from
 // both.
 #[test]
 fn half_spaces_and_balls_of_any_size() {

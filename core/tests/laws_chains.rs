@@ -1,4 +1,4 @@
-//! Chains of operations: what nodes keep from step to step against what the whole says.
+//! Chains of operations: values cached in nodes are compared with values computed for the whole solid.
 
 use std::sync::Arc;
 
@@ -32,7 +32,7 @@ fn any_tool(numbers: &mut Numbers) -> Solid {
     }
 }
 
-/// The double that a volume is rounded to is the nearest one.
+/// Asserts that the rounded volume is the double nearest to the exact one.
 fn assert_nearest(solid: &Solid, exact: &Ratio, context: &str) {
     let Some(rounded) = volume_rounded(solid) else {
         return;
@@ -43,7 +43,7 @@ fn assert_nearest(solid: &Solid, exact: &Ratio, context: &str) {
     }
 }
 
-/// Each step goes on with what the one before has kept; complements and put-back pieces included.
+/// Each step uses the caches of the step before, for complements and for pieces that are put back, too.
 #[test]
 fn kept_volumes_are_right_at_every_step() {
     let mut numbers = Numbers::new(21);
@@ -82,7 +82,7 @@ fn kept_volumes_are_right_at_every_step() {
     }
 }
 
-/// The results of operands that nobody vouched for are known once these are checked.
+/// Results of operands that were not checked are known to be reduced once these operands are checked.
 #[test]
 fn results_of_simple_meshes_are_reduced_once_these_are_checked() {
     let mut numbers = Numbers::new(22);
@@ -95,7 +95,7 @@ fn results_of_simple_meshes_are_reduced_once_these_are_checked() {
         assert!(solid.is_reduced() && same.is_reduced());
         assert_eq!(volume(&same), volume(&solid));
     }
-    // Nothing else is near where this one overlaps itself, so that no visited cell shows it.
+    // No face of another operand is near where this one overlaps itself, so no visited cell reveals it.
     let twice = Shape::cuboid([50; 3], [300; 3]).with(Shape::cuboid([250; 3], [400; 3]));
     let raw = applied(SetOp::Union, &solid, &twice.unchecked());
     assert!(!raw.is_reduced());
@@ -107,7 +107,7 @@ fn results_of_simple_meshes_are_reduced_once_these_are_checked() {
     );
 }
 
-/// An operand that is united with itself on the way leaves nothing to check.
+/// If an operand is united with itself during the operation, its result needs no check.
 #[test]
 fn results_are_reduced_where_a_visited_cell_shows_the_overlap() {
     let solid = Shape::cuboid([0; 3], [60; 3]).unchecked();
@@ -119,7 +119,7 @@ fn results_are_reduced_where_a_visited_cell_shows_the_overlap() {
     assert_eq!(volume(&result), volume(&expected));
 }
 
-/// A solid whose united form is the solid itself does not keep itself alive.
+/// A solid that is its own united form does not keep itself alive.
 #[test]
 fn checked_solids_are_freed() {
     let mesh = Shape::cuboid([0; 3], [60; 3]).unchecked();
@@ -132,7 +132,7 @@ fn checked_solids_are_freed() {
     assert!(nodes.iter().all(|node| node.upgrade().is_none()));
 }
 
-/// Sources stay in the order of the expression, whoever continues a table first.
+/// Sources stay in the order of the expression, whichever solid extends a shared table first.
 #[test]
 fn tables_keep_the_order_of_the_expression() {
     let sources: Vec<_> = (0..9)
@@ -155,7 +155,7 @@ fn tables_keep_the_order_of_the_expression() {
     assert_eq!(second.slot(&sources[3]), Some(Slot(4)));
 }
 
-/// The tables of long chains forget what was cut away.
+/// The tables of long chains drop sources that were cut away.
 #[test]
 fn tables_of_long_chains_forget() {
     let mut solid = Shape::cuboid([0; 3], [100; 3]).solid();

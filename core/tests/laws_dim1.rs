@@ -9,7 +9,7 @@ use bspcsg::tree::partition::{
     PartitionTree, PivotPolicy,
 };
 
-/// A set as seven bits: bit i is the cell below point i, bit 6 the cell above all points.
+/// A set of cells as seven bits: bit i is the cell below point i, bit 6 the cell above all points.
 type Bits = u8;
 type Tree = PartitionTree<Dim1>;
 
@@ -64,7 +64,7 @@ fn expected(op: SetOp, a: Bits, b: Bits) -> Bits {
     }
 }
 
-/// The tree stands for `bits`: cells, boundary, points on it, and all invariants.
+/// Asserts that the tree stands for `bits`: its cells, its boundary, points on it, and all invariants.
 fn assert_region(tree: &Tree, bits: Bits, context: &str) {
     check(tree, &()).unwrap();
     assert_eq!(bits_of(tree), bits, "{context}");
@@ -169,7 +169,7 @@ fn complements_as_operands_agree_with_bit_operations() {
     }
 }
 
-/// The bits of the cells on one side of a coordinate.
+/// The bits of the cells on one side of a point.
 fn cells_beside(cut: &Point1, half: Half) -> Bits {
     let wanted = match half {
         Half::Minus => Side::Minus,
@@ -201,7 +201,7 @@ fn splitting_every_region_at_every_point_keeps_both_sides() {
     }
 }
 
-/// A tree whose root is the lowest of three points: minus is a leaf, plus a chain.
+/// A tree whose root is the lowest of three points: its minus child is a leaf, its plus child a chain.
 fn chain() -> Tree {
     tree_of(0b000_1010, PivotPolicy::First)
 }
@@ -277,7 +277,7 @@ fn merging_far_apart_keeps_subtrees_by_reference() {
     assert!(second.child(Half::Plus).is_same(&high));
 }
 
-/// Two sets' facets in one list, labelled by winding numbers.
+/// The facets of two sets in one list, labelled by winding numbers, make the union of the sets.
 #[test]
 fn winding_numbers_unite_overlapping_boundaries() {
     for a in 0..=ALL {

@@ -77,13 +77,13 @@ fn assert_same_set(a: &Tree, b: &Tree) {
     assert_eq!(difference.label(), Some(Label::Out));
 }
 
-// Voxels: bit 3·row + column of a mask is a square of side 2.
+// Sets of squares: bit 3·row + column of a mask is a square of side 2.
 
 fn voxel(mask: u16, column: i64, row: i64) -> bool {
     (0..3).contains(&column) && (0..3).contains(&row) && mask >> (3 * row + column) & 1 == 1
 }
 
-/// The unit edges between a square inside and one outside, turned by quarter turns.
+/// The edges between a square inside and one outside, with the inside on the left.
 fn voxel_facets(mask: u16) -> Vec<Facet<Dim2>> {
     let mut facets = Vec::new();
     for (column, row) in (0..9).map(|i| (i % 3, i / 3)) {
@@ -189,7 +189,7 @@ fn an_open_outline_has_no_winding_numbers() {
     assert!(winding_tree(&tree, |_| Half::Plus, 0, |w| w > 0).is_err());
 }
 
-// Random star-shaped polygons, with corners anywhere on the lattice.
+// Random star-shaped polygons, with corners anywhere on the lattice:
 
 /// Corners in every eighth of the circle around `centre`, so that no gap reaches a half turn.
 fn star(numbers: &mut Numbers, centre: Lattice, reach: i64) -> Vec<Lattice> {
@@ -285,7 +285,7 @@ fn random_polygons_obey_the_laws() {
     }
 }
 
-/// A polygon and a sector of it share edges that no axis is parallel to.
+/// A polygon and a sector of it share edges that are not parallel to an axis.
 #[test]
 fn sectors_of_a_polygon_can_be_cut_out_and_put_back() {
     let mut numbers = Numbers::new(4);

@@ -37,7 +37,7 @@ impl Ratio {
     }
 }
 
-/// Homogeneous coordinates x, y, z, w.
+/// The homogeneous coordinates x, y, z and w of a vertex.
 fn coordinates(vertex: &Vertex) -> [BigInt; 4] {
     let h = vertex.coordinates();
     let [x, y, z] = h.x;
@@ -83,7 +83,7 @@ fn owned_volume(tree: &Tree) -> Ratio {
     sixfold_volume(owned_boundary(tree).unwrap().iter().map(|f| &f.fragment))
 }
 
-/// A frame around all coordinates of small tests, and the lattice's own for the others.
+/// A frame around all coordinates of small tests.
 fn small_frame() -> Cell {
     Cell::around(&[-40; 3], &[40; 3])
 }
@@ -111,7 +111,7 @@ fn point(numbers: &mut Numbers, reach: i64) -> Lattice {
     [0; 3].map(|_| numbers.below(2 * reach) - reach)
 }
 
-// Voxels: bit 4·z + 2·y + x of a mask is a cube of side 2.
+// Sets of cubes: bit 4·z + 2·y + x of a mask is a cube of side 2.
 
 fn voxel(mask: u16, at: Lattice) -> bool {
     let [x, y, z] = at;
@@ -285,7 +285,7 @@ fn assert_laws(a: &Tree, b: &Tree, frame: &Cell, points: &[Lattice]) {
     assert_same_set(&merge(difference, intersection, SetOp::Union).unwrap(), a);
 }
 
-/// Small reaches make shared corners, edges and planes likely; the largest is the lattice's.
+/// Small coordinate ranges make shared corners, edges and planes likely; the largest is the whole lattice.
 #[test]
 fn tetrahedra_obey_the_laws() {
     let mut numbers = Numbers::new(3);
@@ -304,7 +304,7 @@ fn tetrahedra_obey_the_laws() {
     }
 }
 
-/// A random plane put into the root of a tree changes neither the set nor its invariants.
+/// A random plane becomes the root of a tree without changing the set or violating invariants.
 #[test]
 fn any_plane_can_become_the_root() {
     use bspcsg::geometry::spaces::space::Space;
@@ -326,7 +326,7 @@ fn any_plane_can_become_the_root() {
     }
 }
 
-/// The tetrahedra of a fan around an inner point share slanted faces: cut out and put back.
+/// The tetrahedra of a fan around an inner point share slanted faces: each is cut out and put back.
 #[test]
 fn sectors_of_a_solid_can_be_cut_out_and_put_back() {
     let mut numbers = Numbers::new(4);

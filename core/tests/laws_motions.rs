@@ -1,5 +1,5 @@
-//! The ways that keep a solid as it is: snapshots, motions of the lattice, threads; and quick
-//! volumes.
+//! Operations that must not change a solid: snapshots, motions of the lattice, other numbers of threads; and
+//! approximate volumes.
 
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ use super::support::{
     Numbers, Ratio, Shape, LIMIT,
 };
 
-/// Return what must not depend on the number of threads: the boundary and the mesh, byte for byte.
+/// Returns what must not depend on the number of threads: the bytes of the boundary and of the mesh.
 fn fingerprint() -> (Vec<u8>, Vec<[u64; 3]>, Vec<[VertexId; 3]>) {
     let ball = |x: i64| Shape::sphere([x, 900, 900], 800.0, 3).solid();
     let tool = Shape::any_cuboid(&mut Numbers::new(8), 1500).solid();
@@ -53,7 +53,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
     assert!(one == with(1), "once more");
 }
 
-/// A solid with lattice and constructed vertices, cut and whole faces, and a hole.
+/// A solid with lattice vertices and constructed vertices, cut and whole faces, and a hole.
 fn mixture(numbers: &mut Numbers) -> Solid {
     let a = Shape::any_cuboid(numbers, 40).solid();
     let b = Shape::any_tetrahedron(numbers, 40).solid();
@@ -79,7 +79,7 @@ fn snapshots_keep_everything() {
     }
 }
 
-/// Bytes that were changed are refused or stand for some solid; nothing panics on them.
+/// Damaged bytes are refused, or stand for some solid; decoding never panics.
 #[test]
 fn damaged_snapshots_do_no_harm() {
     let mut numbers = Numbers::new(15);
@@ -108,7 +108,7 @@ fn damaged_snapshots_do_no_harm() {
     assert!(refused > 0);
 }
 
-/// Bytes of a solid, changed here and there, with a checksum that is right for them.
+/// The bytes of a solid, changed at random positions, with a correct checksum.
 fn forged(solid: &Solid, numbers: &mut Numbers) -> Vec<u8> {
     let mut bytes = Snapshot::of(solid).to_bytes().expect("bytes");
     let sealed = bytes.len() - 4;
@@ -121,7 +121,7 @@ fn forged(solid: &Solid, numbers: &mut Numbers) -> Vec<u8> {
     bytes
 }
 
-/// Use a solid that was read; defects are not among the errors it may end with.
+/// Uses a solid that was decoded; an internal error fails the test, other errors are returned.
 fn used(solid: &Solid, tool: &Solid) -> Result<()> {
     let volume = || measure::volume(solid).map(drop);
     let near = || measure::volume_near(solid).map(drop);
@@ -160,7 +160,7 @@ fn used(solid: &Solid, tool: &Solid) -> Result<()> {
     Ok(())
 }
 
-/// Data that somebody forged is refused or stands for some solid, which can be used.
+/// Forged bytes are refused, or stand for some solid that can be used.
 #[test]
 fn forged_snapshots_do_no_harm() {
     let mut numbers = Numbers::new(21);
@@ -193,7 +193,7 @@ fn forged_snapshots_do_no_harm() {
     assert!(refused > 0 && taken > 0, "{refused} refused, {taken} taken");
 }
 
-/// A solid with a half-space among its operands, perhaps unbounded.
+/// A solid with a half-space among its operands; it may be unbounded.
 fn with_plane(numbers: &mut Numbers) -> Solid {
     let a = mixture(numbers);
     let normals: [[i128; 3]; 4] = [[1, 0, 0], [0, -1, 1], [1, 2, 3], [-3, 1, 2]];
@@ -218,7 +218,7 @@ fn image_of(motion: &Motion, p: Lattice) -> Lattice {
     })
 }
 
-/// Mirrors, permutations and shifts keep the volume and carry the set; a refinement too.
+/// Mirrors, permutations, shifts and refinements keep the volume and map the set as they should.
 #[test]
 fn motions_of_the_lattice_carry_solids_exactly() {
     let mut numbers = Numbers::new(10);
@@ -255,7 +255,7 @@ fn motions_of_the_lattice_carry_solids_exactly() {
     }
 }
 
-/// Several shapes at once, which may overlap.
+/// The union of several shapes, which may overlap.
 fn any_mixture(numbers: &mut Numbers, reach: i64) -> Shape {
     let one = |_| match numbers.below(2) {
         0 => Shape::any_tetrahedron(numbers, reach),
@@ -264,13 +264,13 @@ fn any_mixture(numbers: &mut Numbers, reach: i64) -> Shape {
     (0..4).map(one).fold(Shape::default(), Shape::with)
 }
 
-/// Return whether a finding of this code was made.
+/// Returns true if the mesh has a finding with this code.
 fn found(mesh: &Mesh, code: &str) -> bool {
     mesh.findings.iter().any(|finding| finding.code == code)
 }
 
-/// Small cells at the border of the lattice, where the doubles of constructed points err by steps:
-/// there triangles may merge, and say so.
+/// Small cells at the border of the lattice, where the doubles of constructed points are wrong by steps:
+/// there triangles may merge, and findings name them.
 #[test]
 fn results_are_the_same_at_the_border_of_the_lattice() {
     let mut numbers = Numbers::new(13);
@@ -296,7 +296,7 @@ fn results_are_the_same_at_the_border_of_the_lattice() {
     }
 }
 
-/// The quick answers about volumes against the exact ones.
+/// Approximate volumes and volumes modulo primes agree with exact ones.
 #[test]
 fn near_volumes_and_residues_agree_with_exact_ones() {
     let mut numbers = Numbers::new(14);

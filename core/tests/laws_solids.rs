@@ -22,7 +22,7 @@ use super::support::{
     located, manifold_mesh, normalized, straight, turned, volume, Numbers, Ratio, Shape, LIMIT,
 };
 
-/// All four results, each with a closed mesh, and what must hold of any two solids.
+/// Asserts that all four results have closed meshes, and the laws of volumes of any two solids.
 fn assert_laws(a: &Solid, b: &Solid, context: &str) {
     let results = SetOp::ALL.map(|op| applied(op, a, b));
     for (op, result) in SetOp::ALL.into_iter().zip(&results) {
@@ -43,7 +43,7 @@ fn assert_laws(a: &Solid, b: &Solid, context: &str) {
     assert_same_triangles(&back, a, &format!("put back: {context}"));
 }
 
-/// Small reaches make shared corners, edges and planes likely.
+/// Small coordinate ranges make shared corners, edges and planes likely.
 #[test]
 fn tetrahedra_obey_the_laws() {
     let mut numbers = Numbers::new(1);
@@ -55,7 +55,7 @@ fn tetrahedra_obey_the_laws() {
     }
 }
 
-/// Widths of numbers at the limit: debug builds check that nothing overflows.
+/// Coordinates at the limit: debug builds check that no integer overflows.
 #[test]
 fn the_largest_tetrahedra_obey_the_laws() {
     let mut numbers = Numbers::new(12);
@@ -97,7 +97,7 @@ fn rounded_boxes_obey_the_laws() {
     }
 }
 
-/// Boxes in one turned frame: coplanar contacts in no axis-parallel plane.
+/// Boxes in one rotated frame: coplanar contacts in planes that are not axis-parallel.
 #[test]
 fn boxes_that_touch_obey_the_laws() {
     let mut numbers = Numbers::new(3);
@@ -109,7 +109,7 @@ fn boxes_that_touch_obey_the_laws() {
     }
 }
 
-/// A prism over a triangle, its ends in two planes of a turned frame.
+/// A prism over a triangle, with its ends in two planes of a rotated frame.
 fn prism(triangle: [[i64; 2]; 3], low: i64, high: i64) -> Shape {
     let [a, b, c] = triangle;
     let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -142,7 +142,7 @@ fn any_prism(numbers: &mut Numbers) -> Shape {
     }
 }
 
-/// Prisms with their ends in common planes: triangles that overlap in one slanted plane.
+/// Prisms with their ends in common planes: triangles overlap in one slanted plane.
 #[test]
 fn prisms_over_common_planes_obey_the_laws() {
     let mut numbers = Numbers::new(4);
@@ -155,7 +155,7 @@ fn prisms_over_common_planes_obey_the_laws() {
     manifold_mesh(&all, "five prisms");
 }
 
-/// Three lines of one plane through one point: the point is the end of no edge.
+/// Three lines of one plane pass through one point, which is the end of no edge.
 #[test]
 fn edges_cross_where_none_of_them_ends() {
     let mut numbers = Numbers::new(5);
@@ -177,7 +177,7 @@ fn edges_cross_where_none_of_them_ends() {
     manifold_mesh(&crossing, "a crossing");
 }
 
-/// Tetrahedra on both sides of a common face, and on the same side of it.
+/// Tetrahedra on different sides, and on the same side, of a common face.
 #[test]
 fn tetrahedra_on_a_common_face_obey_the_laws() {
     let mut numbers = Numbers::new(6);
@@ -209,7 +209,7 @@ fn spheres_obey_the_laws() {
     }
 }
 
-/// Cutting pieces off and putting them back gives the first solid's triangles each time.
+/// Cutting off a piece and putting it back gives the first solid's triangles each time.
 #[test]
 fn pieces_cut_off_can_be_put_back() {
     let mut numbers = Numbers::new(7);
@@ -241,7 +241,7 @@ fn side_of_plane(normal: [i64; 3], offset: i64) -> Solid {
     Solid::of_source(Arc::new(source), true)
 }
 
-/// The two sides of a plane, cut apart and united, are the solid again.
+/// The parts of a solid on both sides of a plane, united, are the solid.
 #[test]
 fn halves_reunite() {
     let mut numbers = Numbers::new(11);
@@ -269,8 +269,8 @@ fn halves_reunite() {
     }
 }
 
-/// A cell of which one half is taken over from an operand that counts two inside, while the kernel
-/// says one in the other half: the two must not become one leaf.
+/// A cell of which one half comes from an operand with winding number two, and the other half from a kernel
+/// with winding number one: they must not become one leaf.
 #[test]
 fn leaves_of_different_winding_numbers_stay_apart() {
     let small = |x: i64, y: i64| {
@@ -294,7 +294,7 @@ fn leaves_of_different_winding_numbers_stay_apart() {
     assert_eq!(volume(&normalized(&raw, Rule::Positive)), volume(&clean));
 }
 
-/// Half-spaces alone: bounded results have a mesh, unbounded ones a set.
+/// Half-spaces as the only operands: bounded results have a mesh, unbounded ones are sets.
 #[test]
 fn half_spaces_bound_solids() {
     let planes = [
@@ -323,7 +323,7 @@ fn behind(shape: &Shape, face: usize) -> Solid {
     Solid::of_source(Arc::new(source.expect("a half-space")), true)
 }
 
-/// Half-spaces of faces with normals of up to 106 bits.
+/// Half-spaces through faces, with normals of up to 106 bits.
 #[test]
 fn tetrahedra_are_what_lies_behind_their_faces() {
     let mut numbers = Numbers::new(5);

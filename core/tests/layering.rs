@@ -1,14 +1,14 @@
-//! The layers of the crate point one way: a module uses only what lies below it, and no file uses
-//! itself by way of others.
+//! Checks the layers of the crate: a module uses only modules below it, and no file uses itself through
+//! others.
 //!
-//! Read from the sources: every path that starts at `crate::`, `super::` or `self::` names what it
-//! reaches into.
+//! Reads the sources: every path that starts at `crate::`, `super::` or `self::` names a module that is
+//! used.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// From the bottom to the top.
+/// The layers of the crate, from the bottom to the top.
 const LAYERS: [&str; 11] = [
     "error",
     "interrupt",
@@ -25,7 +25,7 @@ const LAYERS: [&str; 11] = [
 
 const TESTS: &str = "#[cfg(test)]\nmod tests {";
 
-/// The modules of the crate with their code, without comments.
+/// The modules of the crate and their code, without comments.
 fn modules() -> BTreeMap<String, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut files = Vec::new();
@@ -61,7 +61,7 @@ fn without_comments(source: &str) -> String {
     source.lines().map(code).collect::<Vec<_>>().join("\n")
 }
 
-/// For each module the others that its code names.
+/// For each module the other modules that its code names.
 fn uses(modules: &BTreeMap<String, String>) -> BTreeMap<String, BTreeSet<String>> {
     let owner = |mut path: &str| {
         while !modules.contains_key(path) {
@@ -77,7 +77,7 @@ fn uses(modules: &BTreeMap<String, String>) -> BTreeMap<String, BTreeSet<String>
     modules.iter().map(used).collect()
 }
 
-/// The paths in a module's code, from the root of the crate on.
+/// The paths in a module's code, written from the root of the crate.
 fn paths_of(own: &str, code: &str) -> Vec<String> {
     let mut paths = paths_after(code, "crate::");
     let within = paths_after(code, "self::").into_iter();
@@ -93,7 +93,7 @@ fn paths_of(own: &str, code: &str) -> Vec<String> {
     paths
 }
 
-/// The paths after `prefix` in code without comments, groups taken apart.
+/// The paths after `prefix` in code without comments, with groups expanded.
 fn paths_after(code: &str, prefix: &str) -> Vec<String> {
     let starts = code.match_indices(prefix).map(|(at, _)| at);
     let is_start =
@@ -102,7 +102,7 @@ fn paths_after(code: &str, prefix: &str) -> Vec<String> {
     ends.flat_map(|at| taken_apart(&code[at..])).collect()
 }
 
-/// `a::{b::C, d}` gives `a::b::C` and `a::d`.
+/// Expands the groups of a path: `a::{b::C, d}` gives `a::b::C` and `a::d`.
 fn taken_apart(path: &str) -> Vec<String> {
     let is_plain = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
     let plain = &path[..path.find(|c| !is_plain(c)).unwrap_or(path.len())];
@@ -128,7 +128,7 @@ fn taken_apart(path: &str) -> Vec<String> {
 #[test]
 fn no_file_uses_itself_by_way_of_others() {
     let mut files = modules();
-    // Tests inside a file may use what is built on it.
+    // Tests inside a file may use modules that are built on the file.
     for code in files.values_mut() {
         code.truncate(code.find(TESTS).unwrap_or(code.len()));
     }

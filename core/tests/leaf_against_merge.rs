@@ -1,7 +1,7 @@
-//! The leaf kernel, which labels pieces of boundary, against the merging of whole trees.
+//! Compares the leaf kernel, which labels pieces of boundary, with the merging of whole trees.
 //!
-//! Two ways to one set: `merge::kernels::trees` pushes each operand's fragments through the other operands'
-//! local trees; `merge::merge` splits one tree by the other's cuts and reads the boundary off the
+//! Both must make the same set: `merge::kernels::trees` pushes each operand's fragments through the other
+//! operands' local trees; `merge::merge` splits one tree by the other's cuts and reads the boundary off the
 //! result. They share predicates and polygons, and nothing else.
 
 use std::borrow::Cow;
@@ -32,14 +32,14 @@ use super::support::{applied, located, normalized, sixfold_volume, volume, Numbe
 
 type Tree = partition::PartitionTree<Dim3>;
 
-/// Coordinates of all shapes here are in `0..REACH`; one cell holds them all.
+/// All coordinates of shapes here are in `0..REACH`; one cell contains them all.
 const REACH: i64 = 16;
 
 fn everything() -> Cell {
     Cell::around(&[0; 3], &[REACH - 1; 3])
 }
 
-/// A tetrahedron, a box, a mixture that overlaps itself, or one with an inverted part.
+/// A random tetrahedron or box, or a union of shapes that may overlap or be inverted in part.
 fn any_shape(numbers: &mut Numbers, reach: i64) -> Shape {
     let one = |numbers: &mut Numbers| match numbers.below(2) {
         0 => Shape::any_tetrahedron(numbers, reach),
@@ -58,8 +58,8 @@ fn reference(cell: &Cell) -> impl Fn(&Arc<Plane>) -> Half {
     move |cut| cut.side_of_corner(&corner)
 }
 
-/// The tree of a source inside a cell, its facets numbered from `first`; `number` is the winding
-/// number at the cell's low corner.
+/// The tree of a source inside a cell, with facets numbered from `first`; `number` is the winding number at
+/// the cell's low corner.
 fn tree_in(source: &Source, cell: &Cell, number: i32, first: u64, seed: u64) -> Tree {
     let facets = source.face_ids().filter_map(|face| {
         let fragment = source.clip(face, cell)?;
@@ -72,9 +72,10 @@ fn tree_in(source: &Source, cell: &Cell, number: i32, first: u64, seed: u64) -> 
     labelled.expect("a closed surface").tree
 }
 
-/// The sum of pieces of boundary: for each face and orientation their cones' exact volume.
+/// A sum over pieces of boundary: for each face and orientation, the exact volume of the cones over its
+/// pieces.
 ///
-/// Cones are additive over pieces, and a plane through the origin is the only one they miss.
+/// Cones are additive over pieces; the volume is zero only for planes through the origin.
 type Flux = HashMap<(u64, bool), Ratio>;
 
 fn add_flux(flux: &mut Flux, key: (u64, bool), polygon: &Polygon) {
@@ -94,7 +95,7 @@ fn without_zeros(mut flux: Flux) -> Flux {
     flux
 }
 
-/// The flux of a set by the owners of its boundary.
+/// The flux of a set, computed from the owners of its boundary.
 fn flux_of_tree(tree: &Tree, plane_of: impl Fn(u64) -> Arc<Plane>) -> Flux {
     let mut flux = Flux::new();
     for facet in partition::owned_boundary(tree).expect("a boundary") {
@@ -104,7 +105,7 @@ fn flux_of_tree(tree: &Tree, plane_of: impl Fn(u64) -> Arc<Plane>) -> Flux {
     without_zeros(flux)
 }
 
-/// The flux of a deferred leaf; `first` numbers the first face of each source.
+/// The flux of a deferred leaf; `first` gives the number of each source's first face.
 fn flux_of_node(node: &Node, cell: &Cell, first: impl Fn(&Source) -> u64) -> Flux {
     let mut flux = Flux::new();
     let Node::Deferred(leaf) = node else {
@@ -133,7 +134,7 @@ fn flux_of_node(node: &Node, cell: &Cell, first: impl Fn(&Source) -> u64) -> Flu
     without_zeros(flux)
 }
 
-/// The list of a solid in a cell below its root, by repeated halving.
+/// The list of a solid in a cell below its root, found by repeated halving.
 fn list_in(solid: &Solid, cell: &Cell, sources: &Sources) -> Option<List> {
     let root = solid.root();
     let Node::Deferred(leaf) = &*root.node else {
@@ -154,7 +155,7 @@ fn list_in(solid: &Solid, cell: &Cell, sources: &Sources) -> Option<List> {
     (at == *cell).then_some(list)
 }
 
-/// The half of a cell that holds a point of it.
+/// The half of a cell that contains a point of the cell.
 fn half_of(cut: Cut, point: &Lattice) -> Half {
     if point[cut.axis] < cut.at {
         Half::Minus
@@ -206,7 +207,7 @@ fn expression(op: SetOp) -> Expression {
     Expression::new(terms).expect("well formed")
 }
 
-/// Two operands in one small cell: the kernel on their lists, and their local trees merged.
+/// Two operands in one small cell, as lists for the kernel and as local trees for merging.
 struct Pair {
     cell: Cell,
     shapes: [Shape; 2],
@@ -277,7 +278,7 @@ impl Pair {
         let seen = &mut Vec::new();
         let answer = LocalTrees.solve(&problem, seen);
         self.check(op, "trees", answer.expect("trees take every cell"));
-        // What general position sees, trees see, too.
+        // Faces that the kernel of general position uses are used by the kernel of trees, too.
         let also = &mut Vec::new();
         let answer = GeneralPosition.solve(&problem, also);
         assert!(also.iter().all(|k| seen.contains(k)), "{:?}", self.shapes);
@@ -290,7 +291,7 @@ impl Pair {
         }
     }
 
-    /// Return whether no operand overlaps itself here: only then the shortcut promises the reduced
+    /// Returns true if no operand overlaps itself in this cell: only then the shortcut promises the reduced
     /// boundary.
     fn is_simple(&self) -> bool {
         let simple = |l: &List| LeafTree::new(l, &self.cell, &self.sources).is_simple();
@@ -331,7 +332,7 @@ impl Pair {
     }
 }
 
-/// The flux by oriented planes, for operands whose own faces overlap have no one owner.
+/// The flux by oriented planes, for operands whose own faces overlap, so that owners are not unique.
 fn by_plane(flux: &Flux, pair: &Pair) -> HashMap<Plane, Ratio> {
     let mut sums: HashMap<Plane, Ratio> = HashMap::new();
     for ((number, turned), value) in flux {
@@ -366,7 +367,7 @@ fn the_kernel_agrees_with_merged_trees_in_small_cells() {
     assert!(general > 100, "only {general} times in general position");
 }
 
-/// The tree of a whole solid that has not been operated on.
+/// The tree of a solid that consists of one source, inside the cell of all shapes.
 fn whole_tree(solid: &Solid, seed: u64) -> Tree {
     tree_in(solid.sources().get(Slot(0)), &everything(), 0, 0, seed)
 }
@@ -400,7 +401,7 @@ fn whole_solids_agree_with_merged_trees() {
     }
 }
 
-/// A chain of operations: results are operands, trees grow by merging.
+/// Chains of operations: results are operands, and trees grow by merging.
 #[test]
 fn chains_agree_with_merged_trees() {
     let mut numbers = Numbers::new(3);

@@ -1,4 +1,4 @@
-//! Tests of the crate as others see it: modules of one build, which compiles the crate once.
+//! Tests of the crate's public interface, as modules of one build, which compiles the crate once.
 
 mod arith;
 mod arith_bounds;

@@ -1,11 +1,11 @@
-//! Panics of the core as errors.
+//! Panics of the core become errors.
 
 use std::panic::take_hook;
 
 use bspcsg::error::panics::{caught, record_panics};
 use bspcsg::error::{Error, ErrorKind, Result};
 
-/// Catches what one piece of work does, with nothing printed.
+/// Runs work, and catches its panic without printing anything.
 fn quietly<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     record_panics();
     let result = caught(work);

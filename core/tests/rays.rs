@@ -1,4 +1,4 @@
-//! Ray casting against a brute force that knows nothing of trees and filters.
+//! Compares ray casting with a test of every facet that uses neither trees nor filters.
 #![allow(clippy::cast_precision_loss, clippy::float_cmp)]
 
 use bspcsg::arith::bounds::COORDINATE_BITS;
@@ -17,7 +17,7 @@ type Triangle = [[f64; 3]; 3];
 
 const LIMIT: i64 = (1 << COORDINATE_BITS) - 1;
 
-/// Coordinates of all sizes, the extreme ones often.
+/// Coordinates of all magnitudes, often the extreme ones.
 fn coordinate() -> impl Strategy<Value = i64> {
     prop_oneof![
         2 => Just(LIMIT),
@@ -57,7 +57,7 @@ fn big(x: i64) -> BigInt {
     BigInt::from(x)
 }
 
-/// det(a, b, c) of rows.
+/// The determinant det(a, b, c) of three rows.
 fn determinant(rows: [[BigInt; 3]; 3]) -> BigInt {
     let [a, b, c] = rows;
     &a[0] * (&b[1] * &c[2] - &b[2] * &c[1])
@@ -93,8 +93,8 @@ fn order_of_fractions() {
     assert_eq!(third.scaled_to_f64(-1), 1.0 / 30.0);
 }
 
-/// Lists so long that a sample tells how to divide them, and one of which it tells nothing: all
-/// boxes have one centre.
+/// Long lists, which are divided by a sample, and one with equal centres of all boxes, whose sample gives no
+/// cut.
 #[test]
 fn long_lists_do_not_show() {
     let mut state = 1u64;
@@ -138,7 +138,7 @@ fn a_ray_through_the_common_vertex_of_many_names_the_first() {
 }
 
 proptest! {
-    /// Whatever doubles claim is so, and what they leave open integers decide as big ones do.
+    /// Certain answers of doubles are right, and where doubles doubt, integers decide as big integers do.
     #[test]
     fn the_filter_never_errs(
         t in triangle(), origin in point(), aim in 0usize..4, free in point(), nudge in -1i64..=1
@@ -188,7 +188,7 @@ proptest! {
     }
 
     // Found: bundles of rays over trees and boxes coupled.
-    /// Rays that go together find what each finds alone, and what testing every facet gives.
+    /// Rays in a bundle find what each finds alone, and what testing every facet gives.
     #[test]
     fn bundles_do_not_show(
         shape in prop::collection::vec(point_near(40), 20..120),
@@ -216,7 +216,7 @@ proptest! {
         prop_assert_eq!(&blocked, &alone.collect::<Vec<_>>());
     }
 
-    /// Leading bits decide about a hit as wide integers do, whatever their widths.
+    /// Leading bits give the same hit as wide integers, for numbers of any width.
     #[test]
     fn narrow_integers_do_not_show(
         triangle in prop_oneof![triangle(), wide_triangle(1 << 30), wide_triangle(1 << 41)],
@@ -244,7 +244,7 @@ proptest! {
         prop_assert_eq!(rays.facets(&scene).expect("a ray"), vec![facet]);
     }
 
-    /// The tree changes nothing: first, all and shadow are what testing every facet gives.
+    /// The tree changes no answer: first hits, all hits and shadows are what testing every facet gives.
     #[test]
     fn trees_do_not_show(
         small in prop::collection::vec([[-9i64..=9, -9i64..=9, -9i64..=9],

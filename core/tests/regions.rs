@@ -1,4 +1,4 @@
-//! Sets built from crossing outlines: invariants of their trees, and what is read off them.
+//! Sets built from outlines that cross: invariants of their trees, and results of queries.
 
 use bspcsg::arith::bounds::REACH;
 use bspcsg::geometry::side::{Half, Side};
@@ -132,7 +132,7 @@ fn a_chain_of_nodes_needs_no_stack() {
 
 #[test]
 fn wide_coordinates_stay_exact() {
-    // Two lines that meet far from the lattice points they come from, at its widest.
+    // Two lines that meet far from the lattice points that define them, with the widest coordinates.
     let (a, b) = ([-REACH, -REACH], [REACH, REACH - 1]);
     let (c, d) = ([-REACH, -REACH + 1], [REACH, REACH]);
     let lines = [Line2::through(a, b).unwrap(), Line2::through(c, d).unwrap()];

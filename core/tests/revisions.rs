@@ -1,4 +1,4 @@
-//! Solids that are the same in most places: revisions of a mesh, and steps of a chain.
+//! Operands with many equal faces: revisions of a mesh, and steps of a chain.
 
 use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::expression::Term;
@@ -12,10 +12,10 @@ use super::support::{
     Numbers, Shape,
 };
 
-/// Coordinates of all shapes here are in `0..REACH`, but for spheres.
+/// All coordinates of shapes here are in `0..REACH`, except for spheres.
 const REACH: i64 = 24;
 
-/// A surface that may meet the others of a mesh.
+/// A random surface that may meet other surfaces of a mesh.
 fn any_part(numbers: &mut Numbers) -> Shape {
     match numbers.below(3) {
         0 => Shape::any_tetrahedron(numbers, REACH),
@@ -24,7 +24,7 @@ fn any_part(numbers: &mut Numbers) -> Shape {
     }
 }
 
-/// The same surface, its faces in another order and with other first corners.
+/// The same surface with its faces in another order, each starting at another corner.
 fn shuffled(mut shape: Shape, numbers: &mut Numbers) -> Shape {
     for last in (1..shape.faces.len()).rev() {
         shape.faces.swap(last, numbers.index(last + 1));
@@ -35,7 +35,7 @@ fn shuffled(mut shape: Shape, numbers: &mut Numbers) -> Shape {
     shape
 }
 
-/// Two meshes with some parts in common, of which each may have parts of its own.
+/// Two meshes with common parts, each perhaps with parts of its own.
 fn revisions(numbers: &mut Numbers) -> [Shape; 2] {
     let common: Vec<Shape> = (0..=numbers.below(3)).map(|_| any_part(numbers)).collect();
     [0; 2].map(|_| {
@@ -51,7 +51,7 @@ fn places(numbers: &mut Numbers) -> Vec<Lattice> {
     (0..400).map(|_| numbers.point(REACH)).collect()
 }
 
-/// Asserts that what is inside of a solid is what the operands say, wherever these are clear.
+/// Asserts that a result is inside where the operands' locations say so, at points on no boundary.
 fn assert_value(
     result: &Solid,
     operands: &[&Solid],
@@ -95,7 +95,7 @@ fn revisions_combine_like_their_points() {
             let context = format!("round {round}, {op:?}");
             let result = applied(op, &a, &b);
             assert_value(&result, &[&a, &b], &places, |v| value(op, v), &context);
-            // Where nothing was looked at, a mesh that overlaps itself does so still.
+            // A mesh that overlaps itself still does so where no operation examined it.
             let reduced = normalized(&result, Rule::Positive);
             manifold_mesh(&reduced, &context);
             reduced
@@ -110,7 +110,7 @@ fn revisions_combine_like_their_points() {
     }
 }
 
-/// A ball alone is outside of its own surface, and one in a block is not.
+/// A ball alone has outside around its surface; the same ball in a block does not.
 #[test]
 fn the_same_faces_in_other_surroundings_are_no_twins() {
     let mut numbers = Numbers::new(44);
@@ -131,7 +131,7 @@ fn the_same_faces_in_other_surroundings_are_no_twins() {
     }
 }
 
-/// Equal operands in different lists, and more than two.
+/// Equal operands in different lists, more than two of them.
 #[test]
 fn expressions_of_revisions_are_like_their_points() {
     let mut numbers = Numbers::new(42);

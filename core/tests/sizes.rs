@@ -1,7 +1,7 @@
-//! Large operands and tiny ones: the same bytes outside of a pool and in pools of any size.
+//! Large and tiny operands give the same bytes outside of a pool and in pools of any size.
 //!
-//! Lists of some lengths are shared among threads, counted or sorted in ways of their own. The sizes
-//! here lie on both sides of those lengths.
+//! Above certain lengths lists are shared among threads, counted, or sorted differently. The lengths here
+//! lie on both sides of these limits.
 
 use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
@@ -12,10 +12,10 @@ use rayon::ThreadPoolBuilder;
 
 use super::support::{applied, manifold_mesh, normalized, volume, Numbers, Ratio, Shape};
 
-/// Lattice steps of the radius of balls, and of the space between parts.
+/// The radius of balls, and the distance between parts, in lattice steps.
 const RADIUS: i64 = 1 << 20;
 
-/// The same, as balls take it.
+/// The radius of balls as a double.
 const BALL: f64 = (1u32 << 20) as f64;
 
 /// The bytes that must not depend on threads: the tree, and the doubles and triangles of the mesh.
@@ -28,7 +28,7 @@ fn bytes(solid: &Solid, context: &str) -> Bytes {
     (tree, vertices, mesh.triangles)
 }
 
-/// All four operations with a tool, and what the reduced operand is.
+/// The bytes and the volumes of the reduced operand and of all four operations with a tool.
 fn results(large: &Shape, tool: &Shape, context: &str) -> Vec<(Bytes, Ratio)> {
     let large = normalized(&large.unchecked(), Rule::Positive);
     let tool = tool.solid();
@@ -55,7 +55,7 @@ fn assert_same_in_pools(large: &Shape, tool: &Shape, context: &str) {
     }
 }
 
-/// Boxes in a grid, apart from each other.
+/// A grid of boxes that do not touch.
 fn boxes(count: i64) -> Shape {
     let side = (1..=count).find(|s| s * s >= count).expect("a square");
     let place = |k: i64| [k / side * 2 * RADIUS, k % side * 2 * RADIUS, 0];
@@ -63,7 +63,7 @@ fn boxes(count: i64) -> Shape {
     (0..count).map(part).fold(Shape::default(), Shape::with)
 }
 
-/// A box around a corner of a surface, of a size between a step and that of the surface.
+/// A box around a vertex of a surface, with edges between one step and the size of the surface.
 fn tool(numbers: &mut Numbers, large: &Shape) -> Shape {
     let corner = large.vertices[numbers.index(large.vertices.len())];
     let size = 1i64 << numbers.below(20);
@@ -86,7 +86,7 @@ fn tiny_tools_on_balls() {
 #[test]
 fn few_of_many_parts() {
     let mut numbers = Numbers::new(22);
-    // Parts of 12 faces: around 64, 512, 2000 and 2^14 of them.
+    // Parts of 12 faces: just below and above 64, 512, 2000 and 2^14 faces.
     for count in [5, 6, 42, 43, 166, 167, 1366] {
         let parts = boxes(count);
         let tool = tool(&mut numbers, &parts);
@@ -96,7 +96,7 @@ fn few_of_many_parts() {
 
 #[test]
 fn plates_through_many_parts() {
-    // 16, 64 and 256 boxes, and one more, that are cut, all in one plane.
+    // 16, 64 and 256 boxes, and one more each time, are cut in one plane.
     for count in [16, 17, 64, 65, 256, 257] {
         let parts = boxes(count);
         let far = 64 * RADIUS;

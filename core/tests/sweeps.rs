@@ -1,4 +1,4 @@
-//! Sets of the plane by sweeps are the sets that trees make, with the same boundaries and parts.
+//! Sets of the plane made by sweeps equal the sets that trees make, with the same boundaries and parts.
 
 use std::collections::BTreeMap;
 
@@ -44,10 +44,10 @@ fn built(corners: &Corners, rule: fn(i32) -> bool) -> PartitionTree<Dim2> {
 
 const RULES: [fn(i32) -> bool; 3] = [|n| n > 0, |n| n != 0, |n| n % 2 != 0];
 
-/// Grids on which everything meets everything, and one as wide as the lattice.
+/// Sizes of grids: small ones, on which all segments meet, and one as wide as the lattice.
 const SIZES: [i64; 5] = [3, 6, 12, 1000, 2 * REACH];
 
-/// Equal boundaries whose parts are the same up to their numbers.
+/// Asserts that two boundaries are equal, and that their parts are the same up to numbering.
 fn assert_same(a: &Boundary, b: &Boundary, what: &str) {
     assert!(a.equals(b), "{what}: {a:?} {b:?}");
     let mut names = BTreeMap::new();
@@ -90,7 +90,7 @@ fn operations_make_what_merging_makes() {
                 built(&corners, RULES[0]),
             )
         };
-        // A chain, so that operands have constructed corners; and a complement.
+        // A chain, so that operands have constructed corners, and a complement.
         let (mut set, mut tree) = operand();
         (set, tree) = (set.complement(), tree.complement());
         for op in SetOp::ALL {
@@ -197,7 +197,7 @@ fn moved_boundaries_are_those_of_moved_outlines() {
 
 #[test]
 fn islands_lie_in_holes() {
-    // Squares within each other, by even and odd, and one beside them all.
+    // Squares nested in each other, under the even-odd rule, and one beside them all.
     let square = |low: i64, high: i64| vec![[low, low], [high, low], [high, high], [low, high]];
     let mut strands = Outlines::default();
     for corners in [
@@ -232,7 +232,7 @@ fn what_is_open_is_refused() {
 
 #[test]
 fn a_small_operand_of_many_meets_a_tree() {
-    // A round region that loses one small square after another: in the end by merging.
+    // A round region loses one small square after another, in the end by merging.
     let corners: Corners = (-300..=300).map(|x| [x, x * x]).collect();
     let mut set = PlaneSet::from(swept(&corners, RULES[0]));
     let mut tree = built(&corners, RULES[0]);

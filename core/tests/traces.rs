@@ -1,4 +1,4 @@
-//! Large faces that other surfaces cross in closed curves, in several, and in curves that cross.
+//! Large faces that other surfaces cross in one closed curve, in several, and in curves that cross.
 
 use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::SetOp;
@@ -13,18 +13,18 @@ const OPERATIONS: [SetOp; 4] = [
     SetOp::SymmetricDifference,
 ];
 
-/// Rounds with spheres in other places.
+/// The number of rounds, each with spheres at other positions.
 const ROUNDS: usize = 4;
 
-/// The height of the slab's upper faces, about which the spheres lie.
+/// The height of the slab's upper faces, near which the spheres lie.
 const TOP: i64 = 500;
 
-/// A slab of few large faces.
+/// A slab with a few large faces.
 fn slab() -> Solid {
     Shape::cuboid([-2001, -2003, -401], [2003, 2001, TOP]).solid()
 }
 
-/// A sphere through the slab's upper faces, where no vertex of it lies.
+/// A sphere through the slab's upper faces, with no vertex in their plane.
 fn ball(numbers: &mut Numbers, at: [i64; 2], radius: i64) -> Shape {
     let mut near = |x: i64| x + numbers.below(41) - 20;
     let center: Lattice = [near(at[0]), near(at[1]), near(TOP - radius / 7)];
@@ -38,7 +38,7 @@ fn ball(numbers: &mut Numbers, at: [i64; 2], radius: i64) -> Shape {
     })
 }
 
-/// All operations on the slab and a surface against those on the slab and what that bounds.
+/// Compares all operations on the slab and a surface with those on the slab and the solid `truth`.
 fn check(surface: &Shape, truth: &Solid, context: &str) {
     let slab = slab();
     for op in OPERATIONS {
@@ -88,7 +88,7 @@ fn several_curves_lie_apart_on_one_face() {
 fn curves_of_a_surface_that_overlaps_itself_cross() {
     let mut numbers = Numbers::new(43);
     for round in 0..ROUNDS {
-        // The last two leave the face's edge in arcs apart.
+        // The last two leave the face through its edge, in separate arcs.
         let places = [
             ([0, 0], [250, 90]),
             ([1850, 300], [1950, 600]),

@@ -1,5 +1,5 @@
-//! Unions of unit cubes through `evaluate` and `normalize`, against bit masks and counted winding
-//! numbers. Everything is coplanar with everything; turned by `turned`, no plane is axis-parallel.
+//! Unions of unit cubes through `evaluate` and `normalize`, compared with bit masks and counted winding
+//! numbers. Many faces are coplanar; rotated by `turned`, no plane is axis-parallel.
 
 use bspcsg::error::ErrorKind;
 use bspcsg::geometry::plane::Lattice;
@@ -14,7 +14,7 @@ use super::support::{
     turned, volume, wanted, Numbers, Ratio, Shape, Voxels,
 };
 
-/// A placement of the cubes: the map of the lattice and the volume it gives a cube of side 2.
+/// A placement of the cubes: a map of the lattice, and the volume of the image of a cube of side 2.
 #[derive(Clone, Copy)]
 struct Placement {
     map: fn(Lattice) -> Lattice,
@@ -41,7 +41,7 @@ impl Placement {
         Voxels::places(side).map(center).collect()
     }
 
-    /// Checks a solid against the cubes it should consist of.
+    /// Compares a solid with the cubes that it should consist of.
     fn check(&self, solid: &Solid, expected: &Voxels, context: &str) {
         let found = inside(solid, &self.centers(expected.side));
         for (at, found) in Voxels::places(expected.side).zip(found) {
@@ -97,7 +97,7 @@ fn larger_voxel_sets_combine_like_bit_masks() {
     }
 }
 
-/// A random line of an expression over the earlier ones, and its value on bit masks.
+/// A random line of an expression over earlier lines, and its value on bit masks.
 fn any_line(numbers: &mut Numbers, values: &[u32]) -> (Term, u32) {
     let count = values.len();
     let mut some = |n: usize| -> Vec<u32> {
@@ -115,7 +115,7 @@ fn any_line(numbers: &mut Numbers, values: &[u32]) -> (Term, u32) {
     }
 }
 
-/// Whole expressions at once: many operands, shared lines, complements within.
+/// Whole expressions at once, with many operands, shared lines and inner complements.
 #[test]
 fn expressions_have_the_value_of_their_bit_masks() {
     let mut numbers = Numbers::new(3);
@@ -131,7 +131,7 @@ fn expressions_have_the_value_of_their_bit_masks() {
             lines.push(line);
             values.push(value);
         }
-        // Within the first operand everything is bounded.
+        // Inside the first operand everything is bounded.
         let last = u32::try_from(values.len() - 1).expect("few lines");
         lines.push(Term::And(vec![0, last]));
         let expected = Voxels {
@@ -163,7 +163,7 @@ fn complements_are_unbounded_and_turn_back() {
     }
 }
 
-/// A box of whole cubes that may be inverted.
+/// A box of whole cubes with a weight of +1 or, if inverted, −1.
 struct Layer {
     low: Lattice,
     high: Lattice,
@@ -192,7 +192,7 @@ impl Layer {
     }
 }
 
-/// The cubes whose counted winding number a rule calls inside.
+/// The cubes that a rule calls inside, from counted winding numbers.
 fn counted(layers: &[Layer], side: i64, rule: Rule) -> Voxels {
     let number = |at: Lattice| -> i32 {
         let around = layers.iter().filter(|layer| layer.holds(at));
@@ -226,7 +226,7 @@ fn overlapping_layers_are_united_by_counted_winding_numbers() {
     }
 }
 
-/// Operands that overlap themselves, not united beforehand: the set of the result is right (G1).
+/// Operands that overlap themselves and were not united: the set of the result is still right (G1).
 #[test]
 fn unchecked_operands_give_the_right_set() {
     let mut numbers = Numbers::new(6);

@@ -1,4 +1,4 @@
-//! Traces of trees lead to the same trees and answers.
+//! Replaying the traces of trees gives the same trees and answers.
 
 #![allow(clippy::cast_possible_truncation, clippy::cast_precision_loss)]
 
@@ -164,7 +164,7 @@ fn a_tree_that_counts_tells_what_it_counts() {
     assert_eq!(visited.count() as u64, watched.shape().visits);
 }
 
-/// A tree of numbers and labels: as `preorder`, cuts by number.
+/// A tree of labels and numbers of cuts, in the structure of a partition tree.
 #[derive(Clone, Debug, PartialEq)]
 enum Plain {
     Leaf(Label),
@@ -172,7 +172,7 @@ enum Plain {
 }
 
 impl Plain {
-    /// Of a tree, its cuts numbered by their places in a list of known hyperplanes.
+    /// Converts a partition tree; `numbers` gives the numbers of its cuts, in preorder.
     fn of(tree: &PartitionTree<Dim2>, numbers: &mut impl FnMut() -> usize) -> Self {
         fn next(
             entries: &mut impl Iterator<Item = Entry<bspcsg::geometry::spaces::dim2::Line2>>,
@@ -214,7 +214,7 @@ impl Plain {
     }
 }
 
-/// Merges by the recorded steps alone.
+/// Merges trees by the recorded steps alone.
 struct Replay<I: Iterator<Item = MergeStep>>(I);
 
 impl<I: Iterator<Item = MergeStep>> Replay<I> {

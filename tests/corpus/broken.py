@@ -1,7 +1,7 @@
-"""Broken files, made from good ones: what is wrong, and the exit code it must lead to.
+"""Broken files, made from valid ones, with the exit code that each must lead to.
 
-Every good file holds the cube from the origin to (2, 2, 2). A case changes a few bytes of one;
-nothing is stored.
+Each valid file contains the cube from the origin to (2, 2, 2). A case changes a few bytes; no files
+are stored.
 """
 
 import gzip
@@ -39,11 +39,11 @@ class Broken:
     Parameters
     ----------
     name : str
-        What is wrong.
+        A description of what is wrong.
     suffix : str
     data : bytes
     code : int
-        The exit code of verbs that need a solid.
+        The exit code of commands that need a solid.
     """
 
     name: str
@@ -52,28 +52,28 @@ class Broken:
     code: int = UNREADABLE
 
     def __str__(self) -> str:
-        """Return what to call the case in reports."""
+        """Return the name of the case in test reports."""
         return f"{self.suffix[1:]}: {self.name}"
 
 
 def good(suffix: str, text: bool = False) -> bytes:
-    """Return the bytes of a file with the cube."""
+    """Return the bytes of a valid file with the cube."""
     return b"".join(encoded(MESH, "x", suffix, text).chunks)
 
 
 def swapped(data: bytes, old: bytes, new: bytes, count: int = 1) -> bytes:
-    """Return the data with something else in one place, which must be there."""
+    """Return the data with `old`, which must occur, replaced by `new`."""
     assert old in data, old
     return data.replace(old, new, count)
 
 
 def overwritten(data: bytes, at: int, new: bytes) -> bytes:
-    """Return the data with other bytes from one place on."""
+    """Return the data with the bytes from position `at` overwritten by `new`."""
     return data[:at] + new + data[at + len(new) :]
 
 
 def _everywhere(suffix: str, data: bytes) -> Iterator[Broken]:
-    """Yield what can befall a file of any format."""
+    """Yield the broken files that are possible in any format."""
     yield Broken("empty", suffix, b"")
     yield Broken("one byte", suffix, data[:1])
     yield Broken("a byte order mark only", suffix, BOM)
@@ -239,7 +239,7 @@ _RELATIONS = "_rels/.rels"
 
 
 def repacked(change: Callable[[bytes], bytes], member: str = _MODEL) -> bytes:
-    """Return a 3MF one of whose parts is changed; a part that becomes empty stays away."""
+    """Return a 3MF file with one member changed; a member that becomes empty is left out."""
     packed = io.BytesIO()
     with (
         zipfile.ZipFile(io.BytesIO(good(".3mf"))) as source,
@@ -254,7 +254,7 @@ def repacked(change: Callable[[bytes], bytes], member: str = _MODEL) -> bytes:
 
 
 def _3mf_models() -> Iterator[tuple[str, Callable[[bytes], bytes]]]:
-    """Yield changes to the model, each of which makes it invalid."""
+    """Yield changes of a 3MF file's model, each of which makes it invalid."""
     for old, new in (
         (b'x="2.0"', b'x="nan"'),
         (b'x="2.0"', b'x="inf"'),
@@ -285,7 +285,7 @@ def _3mf_models() -> Iterator[tuple[str, Callable[[bytes], bytes]]]:
 
 
 def _entities(system: bool) -> bytes:
-    """Return a document type whose entities grow tenfold at each of nine steps, or read a file."""
+    """Return a document type with entities that grow tenfold in nine steps, or that read a file."""
     if system:
         return b'<!DOCTYPE model [<!ENTITY e9 SYSTEM "file:///etc/passwd">]>'
     steps = [f'<!ENTITY e{k} "{f"&e{k - 1};" * 10}">' for k in range(1, 10)]
@@ -328,7 +328,7 @@ def _3mf() -> Iterator[Broken]:
 
 
 def _locked(data: bytes) -> bytes:
-    """Return an archive all of whose parts claim to need a password."""
+    """Return an archive whose members all claim to be encrypted."""
     changed = bytearray(data)
     for mark, offset in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
         at = data.find(mark)
@@ -362,7 +362,7 @@ _JSON, _BIN = b"JSON", b"BIN\0"
 
 
 def glb_of(document: bytes, binary: bytes | None) -> bytes:
-    """Return a GLB of a description and its data."""
+    """Return a GLB file with a JSON document and binary data."""
     chunks = [(_JSON, document + b" " * (-len(document) % 4))]
     if binary is not None:
         chunks.append((_BIN, binary + bytes(-len(binary) % 4)))
@@ -371,7 +371,7 @@ def glb_of(document: bytes, binary: bytes | None) -> bytes:
 
 
 def glb_chunks(data: bytes) -> tuple[bytes, bytes]:
-    """Return description and data of a GLB."""
+    """Return the JSON document and the binary data of a GLB file."""
     size = struct.unpack("<I", data[12:16])[0]
     return data[20 : 20 + size], data[28 + size :]
 
@@ -384,7 +384,7 @@ def _described(change: Callable[[dict[str, object]], None]) -> bytes:
 
 
 def _set(path: str, value: object) -> bytes:
-    """Return a GLB with another value at a place of its description, as ``meshes/0/name``."""
+    """Return a GLB file with another value at a path of its JSON, such as ``meshes/0/name``."""
 
     def change(document: dict[str, object]) -> None:
         *outer, last = [int(word) if word.isdecimal() else word for word in path.split("/")]
@@ -573,21 +573,21 @@ def _dxf() -> Iterator[Broken]:
 
 
 def good_tree() -> bytes:
-    """Return a tree of the cube as JSON."""
+    """Return a tree with the cube, as JSON."""
     return csg.to_json(csg.parse(CSG.decode())).encode()
 
 
 def all_broken() -> list[Broken]:
-    """Return the cases of all mesh formats."""
+    """Return the broken files of all mesh formats."""
     makers = (_stl_binary, _stl_text, _obj, _ply_text, _ply_binary, _off, _3mf, _glb)
     return [case for make in makers for case in make()]
 
 
 def all_broken_scripts() -> list[Broken]:
-    """Return the cases of scripts and trees."""
+    """Return the broken scripts and trees."""
     return [*_csg(), *_json_trees()]
 
 
 def all_broken_drawings() -> list[Broken]:
-    """Return the cases of drawings."""
+    """Return the broken drawings."""
     return [*_svg(), *_dxf()]

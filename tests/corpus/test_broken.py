@@ -1,4 +1,4 @@
-"""Every broken file ends in its exit code and one clear line, with nothing written."""
+"""Each broken file leads to its exit code and to one clear line, and nothing is written."""
 
 import os
 import re
@@ -37,7 +37,7 @@ TEXT = [(".stl", True), (".ply", True), (".obj", False), (".off", False)]
 
 @pytest.fixture(autouse=True)
 def workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Work in a folder with one good file."""
+    """Change to a temporary folder with one valid file."""
     monkeypatch.chdir(tmp_path)
     write(MESH, "good.off")
 
@@ -50,7 +50,7 @@ def test_there_are_many_cases_with_different_names() -> None:
 
 
 def hints(line: str, arguments: tuple[str, ...]) -> list[str]:
-    """Return what must stand below an error: what closes an open mesh, whose hole is named."""
+    """Return the lines that must follow an error: for an open mesh, the options that close it."""
     if "the mesh is not closed" not in line:
         return []
     assert re.search(r"\d edges have no .* belongs to face \d+ and runs from \(.*\) to \(", line)
@@ -62,7 +62,7 @@ def hints(line: str, arguments: tuple[str, ...]) -> list[str]:
 
 
 def refused(capsys: Capture, code: int, *arguments: str) -> str:
-    """Assert that a command writes nothing and says one line; return it."""
+    """Assert that a command writes no file and prints one line; return the line."""
     before = sorted(os.listdir())
     found, out, err = ran(capsys, *arguments)
     told = [line for line in err.splitlines() if not line.startswith(("note: ", "warning: "))]
@@ -116,7 +116,7 @@ def with_ends(end: bytes) -> Callable[[bytes], bytes]:
 
 
 def mixed(data: bytes) -> bytes:
-    """Return the lines ended in the three ways that there are, by turns."""
+    """Return the data with its lines ended in turn by LF, CR LF and CR."""
     ends: Iterator[bytes] = (end for _ in iter(int, 1) for end in (b"\n", b"\r\n", b"\r"))
     return b"".join(line + next(ends) for line in data.splitlines())
 
@@ -176,7 +176,7 @@ FORMS = [*((suffix, False) for suffix in FORMATS), (".stl", True), (".ply", True
 
 
 def changed(data: bytes, changes: list[tuple[float, int, bytes]]) -> bytes:
-    """Return the data with some bytes replaced at each place, a part of the length."""
+    """Return the data with bytes replaced at positions given as fractions of the length."""
     for part, removed, new in changes:
         at = int(part * len(data))
         data = data[:at] + new + data[at + removed :]
@@ -206,7 +206,7 @@ def test_changed_scripts(suffix: str, changes: list[tuple[float, int, bytes]]) -
 
 
 def read_or_refused(make: Callable[[], "b.Solid"], name: str) -> None:
-    """Assert that there is a sound solid, or an error in one line that is no defect."""
+    """Assert that a function returns a sound solid, or raises an error that is no defect."""
     try:
         solid = make()
         assert solid.volume_exact >= 0

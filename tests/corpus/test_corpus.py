@@ -1,4 +1,4 @@
-"""Runs every case of `cases/` and notices if there is none."""
+"""Runs every case in `cases/`, and fails if there is none."""
 
 import json
 from fractions import Fraction
@@ -22,7 +22,7 @@ def test_there_are_cases() -> None:
 
 
 def operand(description: dict[str, Any]) -> "b.Solid":
-    """Make a solid from its description in a case."""
+    """Return the solid of an operand's description in a case."""
     if "box" in description:
         return b.Solid(*cuboid(*description["box"]))
     if "half_space" in description:
@@ -33,14 +33,14 @@ def operand(description: dict[str, Any]) -> "b.Solid":
 
 
 def evaluate(case: dict[str, Any]) -> "b.Solid":
-    """Make the operands and combine them."""
+    """Return the value of a case's expression over its operands."""
     names = {chr(ord("a") + k): operand(given) for k, given in enumerate(case["operands"])}
     result: b.Solid = eval(case["expression"], {"__builtins__": {}, **CALLS}, names)
     return result
 
 
 def compare(solid: "b.Solid", expect: dict[str, Any]) -> None:
-    """Compare everything that the case expects."""
+    """Assert everything that a case expects of its result."""
     places = expect.pop("places", [])
     found_places = solid.classify([place[:3] for place in places] or np.zeros((0, 3)))
     assert found_places.tolist() == [place[3] for place in places]

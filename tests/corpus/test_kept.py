@@ -1,4 +1,4 @@
-"""What released versions wrote is read as it was meant, as docs/stability.md promises."""
+"""Files that released versions wrote are read as they were meant, as docs/stability.md promises."""
 
 import json
 import pickle

@@ -1,1 +1,1 @@
-"""Random scenes, files and scripts whose right answers are known without the core."""
+"""Random scenes, files and scripts whose correct results are known without the core."""

@@ -1,4 +1,4 @@
-"""Random calls of the public interface: each ends in an answer or in an error that says why."""
+"""Random calls of the public interface, each of which must return or raise a clear error."""
 
 import pickle
 import random
@@ -9,7 +9,7 @@ import numpy as np
 import bspcsg as b
 from bspcsg import bsp
 
-#: Texts of each kind; names in braces stand for texts of their kind.
+#: The texts of each kind of expression; a name in braces stands for any text of that kind.
 GRAMMAR = {
     "number": [
         "0",
@@ -165,17 +165,17 @@ GRAMMAR = {
     ],
 }
 
-#: The names in those texts.
+#: The variables that the texts use.
 NAMES = {"b": b, "bsp": bsp, "pickle": pickle}
 
 _PLACE = re.compile(r"\{(\w+)\}")
 
-#: Kinds of which texts may name others of their own.
+#: The kinds whose texts may contain texts of the same kind.
 _DEEP = {kind for kind, texts in GRAMMAR.items() if any(f"{{{kind}}}" in text for text in texts)}
 
 
 def random_call(seed: int, depth: int = 5) -> str:
-    """Return a call, made of others up to a depth."""
+    """Return the text of a random call, with other calls nested up to a depth."""
     return _text("question", random.Random(seed), depth)
 
 
@@ -188,7 +188,7 @@ def _text(kind: str, draw: random.Random, depth: int) -> str:
 
 
 def judge_call(call: str) -> str | None:
-    """Return what is wrong with the end of a call, None if nothing is."""
+    """Return what is wrong with the outcome of a call, or None."""
     try:
         with np.errstate(all="ignore"):
             answer = eval(call, dict(NAMES))

@@ -1,4 +1,4 @@
-"""Drawings of rectangles of known areas, as this package and as other programs write them."""
+"""Drawings of rectangles with known areas, in the forms of this package and of other programs."""
 
 import io
 import tempfile
@@ -13,12 +13,12 @@ from bspcsg import bsp
 
 Rng: TypeAlias = np.random.Generator
 
-#: The space that each rectangle has, scaled ones too.
+#: The distance between the rectangles.
 _APART = 64
 
 
 def random_drawing(rng: Rng, suffix: str) -> tuple[bytes, Fraction]:
-    """Return an SVG or DXF, and the area that it encloses."""
+    """Return a random SVG or DXF file, and the area that it encloses."""
     width, height = rng.integers(1, 9, 2).tolist()
     if rng.random() < 0.5:
         return _own(suffix, width, height), Fraction(width * height)
@@ -37,7 +37,7 @@ def _own(suffix: str, width: int, height: int) -> bytes:
 
 
 def _views(rng: Rng, width: int, height: int, scales: list[list[int]]) -> bytes:
-    """Return an SVG that shows one rectangle in views or as a symbol, in several sizes."""
+    """Return an SVG with one rectangle drawn several times, in nested views or as a symbol."""
     shape = f'<rect width="{width}" height="{height}"/>'
     box = f'viewBox="0 0 {width} {height}" preserveAspectRatio="none"'
     body = f'<symbol id="s" {box}>{shape}</symbol>'
@@ -55,7 +55,7 @@ def _views(rng: Rng, width: int, height: int, scales: list[list[int]]) -> bytes:
 
 
 def _blocks(rng: Rng, width: int, height: int, scales: list[list[int]]) -> bytes:
-    """Return a DXF that shows one rectangle by a block, in several sizes, or block in block."""
+    """Return a DXF with one rectangle drawn several times as a block, also in nested blocks."""
     document = new()
     content = document.blocks.new("inner")
     corners = [(0, 0), (width, 0), (width, height), (0, height)]

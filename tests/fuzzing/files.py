@@ -1,8 +1,8 @@
-"""Files that are nearly right, and what must come of reading them.
+"""Random files, valid or damaged, and the check of what reading them gives.
 
-A file is made from a known mesh by the package's own writers, then changed in one of two ways: so
-that it means the same, where the answer is known, or in any way at all, where it must be read as a
-sound solid or be refused with an error of the package.
+A file is made from a known mesh by the package's writers, then changed: either without changing its
+meaning, so that the result is known, or arbitrarily, so that it must be read as a sound solid or
+refused with an error of the package.
 """
 
 import io
@@ -66,7 +66,7 @@ _NUMBER = re.compile(rb"[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?")
 
 @dataclass(frozen=True)
 class File:
-    """A file; `volume` is what it must hold, None if anything may come of it."""
+    """The content of a file; `volume` is its correct volume, or None if any outcome is allowed."""
 
     format: str
     data: bytes
@@ -74,7 +74,7 @@ class File:
 
 
 def random_file(rng: Rng, format: str) -> File:  # noqa: A002
-    """Return a file of a format: as it should be, changed without a difference, or damaged."""
+    """Return a random file of a format: valid, changed without changing its meaning, or damaged."""
     good = good_file(rng, format)
     kind = rng.random()
     if kind < 0.15:
@@ -88,7 +88,7 @@ def random_file(rng: Rng, format: str) -> File:  # noqa: A002
 
 
 def good_file(rng: Rng, format: str) -> File:  # noqa: A002
-    """Return a file that holds a known solid."""
+    """Return a valid file of a known solid."""
     if format == ".csg":
         text, volume = random_model(rng)
         return File(format, text.encode(), volume)
@@ -112,7 +112,7 @@ def good_file(rng: Rng, format: str) -> File:  # noqa: A002
 
 
 def _known_mesh(rng: Rng) -> tuple[tuple[np.ndarray, np.ndarray], Fraction]:
-    """Return a mesh whose coordinates single precision holds, and its volume."""
+    """Return a mesh with coordinates that are exact in single precision, and its volume."""
     kind = int(rng.integers(4))
     if kind == 0:
         size = rng.integers(1, 5, 3)
@@ -127,7 +127,7 @@ def _known_mesh(rng: Rng) -> tuple[tuple[np.ndarray, np.ndarray], Fraction]:
 
 
 def _boolean_shape(rng: Rng) -> File:
-    """Return a 3MF of a boolean shape of cuboids, some in another shape; its unit cubes counted."""
+    """Return a 3MF file with nested boolean shapes of cuboids; the volume counts unit cubes."""
     operation = ("union", "difference", "intersection")[int(rng.integers(3))]
     size, moves = rng.integers(1, 5, 3), rng.integers(-1, 3, (3, 3))
     moves[0] = 0
@@ -158,7 +158,7 @@ def _transform(move: list[int]) -> str:
 
 
 def _foreign_glb(rng: Rng) -> File:
-    """Return a GLB as other programs write it: in metres, which are read as 1000 each."""
+    """Return a GLB file as other programs write it, in metres, which are read as 1000 units."""
     (vertices, faces), volume = _known_mesh(rng)
     kind = ("f4", "i1", "i2")[int(rng.integers(3))]
     points = np.asarray(vertices, kind)
@@ -179,7 +179,7 @@ def _foreign_glb(rng: Rng) -> File:
 
 
 def same_meaning(rng: Rng, file: File) -> File:
-    """Return a file that is written in another way."""
+    """Return a file with the same meaning in another notation."""
     changes = _SAME.get(file.format, [])
     if not changes:
         return file
@@ -198,7 +198,7 @@ def _windows(rng: Rng, data: bytes) -> bytes:
 
 
 def _remark(mark: bytes, after: int) -> Callable[[Rng, bytes], bytes]:
-    """Return a change that puts a remark after some lines or later."""
+    """Return a change that inserts a comment after line number `after` or later."""
 
     def change(rng: Rng, data: bytes) -> bytes:
         lines = data.splitlines(keepends=True)
@@ -209,7 +209,7 @@ def _remark(mark: bytes, after: int) -> Callable[[Rng, bytes], bytes]:
 
 
 def _shuffled_faces(rng: Rng, data: bytes) -> bytes:
-    """Shuffle the lines at the end that are faces: all that begin as the last one does."""
+    """Return the data with its last lines, which are faces, in random order."""
     lines = data.rstrip(b"\n").split(b"\n")
     start = lines[-1][:2]
     first = next(k for k, line in enumerate(lines) if line[:2] == start and len(line.split()) == 4)
@@ -218,7 +218,7 @@ def _shuffled_faces(rng: Rng, data: bytes) -> bytes:
 
 
 def _records(rng: Rng, data: bytes) -> bytes:
-    """Shuffle the triangles of a binary STL, with other normals and another header."""
+    """Return a binary STL with its triangles shuffled, other normals and another header."""
     rows = [data[k : k + 50] for k in range(84, len(data), 50)]
     changed = [
         rng.bytes(12) + rows[int(k)][12:48] + rng.bytes(2) for k in rng.permutation(len(rows))
@@ -267,7 +267,7 @@ _SAME: dict[str, list[Callable[[Rng, bytes], bytes]]] = {
 
 
 def damaged(rng: Rng, format: str, data: bytes) -> bytes:  # noqa: A002
-    """Return data with one to three things wrong, within what holds the format together or not."""
+    """Return the data with one to three random errors, in the structure or anywhere."""
     for _ in range(int(rng.integers(1, 4))):
         if format == ".3mf" and rng.random() < 0.8:
             data = _damaged_member(rng, data)
@@ -368,7 +368,7 @@ def _damaged_glb(rng: Rng, data: bytes) -> bytes:
 
 
 def judge_file(file: File, folder: Path) -> list[str]:
-    """Return what is wrong with what came of a file."""
+    """Return what is wrong with the outcome of reading a file."""
     path = folder / f"in{file.format.partition('-')[0]}"
     path.write_bytes(file.data)
     try:
@@ -389,12 +389,12 @@ def judge_file(file: File, folder: Path) -> list[str]:
 
 
 def _is_nothing(file: File, error: "b.BspcsgError") -> bool:
-    """Say whether a script of nothing was refused for that."""
+    """Return true if a script with an empty result was refused for being empty."""
     return file.volume == 0 and error.code in ("empty_mesh", "empty_solid", "nothing")
 
 
 def _held(file: File, path: Path) -> Fraction:
-    """Return the exact volume, or area, of what a file holds."""
+    """Return the exact volume or area of the content of a file."""
     if file.format == ".snapshot":
         return from_leaf(TreeLeaf(_loaded(file.data))).volume_exact
     if file.format in (".svg", ".dxf"):

@@ -1,4 +1,4 @@
-"""Targets led by coverage: programs of libFuzzer, and atheris for the readers in Python."""
+"""Fuzz targets guided by coverage: libFuzzer for the core, atheris for the readers."""
 
 import os
 import re
@@ -46,7 +46,7 @@ _RAISED = re.compile(r"=== Uncaught Python exception: ===\n(.*)")
 
 
 class Guided:
-    """A program that takes libFuzzer's options."""
+    """A program that takes the options of libFuzzer."""
 
     def __init__(self, name: str, command: list[str], folder: Path) -> None:
         self._command, self._folder = command, folder / name
@@ -55,7 +55,7 @@ class Guided:
         self._found.mkdir(exist_ok=True)
 
     def run(self, seed: int, until: float) -> Outcome:
-        """Run until a moment of the monotonic clock, again after each finding."""
+        """Run until a time of the monotonic clock, restarting after each finding."""
         total, clock = Outcome(), CpuClock()
         ended = 0
         while ended < MAX_FINDINGS and until - time.monotonic() > 1:
@@ -72,7 +72,7 @@ class Guided:
         return total
 
     def _has_waited(self, found: Found) -> bool:
-        """Say whether an input took long only because other programs had the processor."""
+        """Return true if an input was slow only because other programs used the processor."""
         if found.kind != "hang" or not found.place:
             return False
         clock = CpuClock()
@@ -81,7 +81,7 @@ class Guided:
         return clock.seconds() < SECONDS
 
     def _slow(self) -> set[Path]:
-        """Return the inputs that took long, but ended."""
+        """Return the paths of inputs that were slow but finished."""
         return set(self._found.glob("slow-unit-*"))
 
     def _once(self, seed: int, until: float) -> Outcome:
@@ -119,7 +119,7 @@ class Guided:
 
 
 class Core(Guided):
-    """A target of the core, built on first use."""
+    """A fuzz target of the core, built on first use."""
 
     def __init__(self, name: str, folder: Path) -> None:
         super().__init__(name, [str(built(folder) / name)], folder)
@@ -129,7 +129,7 @@ class Core(Guided):
 
 
 class Readers(Guided):
-    """All readers of files in Python; atheris must be installed."""
+    """The fuzz target of all readers of files in Python; needs atheris."""
 
     def __init__(self, folder: Path) -> None:
         super().__init__("readers", [sys.executable, "-m", "fuzzing.readers"], folder)
@@ -139,7 +139,7 @@ class Readers(Guided):
 
 
 def built(folder: Path) -> Path:
-    """Build the targets of the core; return where they are."""
+    """Build the fuzz targets of the core, and return their folder."""
     version = subprocess.run(["rustc", "-vV"], capture_output=True, text=True, check=True).stdout
     host = next(line[6:] for line in version.splitlines() if line.startswith("host: "))
     target = folder / "target"
@@ -159,7 +159,7 @@ def _text(said: bytes | None) -> str:
 
 
 def outcome_of(said: str, code: int) -> Outcome:
-    """Return what a run of libFuzzer has said."""
+    """Return the outcome of a run of libFuzzer, from its output and exit code."""
     reached = [int(number) for number in _COVERAGE.findall(said)]
     count = _COUNT.search(said)
     outcome = Outcome(int(count[1]) if count else 0)
@@ -172,7 +172,7 @@ def outcome_of(said: str, code: int) -> Outcome:
 
 
 def _finding(said: str) -> tuple[str, str]:
-    """Return the kind of what ended a run, and its words."""
+    """Return the kind of the finding that ended a run, and its message."""
     if "libFuzzer: timeout" in said:
         return "hang", f"more than {SECONDS} s"
     if "out-of-memory" in said:

@@ -1,4 +1,4 @@
-"""The judge of answers to a scene: points, volumes, meshes, copies, a rival's volume."""
+"""Judge the results of a random scene: points, volumes, meshes, copies, manifold3d's volume."""
 
 import pickle
 from collections import Counter
@@ -44,10 +44,10 @@ MERGED = 1e-4
 
 
 class Kernel:
-    """The questions to the package; the tests of the judge break it on purpose."""
+    """The calls of the package that the judge makes; tests replace them by wrong ones."""
 
     def solid(self, body: Body) -> "b.Solid":
-        """Return the solid of an operand, not moved."""
+        """Return the solid of an operand before its motions."""
         if body.plane is not None:
             return b.half_space(*body.half_space())
         vertices, faces = body.arrays()
@@ -60,33 +60,33 @@ class Kernel:
         return found
 
     def classify(self, solid: "b.Solid", points: Sequence[Point]) -> list[int]:
-        """Return of each point whether it is inside (+1), on the boundary (0) or outside (-1)."""
+        """Return for each point 1 if it is inside, 0 on the boundary, -1 outside."""
         found: list[int] = solid.classify([[k / UNIT for k in p] for p in points]).tolist()
         return found
 
     def volume(self, solid: "b.Solid") -> Fraction:
-        """Return the exact volume."""
+        """Return the exact volume of a solid."""
         return solid.volume_exact
 
     def mesh(self, solid: "b.Solid") -> "b.Mesh":
-        """Return the reduced boundary."""
+        """Return the mesh of the reduced boundary of a solid."""
         return solid.normalized().to_mesh()
 
     def arrays(self, solid: "b.Solid") -> tuple[bytes, ...]:
-        """Return the bytes of vertices, faces and their origins."""
+        """Return the bytes of a solid's vertices, faces and their origins."""
         mesh = solid.to_mesh()
         return mesh.vertices.tobytes(), mesh.faces.tobytes(), mesh.source.tobytes()
 
     def copy(self, solid: "b.Solid") -> "b.Solid":
-        """Return the solid after a way through bytes."""
+        """Return the solid after pickling and unpickling."""
         found: b.Solid = pickle.loads(pickle.dumps(solid))
         return found
 
 
 def judge(scene: Scene, kernel: Kernel | None = None) -> list[str]:
-    """Return what is wrong, a sentence each that begins with its kind.
+    """Return what is wrong with the results of a scene, one sentence each, starting with its kind.
 
-    An error that the package raises is wrong: all scenes have an answer.
+    An error of the package is wrong, since all scenes have a result.
     """
     try:
         return list(_Trial(scene, kernel or Kernel()).complaints())
@@ -95,7 +95,7 @@ def judge(scene: Scene, kernel: Kernel | None = None) -> list[str]:
 
 
 def evaluated(scene: Scene, kernel: Kernel) -> tuple[list["b.Solid"], "b.Solid"]:
-    """Return the operands, moved, and what the expression makes of them."""
+    """Return the moved operands of a scene, and the value of its expression."""
     names = {chr(ord("a") + k): kernel.solid(body) for k, body in enumerate(scene.bodies)}
     moved = (text_of(k, scene.bodies) for k in range(len(scene.bodies)))
     operands = [kernel.evaluate(text, names) for text in moved]
@@ -109,7 +109,7 @@ class _Trial:
         self.operands, self.result = evaluated(scene, kernel)
 
     def complaints(self) -> Any:
-        """Yield what is wrong."""
+        """Yield what is wrong with the results of the scene."""
         yield from self._points(self.result, "points")
         yield from self._known_volumes()
         yield from self._sums()
@@ -138,7 +138,7 @@ class _Trial:
                 yield f"volume: operand {k} has {self.kernel.volume(solid)}, not {body.volume}"
 
     def _sums(self) -> Any:
-        """Compare first and last operand, and the result and the first, by inclusion."""
+        """Check inclusion-exclusion for volumes of operands and the result."""
         bounded = [
             solid
             for body, solid in zip(self.scene.bodies, self.operands, strict=True)
@@ -160,9 +160,10 @@ class _Trial:
             yield "sums: De Morgan does not hold"
 
     def _steps(self) -> Any:
-        """Compare the bytes of what is evaluated in one go, and step by step.
+        """Check that evaluating all operations together and one by one gives the same bytes.
 
-        Of plain operands: one that overlaps itself is united only where an operation met it.
+        Only for operands that do not overlap themselves: others are united only where an operation
+        met them.
         """
         if not all(body.volume is not None for body in self.scene.bodies):
             return
@@ -205,7 +206,7 @@ class _Trial:
             yield f"mesh: its volume is {float(volume)}, the set's {float(exact)}"
 
     def _nothing_left(self, exact: Fraction) -> Any:
-        """Allow a mesh without triangles only of what is too thin for doubles, and if told."""
+        """Yield a complaint if an empty mesh has a volume above rounding or lacks a finding."""
         delivered = self.result.normalized()
         delivered.to_mesh()
         is_told = any(finding.code == "mended" for finding in delivered.findings)
@@ -214,7 +215,7 @@ class _Trial:
             yield f"mesh: it has no triangles, the set has the volume {float(exact)}"
 
     def _inside_mesh(self, mesh: "b.Mesh") -> Any:
-        """Compare points well clear of all faces with the winding numbers of the mesh."""
+        """Compare points far from all faces with the winding numbers of the mesh."""
         proper = Balls([each for each in _triangles(mesh) if normal(each) != (0, 0, 0)])
         for point in self.scene.points:
             if not self._is_clear(point):
@@ -229,7 +230,7 @@ class _Trial:
                 yield f"inside: the mesh winds {found} times around {point}"
 
     def _is_clear(self, point: Point) -> bool:
-        """Say whether no face that comes near the point has a plane near it."""
+        """Return true if the point is not close to the plane of any nearby face."""
         for known in self.sets:
             reach = CLEAR * UNIT
             faces = known.balls.around(point, reach) if isinstance(known, Surface) else ()
@@ -241,7 +242,7 @@ class _Trial:
         return True
 
     def _rival(self) -> Any:
-        """Compare the volume with manifold3d's, where all operands are plain."""
+        """Compare the volume with manifold3d's, if no operand overlaps itself."""
         if not all(body.volume is not None for body in self.scene.bodies):
             return
         record = self.result.last_operation
@@ -258,9 +259,9 @@ class _Trial:
             yield f"rival: manifold3d has the volume {theirs.volume}, not {ours}"
 
     def _is_rival_wrong(self, volume: float) -> bool:
-        """Say whether counts of crossings with the operands show that the rival's mesh is wrong.
+        """Return true if exact counts of crossings show that manifold3d's result is wrong.
 
-        They are exact, and ask neither engine. The set they speak for must have this volume.
+        Our set, which the counts confirm, must have this volume.
         """
         report = check_result(self.result)
         is_settled = report.verdict is Verdict.ORACLE_FAILED and report.compared == "sets"
@@ -268,7 +269,7 @@ class _Trial:
 
 
 def _corners(faces: Sequence[Sequence[int]]) -> dict[tuple[int, int], int] | None:
-    """Return for each edge from a vertex the end of the next one around it; None if one repeats."""
+    """Return for each (vertex, edge start) the next edge's end; None if an edge repeats."""
     after: dict[tuple[int, int], int] = {}
     for p, q, r in faces:
         for v, start, end in ((p, q, r), (q, r, p), (r, p, q)):
@@ -290,7 +291,7 @@ def _count_fans(after: dict[tuple[int, int], int]) -> int:
 
 
 def _triangles(mesh: "b.Mesh") -> list[Triangle]:
-    """Return the triangles in steps of 1 / FINE units."""
+    """Return the triangles of a mesh in steps of 1 / FINE units."""
     corners = [(round(x * FINE), round(y * FINE), round(z * FINE)) for x, y, z in mesh.vertices]
     return [(corners[p], corners[q], corners[r]) for p, q, r in mesh.faces.tolist()]
 

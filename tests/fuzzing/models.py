@@ -1,4 +1,4 @@
-"""Random scripts of OpenSCAD's `.csg` language: of cubes on whole numbers, the volume is known."""
+"""Random scripts in OpenSCAD's `.csg` language; the volume of integer cubes is known."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -56,14 +56,14 @@ _VALUES = [
 
 @dataclass(frozen=True)
 class Model:
-    """A script and the set it stands for."""
+    """A script, and a function that tells which points are inside its set."""
 
     text: str
     inside: Inside
 
 
 def random_model(rng: Rng) -> tuple[str, Fraction | None]:
-    """Return a script and its exact volume; None if it is made of more than cubes."""
+    """Return a random script and its exact volume, or None if it has other shapes than cubes."""
     if rng.random() < 0.3:
         return _wild(rng), None
     model = _random(rng, DEPTH)

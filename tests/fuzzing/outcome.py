@@ -1,4 +1,4 @@
-"""The work and the findings of fuzzing."""
+"""The outcome of a fuzz run: how much was tested, and the findings."""
 
 import resource
 from dataclasses import dataclass, field
@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class Found:
-    """Something wrong: its kind (crash, wrong, hang, memory), words, and where its input lies."""
+    """A finding: its kind (crash, wrong, hang, memory), a message, and the path of its input."""
 
     kind: str
     what: str
@@ -15,10 +15,10 @@ class Found:
 
 @dataclass
 class Outcome:
-    """The outcome of one run of a target.
+    """The outcome of one run of a fuzz target.
 
-    `coverage` is what libFuzzer counts at the end and counted at the beginning: edges of the
-    instrumented code that inputs have reached.
+    `coverage` has the number of covered edges of the code that libFuzzer counts at the start and at
+    the end.
     """
 
     executions: int = 0
@@ -27,7 +27,7 @@ class Outcome:
     found: list[Found] = field(default_factory=list)
 
     def line(self) -> str:
-        """Return one line for people."""
+        """Return the outcome as one line of text."""
         first, last = self.coverage or (0, 0)
         reached = f", coverage {first} → {last}" if self.coverage else ""
         minutes = self.cpu_seconds / 60
@@ -37,13 +37,13 @@ class Outcome:
 
 
 class CpuClock:
-    """The processor time of children that have ended, since it was made."""
+    """A stopwatch of the processor time of child processes that have ended."""
 
     def __init__(self) -> None:
         self._start = _children()
 
     def seconds(self) -> float:
-        """Return the seconds."""
+        """Return the processor time since the stopwatch was made, in seconds."""
         return _children() - self._start
 
 

@@ -1,7 +1,7 @@
-"""The side of points by winding numbers in whole numbers: no lattice, no tree, no plane of a core.
+"""The side of points by exact winding numbers in integers, without the core.
 
-A place is a point and up to three steps from it, each infinitely smaller than the one before. All
-predicates are linear in the place, so each is decided by its first value that is not zero.
+A place is a point and up to three vectors from it, each infinitely shorter than the one before. All
+predicates are linear in the place, so the first value that is not zero decides.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -42,14 +42,14 @@ MAX_PLANES = 12
 
 
 class UndecidedError(Exception):
-    """Every ray from a place meets an edge, the place lies on a face, or many planes meet there."""
+    """A place cannot be classified: all rays meet edges, it is on a face, or many planes meet."""
 
 
 class Balls:
-    """Triangles with a ball around each, which says of most that they are far away.
+    """Triangles with a bounding ball each, which excludes most of them from a search.
 
-    Balls are doubles, and larger by a step than they must be; what they do not exclude is looked at
-    in whole numbers.
+    Balls are doubles, one step larger than necessary; triangles that they do not exclude are tested
+    in integers.
     """
 
     def __init__(self, triangles: Sequence[Triangle]) -> None:
@@ -60,12 +60,12 @@ class Balls:
         self._radii = arms.max(axis=1, initial=0.0) * (1 + 1e-9) + 1.0
 
     def around(self, point: Point, reach: float = 0.0) -> list[Triangle]:
-        """Return triangles among which are all that are so near to a point."""
+        """Return all triangles within `reach` of a point, and possibly some others."""
         away = np.linalg.norm(self._centres - np.array(point, dtype=np.float64), axis=1)
         return self._chosen(away <= self._radii + reach)
 
     def along(self, point: Point, ray: Point) -> list[Triangle]:
-        """Return triangles among which are all that a line through a point meets."""
+        """Return all triangles that a line through a point meets, and possibly some others."""
         arms = self._centres - np.array(point, dtype=np.float64)
         away = np.linalg.norm(np.cross(arms, np.array(ray, dtype=np.float64)), axis=1)
         return self._chosen(away <= self._radii * (1 + 1e-9) * dot(ray, ray) ** 0.5)
@@ -76,38 +76,38 @@ class Balls:
 
 @dataclass(frozen=True)
 class Surface:
-    """The points around which triangles wind as a rule wants it."""
+    """The set of points whose winding number about triangles satisfies a rule."""
 
     triangles: tuple[Triangle, ...]
     rule: str = "positive"
 
     @cached_property
     def balls(self) -> Balls:
-        """The triangles, with balls around them."""
+        """The triangles with their bounding balls."""
         return Balls(self.triangles)
 
     def normals_at(self, point: Point) -> list[Point]:
-        """Return the normals of the triangles that hold the point."""
+        """Return the normals of the triangles that contain a point."""
         return [normal(each) for each in self.balls.around(point) if touches(each, point)]
 
     def sides(self, point: Point, places: Sequence[Steps]) -> list[bool]:
-        """Return of each place beside a point whether it is inside."""
+        """Return for each place beside a point whether it is inside the set."""
         return [RULES[self.rule](number) for number in windings(self.balls, point, places)]
 
 
 @dataclass(frozen=True)
 class Below:
-    """The points on a plane through three points, and below it: they turn left seen from above."""
+    """The closed half-space below a plane through three points, counterclockwise from above."""
 
     corners: Triangle
 
     def normals_at(self, point: Point) -> list[Point]:
-        """Return the normal if the point lies on the plane."""
+        """Return the plane's normal if a point lies on the plane, else nothing."""
         n = normal(self.corners)
         return [n] if dot(n, less(point, self.corners[0])) == 0 else []
 
     def sides(self, point: Point, places: Sequence[Steps]) -> list[bool]:
-        """Return of each place beside a point whether it is below."""
+        """Return for each place beside a point whether it is below the plane."""
         n = normal(self.corners)
         found = [sign(dot(n, less(point, self.corners[0])), n, place) for place in places]
         if 0 in found:
@@ -119,10 +119,10 @@ Known: TypeAlias = Surface | Below
 
 
 def location(sets: Sequence[Known], value: Callable[[Sequence[bool]], bool], point: Point) -> int:
-    """Return +1 inside, 0 on the boundary, -1 outside of what an expression makes of sets.
+    """Return 1 if a point is inside an expression of sets, 0 on its boundary, -1 outside.
 
-    The planes that meet at the point divide its neighbourhood; the point is on the boundary if the
-    expression holds in some of the parts and not in others.
+    The planes through the point divide its neighbourhood; the point is on the boundary if the
+    expression is true in some of these parts and false in others.
     """
     normals = sorted({reduced(n) for each in sets for n in each.normals_at(point)})
     if len(normals) > MAX_PLANES:
@@ -134,7 +134,7 @@ def location(sets: Sequence[Known], value: Callable[[Sequence[bool]], bool], poi
 
 
 def windings(balls: Balls, point: Point, places: Sequence[Steps]) -> Iterator[int]:
-    """Yield how often triangles wind around each of the places beside a point."""
+    """Yield the winding number of triangles about each of the places beside a point."""
     near = [each for each in balls.around(point) if touches(each, point)]
     # What the point does not lie on is the same for all places, unless a ray meets its edges.
     kept: dict[Point, int] = {}
@@ -162,7 +162,7 @@ def _windings_away(balls: Balls, near: Sequence[Triangle], point: Point, ray: Po
 
 
 def crossing(triangle: Triangle, point: Point, place: Steps, ray: Point) -> int:
-    """Return +1 if a ray leaves through a triangle, -1 if it enters by it, 0 if it misses."""
+    """Return 1 if a ray from a place leaves through a triangle, -1 if it enters, 0 if it misses."""
     a, b, c = (less(corner, point) for corner in triangle)
     turns = [
         sign(dot(ray, cross(p, q)), cross(less(p, q), ray), place)
@@ -178,9 +178,9 @@ def crossing(triangle: Triangle, point: Point, place: Steps, ray: Point) -> int:
 
 
 def around(normals: Sequence[Point]) -> list[Steps]:
-    """Return steps into each part of the neighbourhood that planes with these normals make.
+    """Return a place in each part of the neighbourhood that planes with these normals make.
 
-    Unless all planes are parallel, each part has on its border a ray in which two planes meet; the
+    Unless all planes are parallel, each part is bounded by a ray in which two planes meet, and the
     parts around such a ray lie beside the planes that contain it.
     """
     places: list[Steps] = []
@@ -196,7 +196,7 @@ def around(normals: Sequence[Point]) -> list[Steps]:
 
 
 def touches(triangle: Triangle, point: Point) -> bool:
-    """Return whether a point lies on a triangle or its border."""
+    """Return true if a point lies on a closed triangle."""
     n = normal(triangle)
     a, b, c = (less(corner, point) for corner in triangle)
     if n == (0, 0, 0) or dot(n, a) != 0:
@@ -205,32 +205,32 @@ def touches(triangle: Triangle, point: Point) -> bool:
 
 
 def sign(value: int, gradient: Point, place: Steps) -> int:
-    """Return the sign of a linear form with a value at the point and this gradient."""
+    """Return the sign at a place of a linear form with this value at the point and gradient."""
     changes = (dot(gradient, step) for step in place)
     found = next((each for each in (value, *changes) if each), 0)
     return (found > 0) - (found < 0)
 
 
 def reduced(vector: Point) -> Point:
-    """Return the shortest whole vector of the same direction."""
+    """Return the shortest integer vector with the same direction."""
     size = gcd(*vector) or 1
     x, y, z = vector
     return x // size, y // size, z // size
 
 
 def normal(triangle: Triangle) -> Point:
-    """Return a vector across a triangle, outwards."""
+    """Return the outward normal of a triangle, of any length."""
     a, b, c = triangle
     return cross(less(b, a), less(c, a))
 
 
 def dot(a: Point, b: Point) -> int:
-    """Return the scalar product."""
+    """Return the inner product of two vectors."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def cross(a: Point, b: Point) -> Point:
-    """Return the vector product."""
+    """Return the cross product of two vectors."""
     return (
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
@@ -239,10 +239,10 @@ def cross(a: Point, b: Point) -> Point:
 
 
 def less(a: Point, b: Point) -> Point:
-    """Return the difference."""
+    """Return the difference a - b of two vectors."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
 def minus(a: Point) -> Point:
-    """Return the vector turned around."""
+    """Return the negative of a vector."""
     return -a[0], -a[1], -a[2]

@@ -1,7 +1,7 @@
-"""All readers of files under atheris, which follows the branches of this package's Python.
+"""Fuzz all readers of files with atheris, which follows the branches of the package's Python.
 
-An input is a byte for the format and the file; most changes know what the format is made of.
-`--seeds FOLDER` writes good files to start from.
+An input is a byte that chooses the format, then the file; most changes respect the structure of the
+format. `--seeds FOLDER` writes valid files as first inputs.
 """
 
 import sys
@@ -20,14 +20,14 @@ SEEDS = 5
 
 
 def one(data: bytes, folder: Path) -> None:
-    """Judge one input."""
+    """Read one input, and assert that the outcome is correct."""
     if data:
         wrong = files.judge_file(File(FORMATS[data[0] % len(FORMATS)], data[1:]), folder)
         assert not wrong, wrong
 
 
 def changed(data: bytes, max_size: int, seed: int) -> bytes:
-    """Change an input: as its format asks for, or as libFuzzer thinks best."""
+    """Return a changed input: by a change for its format, or by libFuzzer's."""
     rng = np.random.default_rng(seed)
     if not data or rng.random() < 0.4:
         found: bytes = atheris.Mutate(data, max_size)

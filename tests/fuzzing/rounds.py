@@ -1,6 +1,7 @@
-"""Targets by rounds, in a process of their own: round k draws from the generator of (seed, k).
+"""Fuzz targets in rounds, in a process of their own: round k is seeded with (seed, k).
 
-As a program it runs rounds and says, a line of JSON each, which one begins and what was wrong.
+As a program it runs rounds, and prints a line of JSON when a round begins and when it found
+something wrong.
 """
 
 import argparse
@@ -32,13 +33,13 @@ MAX_FINDINGS = 20
 
 
 class Rounds:
-    """A target by rounds, as the process that starts them sees it."""
+    """A fuzz target in rounds, run by child processes."""
 
     def __init__(self, name: str, seed: int) -> None:
         self._name, self._seed = name, seed
 
     def run(self, first: int, until: float) -> tuple[Outcome, int]:
-        """Run rounds until a moment of the monotonic clock; return the next round, too."""
+        """Run rounds until a time of the monotonic clock; return the outcome and the next round."""
         outcome, clock, at = Outcome(), CpuClock(), first
         while len(outcome.found) < MAX_FINDINGS and until - time.monotonic() > 1:
             at, ended = self._rounds(at, until, outcome)
@@ -48,7 +49,7 @@ class Rounds:
         return outcome, at
 
     def _rounds(self, first: int, until: float, outcome: Outcome) -> tuple[int, bool]:
-        """Run one process; return the next round and whether the process was ended by one."""
+        """Run one child process; return the next round, and true if a round ended the process."""
         seconds = str(until - time.monotonic())
         words = [self._name, "--seed", str(self._seed), "--first", str(first), "--seconds", seconds]
         command = [sys.executable, "-m", "fuzzing.rounds", *words]
@@ -82,7 +83,7 @@ def _limit(name: str) -> int:
 
 
 def rounds(name: str, seed: int, first: int, until: float) -> None:
-    """Run rounds, and say so."""
+    """Run rounds in this process, and print a line for each."""
     resource.setrlimit(resource.RLIMIT_AS, (MEGABYTES << 20, MEGABYTES << 20))
     judge = {"scenes": one_scene, "sizes": one_size, "files": one_file}[name]
     at = first
@@ -98,12 +99,12 @@ def rounds(name: str, seed: int, first: int, until: float) -> None:
 
 
 def tell(at: int, wrong: list[str], place: str) -> None:
-    """Say where we are."""
+    """Print a line of JSON: the round, what was wrong, and the path of the input."""
     print(json.dumps({"round": at, "wrong": wrong[:1], "place": place}), flush=True)  # noqa: T201 (the parent reads it)
 
 
 def one_scene(seed: int, at: int) -> tuple[list[str], str]:
-    """Judge a scene; a wrong one is made small and kept as a case."""
+    """Judge a random scene; make a wrong one small and store it as a case."""
     from .judge import judge
     from .scenes import random_scene
     from .shrink import keep_case, shrunk
@@ -119,7 +120,7 @@ def one_scene(seed: int, at: int) -> tuple[list[str], str]:
 
 
 def one_size(seed: int, at: int) -> tuple[list[str], str]:
-    """Judge a scene with large operands; cases of the corpus are small, so a round names it."""
+    """Judge a random scene with large operands; it is named by its round, too large to store."""
     from .sizes import judge_sized, sized_scene
 
     wrong = judge_sized(sized_scene(np.random.default_rng([seed, at])))
@@ -127,7 +128,7 @@ def one_size(seed: int, at: int) -> tuple[list[str], str]:
 
 
 def one_file(seed: int, at: int) -> tuple[list[str], str]:
-    """Judge a file of the format whose turn it is."""
+    """Judge a random file; the format depends on the number of the round."""
     from .files import FORMATS, judge_file, random_file
 
     rng: Any = np.random.default_rng([seed, at])

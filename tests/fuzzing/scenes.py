@@ -1,6 +1,6 @@
-"""Scenes: operands that nearly or exactly coincide, and an expression over them.
+"""Random scenes: operands that coincide, nearly or exactly, and an expression over them.
 
-Coordinates are whole numbers of lattice steps of 1e-9 units, so that nothing has to be rounded.
+Coordinates are integers in lattice steps of 1e-9 units, so that nothing is rounded.
 """
 
 import pickle
@@ -37,14 +37,14 @@ _TETRAHEDRON_FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3))
 
 @dataclass(frozen=True)
 class Part:
-    """A closed surface; `plain` says that it is embedded and its inside is inside."""
+    """A closed surface; `plain` is true if it is embedded and oriented outwards."""
 
     vertices: tuple[Point, ...]
     faces: tuple[tuple[int, int, int], ...]
     plain: bool
 
     def turned(self) -> "Part":
-        """Return the part inside out."""
+        """Return the part with all faces reversed."""
         return Part(self.vertices, tuple((p, r, q) for p, q, r in self.faces), False)
 
     def triangles(self) -> list[Triangle]:
@@ -54,13 +54,13 @@ class Part:
 
 
 def cuboid_part(low: Point, high: Point) -> Part:
-    """Return a box between two corners."""
+    """Return the box between two corners."""
     ends = (low, high)
     return Part(tuple((ends[i][0], ends[j][1], ends[k][2]) for i, j, k in _CUBE), _CUBE_FACES, True)
 
 
 def tetrahedron_part(corners: Sequence[Point]) -> Part | None:
-    """Return the tetrahedron of four points in any order; None if they lie in a plane."""
+    """Return the tetrahedron of four points in any order; None if they are coplanar."""
     p, q, r, s = corners
     turn = dot(cross(less(q, p), less(r, p)), less(s, p))
     if turn == 0:
@@ -71,9 +71,9 @@ def tetrahedron_part(corners: Sequence[Point]) -> Part | None:
 
 @dataclass(frozen=True)
 class Motion:
-    """A map that keeps lattice points on the lattice, and how Python says it.
+    """A lattice motion, and the Python text that applies it.
 
-    For each new axis `axes` has the old one and its sign.
+    For each new axis, `axes` has the old axis and its sign.
     """
 
     axes: tuple[tuple[int, int], ...] = ((0, 1), (1, 1), (2, 1))
@@ -81,13 +81,13 @@ class Motion:
     words: str = ""
 
     def point(self, p: Point) -> Point:
-        """Return the image of a point."""
+        """Return the image of a point under the motion."""
         x, y, z = (s * p[axis] + at for (axis, s), at in self._rows())
         return x, y, z
 
     @property
     def mirrors(self) -> bool:
-        """Say whether left becomes right."""
+        """Return true if the motion is orientation-reversing."""
         order = [axis for axis, _ in self.axes]
         even = order in ([0, 1, 2], [1, 2, 0], [2, 0, 1])
         return even != (np.prod([s for _, s in self.axes]) > 0)
@@ -107,14 +107,14 @@ class Body:
 
     @property
     def volume(self) -> Fraction | None:
-        """The exact volume, if the operand is one plain part."""
+        """The exact volume if the operand is one plain part, else None."""
         if self.plane is not None or len(self.parts) != 1 or not self.parts[0].plain:
             return None
         six = sum(dot(p, cross(q, r)) for p, q, r in self.parts[0].triangles())
         return Fraction(six, 6 * UNIT**3)
 
     def known(self) -> Known:
-        """Return the set as it is known."""
+        """Return the moved operand as a set of the exact reference."""
         if self.plane is not None:
             return Below(self._moved(self.plane))
         faces = [self._moved(each) for part in self.parts for each in part.triangles()]
@@ -134,7 +134,7 @@ class Body:
         return p, q, r
 
     def arrays(self) -> tuple[list[list[float]], list[list[int]]]:
-        """Return vertices in units and faces of all parts."""
+        """Return the vertices of all parts, in units, and their faces."""
         vertices = [[k / UNIT for k in p] for part in self.parts for p in part.vertices]
         starts = np.cumsum([0] + [len(part.vertices) for part in self.parts]).tolist()
         faces = [
@@ -145,7 +145,7 @@ class Body:
         return vertices, faces
 
     def half_space(self) -> tuple[list[float], float]:
-        """Return normal and offset of the plane in units; both are short decimals."""
+        """Return normal and offset of the operand's plane in units, both short decimals."""
         assert self.plane is not None
         p, q, r = self.plane
         n = cross(less(q, p), less(r, p))
@@ -155,34 +155,34 @@ class Body:
 
 @dataclass(frozen=True)
 class Scene:
-    """Operands, an expression over their numbers, and points to ask about."""
+    """Operands, an expression over their indices, and points to classify."""
 
     bodies: tuple[Body, ...]
     expression: Expression
     points: tuple[Point, ...]
 
     def known(self) -> list[Known]:
-        """Return the operands as they are known."""
+        """Return the operands as sets of the exact reference."""
         return [body.known() for body in self.bodies]
 
     def value(self, inside: Sequence[bool]) -> bool:
-        """Return the value of the expression."""
+        """Return whether a point is inside, given for each operand whether it is."""
         return value_of(self.expression, inside)
 
     @property
     def is_bounded(self) -> bool:
-        """Say whether no operand is a half-space and infinity is outside."""
+        """Return true if no operand is a half-space and the expression excludes infinity."""
         return all(body.plane is None for body in self.bodies) and not self.value(
             [False] * len(self.bodies)
         )
 
     def text(self) -> str:
-        """Return the expression as Python has it, each operand moved."""
+        """Return the expression as Python text, with each operand moved."""
         return text_of(self.expression, self.bodies)
 
 
 def value_of(expression: Expression, inside: Sequence[bool]) -> bool:
-    """Return the value of an expression where the operands' are known."""
+    """Return the truth value of an expression, given the value of each operand."""
     if isinstance(expression, int):
         return inside[expression]
     operator, *arguments = expression
@@ -202,7 +202,7 @@ def value_of(expression: Expression, inside: Sequence[bool]) -> bool:
 
 
 def text_of(expression: Expression, bodies: Sequence[Body]) -> str:
-    """Return an expression over ``a``, ``b``, … in Python."""
+    """Return an expression over ``a``, ``b``, … as Python text."""
     if isinstance(expression, int):
         words = (motion.words for motion in bodies[expression].motions)
         return chr(ord("a") + expression) + "".join(words)
@@ -216,7 +216,7 @@ def text_of(expression: Expression, bodies: Sequence[Body]) -> str:
 
 
 def asked_for(expression: Expression, *, steps: bool) -> Expression:
-    """Return an expression in which the result of each operation is asked for, or of none."""
+    """Return the expression with each operation evaluated at once (`steps`), or with none."""
     if isinstance(expression, int):
         return expression
     operator, *arguments = expression
@@ -227,13 +227,13 @@ def asked_for(expression: Expression, *, steps: bool) -> Expression:
 
 
 def copied(solid: "b.Solid") -> "b.Solid":
-    """Return the solid after a way through bytes."""
+    """Return the solid after pickling and unpickling."""
     found: b.Solid = pickle.loads(pickle.dumps(solid))
     return found
 
 
 def asked(solid: "b.Solid") -> "b.Solid":
-    """Return the solid after it has been evaluated."""
+    """Return the solid after evaluating it."""
     solid.is_empty  # noqa: B018
     return solid
 
@@ -246,7 +246,7 @@ CALLS = {"copied": copied, "asked": asked}
 
 
 def random_scene(rng: Rng) -> Scene:
-    """Return a scene in which much coincides."""
+    """Return a random scene with many coincident parts."""
     grid, reach = int(rng.choice(GRIDS, p=[0.6, 0.25, 0.15])), int(rng.choice([2, 3, 6]))
     parts: list[Part] = []
     bodies = tuple(
@@ -259,14 +259,14 @@ def random_scene(rng: Rng) -> Scene:
 
 
 def _irregular(rng: Rng, body: Body) -> Body:
-    """Return the same set of a mesh that is less tidy, often."""
+    """Return the same set, often with divided faces or separate vertices."""
     parts = [divided_part(rng, part) if rng.random() < 0.2 else part for part in body.parts]
     parts = [loose_part(part) if rng.random() < 0.1 else part for part in parts]
     return replace(body, parts=tuple(parts))
 
 
 def divided_part(rng: Rng, part: Part) -> Part:
-    """Return a part with faces divided in edges, and not those beyond, or by one without area."""
+    """Return a part with T-junctions: faces divided on one side of an edge, or with flat faces."""
     vertices, faces = list(part.vertices), list(part.faces)
     for _ in range(int(rng.integers(1, 4))):
         k = int(rng.integers(len(faces)))
@@ -327,7 +327,7 @@ def _random_part(rng: Rng, grid: int, reach: int, earlier: Sequence[Part]) -> Pa
 
 
 def _nearly(rng: Rng, part: Part) -> Part:
-    """Return a copy: the same, shifted by some steps, or with single corners moved by some."""
+    """Return a copy of a part: equal, shifted by some steps, or with some corners shifted."""
     kind = int(rng.integers(3))
     if kind == 0:
         return part
@@ -342,7 +342,7 @@ def _nearly(rng: Rng, part: Part) -> Part:
 
 
 def random_plane(rng: Rng, grid: int, reach: int) -> Triangle | None:
-    """Return three points; None if they lie on a line."""
+    """Return three random points of a plane; None if they are collinear."""
     p, q, r = _random_corners(rng, grid, reach, 3)
     return None if cross(less(q, p), less(r, p)) == (0, 0, 0) else (p, q, r)
 
@@ -378,7 +378,7 @@ def _matrix(rows: list[list[int]]) -> list[list[int]]:
 
 
 def random_expression(rng: Rng, operands: int) -> Expression:
-    """Return an expression that names every operand."""
+    """Return a random expression that uses each operand."""
     values: list[Expression] = list(range(operands))
     extra = int(rng.integers(0, max(OPERATIONS - operands, 0) + 1))
     values += [int(k) for k in rng.integers(0, operands, extra)]
@@ -395,7 +395,7 @@ def random_expression(rng: Rng, operands: int) -> Expression:
 
 
 def _random_points(rng: Rng, sets: Sequence[Known], grid: int, reach: int) -> tuple[Point, ...]:
-    """Return corners, points of edges and faces, points a few steps beside them, and others."""
+    """Return random points: corners, points on edges and faces, points near these, and others."""
     triangles = [each for known in sets for each in _triangles(known)]
     points = _random_corners(rng, max(grid // 4, 1), reach * 4 if grid > 3 else reach, 6)
     for k in rng.integers(0, len(triangles), 14).tolist():
@@ -412,7 +412,7 @@ def _triangles(known: Known) -> Sequence[Triangle]:
 
 
 def point_of(rng: Rng, triangle: Triangle) -> Point:
-    """Return a lattice point of a triangle: a corner, or one on an edge or inside, if there is."""
+    """Return a random lattice point of a triangle: a corner, or one on an edge or inside."""
     order = rng.permutation(3).tolist()
     p, q, r = (triangle[k] for k in order)
     if rng.random() < 0.3:

@@ -1,4 +1,4 @@
-"""Smaller scenes that are still wrong, and how they are kept as cases of the corpus."""
+"""Make wrong scenes smaller, and store them as cases of the corpus."""
 
 import json
 from collections.abc import Iterator
@@ -15,7 +15,7 @@ COARSER = (UNIT, UNIT // 2, UNIT // 10, UNIT // 1000, 10)
 
 
 def shrunk(scene: Scene, judge: Judge) -> Scene:
-    """Return a scene that is wrong in the same way and cannot be made simpler in one step."""
+    """Return a scene that is wrong in the same way and cannot be simplified in one step."""
     kinds = _kinds(scene, judge)
     while True:
         smaller = (each for each in simpler(scene) if kinds & _kinds(each, judge))
@@ -30,7 +30,7 @@ def _kinds(scene: Scene, judge: Judge) -> set[str]:
 
 
 def simpler(scene: Scene) -> Iterator[Scene]:
-    """Yield what is simpler by one operation, operand, part, motion, point or digit."""
+    """Yield scenes with one operation, operand, part, motion, point or digit less."""
     for inner in _inner(scene.expression):
         yield _without_unused(replace(scene, expression=inner))
     for k in range(1, len(scene.bodies)):
@@ -51,7 +51,7 @@ def simpler(scene: Scene) -> Iterator[Scene]:
 
 
 def _inner(expression: Expression) -> Iterator[Expression]:
-    """Yield an expression with one of its nodes replaced by a part of that."""
+    """Yield the expression with one of its nodes replaced by a child of that node."""
     if isinstance(expression, int):
         return
     operator, *arguments = expression
@@ -112,7 +112,7 @@ def _on_grid(scene: Scene, step: int) -> Scene:
 
 
 def case_of(scene: Scene, why: str) -> dict[str, Any]:
-    """Return a scene as a case of the corpus, with what is known of the answer."""
+    """Return a scene as a case of the corpus, with the known facts of its result."""
     places = []
     for point in scene.points:
         try:
@@ -137,7 +137,7 @@ def _operand(body: Body) -> dict[str, Any]:
 
 
 def keep_case(folder: Path, name: str, scene: Scene, why: str) -> Path:
-    """Write a scene as a case; return where."""
+    """Write a scene as a case, and return its path."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{name}.json"
     path.write_text(json.dumps(case_of(scene, why), indent=1) + "\n")

@@ -1,8 +1,8 @@
-"""Scenes of the sizes at which the core changes its ways: large operands and tiny ones.
+"""Random scenes of the sizes at which the core changes its methods.
 
-A list of 16 faces is looked through and one of 17 sorted; 2000 elements are one thread's work and
-2001 a pool's. What is right on one side of such a number may be wrong on the other. The numbers are
-read from the core's sources, so that new ones are met, too.
+For example 16 faces are searched one by one and 17 are sorted; 2000 elements are the work of one
+thread and 2001 of several. Such thresholds are read from the core's sources, so that new ones are
+included.
 """
 
 import re
@@ -57,7 +57,7 @@ Faces: TypeAlias = list[tuple[int, int, int]]
 
 
 def thresholds() -> list[int]:
-    """Return the sizes that are named as constants in the core."""
+    """Return the sizes that the core's sources define as constants."""
     paths = [path for room in _ROOMS for path in _sources(_CORE / room)]
     found = {
         int(low + (more or "")) << int(shift or 0)
@@ -75,13 +75,13 @@ _THRESHOLDS = thresholds()
 
 
 def a_size(rng: Rng, most: int = MAX_SIZE) -> int:
-    """Return a size beside a threshold, or at it."""
+    """Return a random threshold of at most `most`, plus -1, 0 or 1."""
     fitting = [size for size in _THRESHOLDS if size <= most]
     return fitting[int(rng.integers(len(fitting)))] + int(rng.integers(-1, 2))
 
 
 def sized_scene(rng: Rng) -> Scene:
-    """Return a scene with an operand of a size near a threshold."""
+    """Return a random scene with an operand whose size is near a threshold."""
     makers = [_with_tools, _with_tools, _with_tools, _plate, _crowd]
     bodies = makers[int(rng.integers(len(makers)))](rng)
     order = rng.permutation(len(bodies)).tolist()
@@ -94,12 +94,12 @@ def sized_scene(rng: Rng) -> Scene:
 
 
 def judge_sized(scene: Scene, kernel: Kernel | None = None) -> list[str]:
-    """Return what is wrong with a scene, far from where its operands meet or on several threads."""
+    """Return what is wrong with a scene, also with several threads and far from other operands."""
     return judge(scene, kernel) or list(far_and_wide(scene, kernel or Kernel()))
 
 
 def far_and_wide(scene: Scene, kernel: Kernel) -> Iterator[str]:
-    """Yield what is wrong with the mesh on several threads, and far from where operands meet."""
+    """Yield what is wrong with the mesh with several threads, and far from where operands meet."""
     if not scene.is_bounded:
         return
     found = set()
@@ -119,7 +119,7 @@ def far_and_wide(scene: Scene, kernel: Kernel) -> Iterator[str]:
 
 
 def _untouched(scene: Scene, mesh: "b.Mesh") -> Iterator[str]:
-    """Yield which operands' faces are not in the mesh as they were, or are and should not be."""
+    """Yield complaints about faces far from other operands that are changed, lost or left over."""
     there = set(map(_turned, _steps(mesh)))
     operands = [known.triangles for known in scene.known() if isinstance(known, Surface)]
     for k, body in enumerate(scene.bodies):
@@ -142,16 +142,16 @@ def _steps(mesh: "b.Mesh") -> list[Triangle]:
 
 
 def _turned(face: Triangle) -> Triangle:
-    """Return the corners in the same order, the least first."""
+    """Return the corners of a face in cyclic order, the least first."""
     p, q, r = face
     return min((p, q, r), (q, r, p), (r, p, q))
 
 
 def _far(faces: Sequence[Triangle], others: Sequence[Sequence[Triangle]]) -> list[Triangle]:
-    """Return the faces that must stay as they are, or go.
+    """Return the faces that no other operand can change.
 
-    They lie outside of the others' boxes, in no plane of a face that may be cut, and beside no face
-    of their plane: where that is cut, corners in the middle of edges may go.
+    They lie outside the boxes of the other operands, in no plane of a face that may be cut, and
+    beside no face of their plane: if such a face is cut, corners on edges may vanish.
     """
     corners = np.array(faces, dtype=np.float64).reshape(-1, 3, 3)
     near = np.zeros(len(faces), dtype=bool)
@@ -179,14 +179,14 @@ def _edges(face: Triangle) -> list[tuple[Point, Point]]:
 
 
 def _plane(face: Triangle) -> tuple[Point, int]:
-    """Return the same for faces of one plane, whichever way they look."""
+    """Return a key that is equal for faces of one plane, in either orientation."""
     n = reduced(normal(face))
     n = max(n, minus(n))
     return n, dot(n, face[0])
 
 
 def _expression(rng: Rng, operands: int) -> Expression:
-    """Return any expression; of many operands their union, now and then."""
+    """Return a random expression; sometimes the union of all operands."""
     if operands < 3 or rng.random() < 0.5:
         return random_expression(rng, operands)
     found: Expression = 0
@@ -199,7 +199,7 @@ def _expression(rng: Rng, operands: int) -> Expression:
 
 
 def _with_tools(rng: Rng) -> tuple[Body, ...]:
-    """Return a large operand and one or two at some place of it."""
+    """Return a large operand, and one or two others near a point of its surface."""
     makers: list[Callable[[Rng], Part]] = [ball, terrain, scatter, fan, stairs]
     large = makers[int(rng.integers(len(makers)))](rng)
     tools = [_tool(rng, large) for _ in range(int(rng.choice([1, 1, 2])))]
@@ -221,7 +221,7 @@ def _tool(rng: Rng, large: Part) -> Body:
 
 
 def _plane_beside(rng: Rng, large: Part) -> Triangle:
-    """Return three points of a plane across an axis, before a surface, behind it or through it."""
+    """Return three points of a plane across an axis, in front of, behind or through a surface."""
     axis, outwards = int(rng.integers(3)), bool(rng.random() < 0.5)
     along = [corner[axis] for corner in large.vertices]
     at = int(rng.choice([min(along) - UNIT, along[0], max(along) + UNIT]))
@@ -236,7 +236,7 @@ def _with_axis(axis: int, at: int, others: tuple[int, int]) -> Point:
 
 
 def _tiny(rng: Rng, large: Part) -> Part:
-    """Return a box or tetrahedron about a point of a surface, of any size down to a step."""
+    """Return a box or tetrahedron at a point of a surface, of any size down to one step."""
     x, y, z = point_of(rng, _any_face(rng, large))
     size = max(1, round(UNIT * 10 ** -float(rng.uniform(0, 9))))
     if rng.random() < 0.4:
@@ -251,7 +251,7 @@ def _tiny(rng: Rng, large: Part) -> Part:
 
 
 def _glued(rng: Rng, large: Part) -> Part | None:
-    """Return a tetrahedron on a face of a surface, outside of it or inside."""
+    """Return a tetrahedron on a face of a surface, outside or inside; None for a flat face."""
     p, q, r = _any_face(rng, large)
     n = cross(less(q, p), less(r, p))
     long = dot(n, n) ** 0.5
@@ -263,7 +263,7 @@ def _glued(rng: Rng, large: Part) -> Part | None:
 
 
 def _knife(rng: Rng, large: Part) -> Part:
-    """Return a plate through all of a surface."""
+    """Return a plate that cuts through a whole surface."""
     corners = np.array(large.vertices)
     low, high = corners.min(axis=0) - UNIT, corners.max(axis=0) + UNIT
     axis, thickness = int(rng.integers(3)), max(1, round(UNIT * 10 ** -float(rng.uniform(0, 9))))
@@ -274,7 +274,7 @@ def _knife(rng: Rng, large: Part) -> Part:
 
 
 def _plate(rng: Rng) -> tuple[Body, ...]:
-    """Return a plate of twelve faces and many parts that stand on it, in it or through it."""
+    """Return a plate of twelve faces, and many parts on it, in it or through it."""
     parts = scatter(rng)
     corners = np.array(parts.vertices)
     low, high = corners.min(axis=0) - UNIT, corners.max(axis=0) + UNIT
@@ -285,7 +285,7 @@ def _plate(rng: Rng) -> tuple[Body, ...]:
 
 
 def _crowd(rng: Rng) -> tuple[Body, ...]:
-    """Return many small operands in one place."""
+    """Return many small operands close to one point."""
     count = min(a_size(rng, MAX_OPERANDS), MAX_OPERANDS)
     grid = int(rng.choice([UNIT, 1]))
     bodies = []
@@ -302,7 +302,7 @@ def _crowd(rng: Rng) -> tuple[Body, ...]:
 
 
 def ball(rng: Rng) -> Part:
-    """Return a ball of about two units with as many faces as a threshold says."""
+    """Return a ball of about two units with a number of faces near a threshold."""
     count = max(a_size(rng), 8) & ~1
     rings = max(1, round((count / 4) ** 0.5))
     while (columns := count // (2 * rings)) < 3:
@@ -329,7 +329,7 @@ def ball(rng: Rng) -> Part:
 
 
 def terrain(rng: Rng) -> Part:
-    """Return a slab whose top is flat or rough; its faces lie in a grid of cells."""
+    """Return a slab with a flat or rough top, whose faces lie in a grid of cells."""
     count = max(a_size(rng), 12) & ~1
     side = max(1, int(((64 + 16 * count) ** 0.5 - 8) / 8))
     cell, rough = UNIT // 10 * int(rng.integers(1, 6)), bool(rng.random() < 0.5)
@@ -352,7 +352,7 @@ def terrain(rng: Rng) -> Part:
 
 
 def scatter(rng: Rng) -> Part:
-    """Return boxes and tetrahedra apart from each other; their number or their faces count."""
+    """Return disjoint boxes or tetrahedra; their or their faces' number is near a threshold."""
     boxes = bool(rng.random() < 0.5)
     count = a_size(rng, 4096)
     if rng.random() < 0.5 or count > 1024:
@@ -368,7 +368,7 @@ def scatter(rng: Rng) -> Part:
 
 
 def fan(rng: Rng) -> Part:
-    """Return a pyramid with a threshold's number of faces at its tip, or as many corners below."""
+    """Return a pyramid with a number of sides near a threshold."""
     count = max(a_size(rng, MAX_FAN_SIZE), 3)
     turns = 2 * np.pi * np.arange(count) / count
     rim = [(round(2 * UNIT * np.cos(t)), round(2 * UNIT * np.sin(t)), 0) for t in turns]
@@ -379,7 +379,7 @@ def fan(rng: Rng) -> Part:
 
 
 def stairs(rng: Rng) -> Part:
-    """Return stairs: two polygons of many corners, and all faces perpendicular to axes."""
+    """Return stairs whose two side walls have a number of corners near a threshold."""
     steps, step = a_size(rng, MAX_FAN_SIZE), UNIT // 10
     corners = [(0, 0)]
     for k in range(steps):
@@ -398,7 +398,7 @@ def stairs(rng: Rng) -> Part:
 
 
 def _refined(rng: Rng, vertices: list[Point], faces: Faces, count: int) -> Part:
-    """Return a surface with so many faces: some get a corner in their middle."""
+    """Return a surface with `count` faces, by dividing faces at their centres."""
     missing = (count - len(faces)) // 2
     for k in rng.permutation(len(faces))[: max(missing, 0)].tolist():
         p, q, r = faces[k]
@@ -430,7 +430,7 @@ def _any_face(rng: Rng, part: Part) -> Triangle:
 
 
 def _points(rng: Rng, scene: Scene) -> tuple[Point, ...]:
-    """Return points of the smaller operands, of all operands near them, and points far away."""
+    """Return points of the smallest operand, of other operands near these, and points far away."""
     balls = [known.balls for known in scene.known() if isinstance(known, Surface)]
     small = min(balls, key=lambda each: len(each.triangles))
     points: list[Point] = []

@@ -1,4 +1,4 @@
-"""Shapes that manifold3d makes too: equal volume, area and genus."""
+"""Shapes that manifold3d can make too have equal volume, area and genus."""
 
 import math
 from collections.abc import Callable

@@ -1,6 +1,6 @@
-"""Each verb of regions beside manifold3d's CrossSection: areas, outlines, volumes, genus.
+"""Methods of regions against manifold3d's CrossSection: areas, outlines, volumes, genus.
 
-Ten figures each, five of them degenerate. Both get the same outlines.
+Each has ten inputs, five of them degenerate. Both libraries get the same outlines.
 """
 
 import math
@@ -56,12 +56,12 @@ def theirs(name: str) -> m.CrossSection:
 
 
 def parts(figure: m.CrossSection) -> int:
-    """Return the number of parts; manifold3d counts nothing as one."""
+    """Return the number of parts of a figure; manifold3d counts an empty one as one part."""
     return 0 if figure.is_empty() else len(figure.decompose())
 
 
 class Verb(NamedTuple):
-    """A verb as both have it."""
+    """A method as both libraries have it, and the tolerance of the comparison."""
 
     ours: Callable[[Region], Any]
     theirs: Callable[[m.CrossSection], Any]

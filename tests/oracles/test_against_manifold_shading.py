@@ -36,13 +36,13 @@ ROUND = {
 
 
 def columns(made: manifold3d.Manifold) -> tuple[Floats, npt.NDArray[np.int64]]:
-    """Return what Manifold has at its vertices, behind their places, and its triangles."""
+    """Return manifold3d's properties of vertices, after the coordinates, and its triangles."""
     mesh = made.to_mesh64()
     return np.array(mesh.vert_properties), np.array(mesh.tri_verts, dtype=np.int64)
 
 
 def by_place(corners: Floats, values: Floats) -> dict[Any, Floats]:
-    """Return values of triangles by their corners, from the lowest one on."""
+    """Return the values at each triangle's corners, by the corners from the least one on."""
     found = {}
     for places, own in zip(np.round(corners, 6).tolist(), values, strict=True):
         first = min(range(3), key=lambda k: tuple(places[k]))

@@ -1,6 +1,6 @@
-"""Verbs of solids against those of manifold3d: volume, area and Euler number on ten inputs each.
+"""Methods of solids against manifold3d's: volume, area and Euler number on ten inputs each.
 
-The last five inputs of each verb are degenerate: empty, flat, touching, on a plane, in a corner.
+The last five inputs of each method are degenerate: empty, flat, touching, on a plane, in a corner.
 """
 
 from collections.abc import Callable
@@ -29,7 +29,7 @@ def pair() -> b.Solid:
 
 
 def bodies() -> list[b.Solid]:
-    """Return five solids as they come, and five special ones."""
+    """Return five ordinary and five degenerate solids."""
     return [
         b.cube(2),
         b.sphere(1.5, segments=12),
@@ -45,13 +45,13 @@ def bodies() -> list[b.Solid]:
 
 
 def connected() -> list[b.Solid]:
-    """Return bodies of one surface, and again moved, of which Manifold's genus is a sum's."""
+    """Return solids with one surface, whose genus manifold3d counts as we do, also rotated."""
     own = [body for body in bodies() if len(body.decompose()) == 1 and body.surface_count == 1]
     return (own + [body.rotate(x=10, y=20, z=30) for body in own])[:10]
 
 
 def summands() -> list[b.Solid]:
-    """Return the same but for the empty set, whose sum with another one is that for Manifold."""
+    """Return the ten solids with a tiny cube for the empty set, which manifold3d sums otherwise."""
     return [b.cube(1e-3) if body.is_empty else body for body in bodies()]
 
 
@@ -116,16 +116,16 @@ TOOLS = [b.cube(1, center=True), b.sphere(0.5, segments=8)]
 
 
 def unit(normal: Any, offset: float) -> tuple[Any, float]:
-    """Return what Manifold takes for a plane: its offset is a length."""
+    """Return a plane as manifold3d takes it, with unit normal and offset."""
     length = float(np.linalg.norm(normal))
     return tuple(np.asarray(normal) / length), offset / length
 
 
 def measures(found: Any) -> list[float]:
-    """Return volume, area and Euler number of what a verb returned, or of each of several.
+    """Return volume, area and Euler number of a result, or of each part of a list.
 
-    Manifold's genus is that of one surface with this Euler number; ours is summed over surfaces.
-    It has figures without volume, which are no sets here.
+    Both libraries' genus is converted to the Euler number. manifold3d also has figures without
+    volume, which are no sets here.
     """
     if isinstance(found, (list, tuple)):
         return [number for part in found for number in measures(part)]

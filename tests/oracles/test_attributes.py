@@ -1,4 +1,4 @@
-"""Attributes of random chains against values computed in fractions from the source triangles."""
+"""Attributes after random operations against values computed exactly from the source triangles."""
 
 import random
 from fractions import Fraction
@@ -18,7 +18,7 @@ CLOSE = 1e-12
 
 
 class Operand:
-    """A mesh with values that no two corners share, and where it was put."""
+    """A mesh with different values at all corners, and its exact position."""
 
     def __init__(self, number: int, rng: random.Random) -> None:
         shapes = [b.cube(2), b.sphere(1, segments=8), b.cylinder(h=2, r=1, segments=7)]
@@ -38,7 +38,7 @@ class Operand:
         self.exact = [[Fraction(repr(x)) for x in point] for point in self.vertices.tolist()]
 
     def moved(self, rng: random.Random) -> None:
-        """Move it by whole steps and quarter turns, exactly."""
+        """Move the operand by whole steps and quarter turns, exactly."""
         shift = [rng.randrange(-900, 900) for _ in range(3)]
         self.solid = self.solid.translate(*(k / 1000 for k in shift))
         self.exact = [
@@ -57,7 +57,7 @@ def dot(p: Exact, q: Exact) -> Fraction:
 
 
 def weights(point: Exact, corners: list[Exact]) -> Exact:
-    """Return the exact weights of the corners at the foot of a point in their plane."""
+    """Return the exact barycentric coordinates of a point projected into the plane of corners."""
     a, b_, c = corners
     p = [x - y for x, y in zip(point, a, strict=True)]
     u, v = ([x - y for x, y in zip(end, a, strict=True)] for end in (b_, c))
@@ -68,7 +68,7 @@ def weights(point: Exact, corners: list[Exact]) -> Exact:
 
 
 def between(weights: Exact, values: FloatArray) -> FloatArray:
-    """Return values at a place, each rounded once."""
+    """Return interpolated values, each rounded once."""
     columns = [[Fraction(value) for value in column] for column in values.T.tolist()]
     return np.array([float(dot(weights, column)) for column in columns])
 

@@ -1,4 +1,4 @@
-"""Chamfers and fillets of random bodies, beside points that they must and must not move."""
+"""Chamfers and fillets of random solids, tested at points that they must or must not move."""
 
 from typing import NamedTuple
 
@@ -29,7 +29,7 @@ class Case(NamedTuple):
         return self.body.chamfer(self.edges, self.size)
 
     def widths(self) -> np.ndarray:
-        """Return how wide each blend is on either face."""
+        """Return the width of each blend on both faces."""
         return (
             self.size / np.tan(self._half())
             if self.is_round
@@ -41,7 +41,7 @@ class Case(NamedTuple):
 
 
 def case_of(seed: int) -> Case | None:
-    """Return a body of boxes and prisms that lie in and over each other, and some of its edges."""
+    """Return a random solid of boxes and prisms with some of its edges; None if there are none."""
     rng = np.random.default_rng(seed)
     body = b.Solid.empty()
     for part in range(rng.integers(1, 4)):
@@ -71,7 +71,7 @@ def distances(points: np.ndarray, ends: np.ndarray) -> np.ndarray:
 
 
 def reaches(case: Case) -> np.ndarray:
-    """Return how far each blend may be from its edge: it ends at planes that may be oblique."""
+    """Return the largest possible distance of each blend from its edge, given its end planes."""
     around = case.body.edges()
     sines = []
     for ends, direction in zip(case.edges.ends, case.edges.direction, strict=True):
@@ -82,7 +82,7 @@ def reaches(case: Case) -> np.ndarray:
 
 
 def moved(case: Case, after: b.Solid, rng: np.random.Generator) -> np.ndarray:
-    """Return points that are on other sides than before."""
+    """Return random points whose side differs before and after the blends."""
     corners = after.vertices[rng.integers(0, len(after.vertices), 2000)]
     assert case.body.bounds is not None
     low, high = case.body.bounds
@@ -92,7 +92,7 @@ def moved(case: Case, after: b.Solid, rng: np.random.Generator) -> np.ndarray:
 
 
 def cut(case: Case) -> tuple[np.ndarray, np.ndarray]:
-    """Return points at middles of edges that change sides, and those beyond that do not."""
+    """Return points at middles of edges that must change sides, and points beyond that must not."""
     inward = -case.edges.normals.sum(axis=1)
     away = np.where(case.edges.is_convex, 1, -1) / np.linalg.norm(inward, axis=1)
     inward = inward * away[:, None]

@@ -1,4 +1,4 @@
-"""Volumes of prisms whose caps are fans that may cover places several times, against shapely."""
+"""Volumes of prisms with self-overlapping fans as caps, against shapely."""
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +13,7 @@ Corners = npt.NDArray[np.float64]
 
 
 def fan_prism(outline: Corners) -> tuple[Corners, npt.NDArray[np.int64]]:
-    """Return the prism of height 2 over an outline, each cap a fan around its first corner."""
+    """Return the prism of height 2 over an outline, with each cap a fan around the first corner."""
     n = len(outline)
     vertices = np.vstack([np.c_[outline, np.full(n, z)] for z in (0.0, 2.0)])
     here = np.arange(n)
@@ -26,7 +26,7 @@ def fan_prism(outline: Corners) -> tuple[Corners, npt.NDArray[np.int64]]:
 
 
 def random_outline(generator: np.random.Generator, number: int) -> Corners:
-    """Return a closed walk on a grid, or one around its first corner, up to 1.6 times."""
+    """Return a random closed polygon on a grid, or one that winds around its first corner."""
     corners = int(generator.integers(4, 16))
     if number % 3 == 0:
         return generator.integers(-5, 6, (corners, 2)).astype(float)
@@ -40,7 +40,7 @@ def random_outline(generator: np.random.Generator, number: int) -> Corners:
 
 
 def winding_number(outline: Corners, point: shapely.Point) -> int:
-    """Return how often an outline runs around a point, by a ray along x."""
+    """Return the winding number of an outline about a point, by a ray along x."""
     number = 0
     for start, end in zip(outline, np.roll(outline, -1, 0), strict=True):
         if (start[1] <= point.y) != (end[1] <= point.y):
@@ -51,7 +51,7 @@ def winding_number(outline: Corners, point: shapely.Point) -> int:
 
 
 def area_and_numbers(outline: Corners) -> tuple[float, set[int]]:
-    """Return the area that an outline winds around positively, and all its winding numbers."""
+    """Return the area with a positive winding number, and all winding numbers of an outline."""
     lines = shapely.unary_union(shapely.LinearRing(outline))
     cells = shapely.polygonize([lines]).geoms
     numbers = [winding_number(outline, cell.representative_point()) for cell in cells]

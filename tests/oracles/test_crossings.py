@@ -1,4 +1,4 @@
-"""Crossings of triangles, recounted with fractions; and no delivered mesh has any."""
+"""Crossings of triangles, recounted in exact fractions; delivered meshes must have none."""
 
 import functools
 import operator
@@ -79,7 +79,7 @@ def faults(mesh: "b.Mesh") -> tuple[list[list[int]], list[int]]:
 
 
 def nearby_pairs(seed: int, values: list[float], count: int = 400) -> list[np.ndarray]:
-    """Return pairs of triangles with area whose coordinates are drawn from few values."""
+    """Return random pairs of triangles with area, with coordinates from a few values."""
     rng = random.Random(seed)
     pairs: list[np.ndarray] = []
     while len(pairs) < count:
@@ -150,7 +150,7 @@ def test_surfaces_that_cross_at_an_edge_are_found() -> None:
 def with_a_flat_face(
     vertices: np.ndarray, faces: np.ndarray, face: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return a mesh with a corner more in the middle of an edge, which one of two faces has not."""
+    """Return a mesh with a T-junction closed by a triangle without area."""
     start, end, apex = faces[face]
     middle = len(vertices)
     parted = [[start, middle, apex], [middle, end, apex], [start, end, middle]]
@@ -206,7 +206,7 @@ def pierce_or_overlap(first: Corners, second: Corners) -> bool:
 
 
 def fraction_faults(vertices: np.ndarray, faces: np.ndarray) -> set[tuple[int, int]]:
-    """Return pairs of faces that overlap, or pierce each other: no edge or corner has to decide."""
+    """Return the pairs of faces that overlap or cross in their interiors."""
     corners = [exact(vertices[face]) for face in faces]
     return {
         (i, j)
@@ -219,7 +219,7 @@ def fraction_faults(vertices: np.ndarray, faces: np.ndarray) -> set[tuple[int, i
 
 @pytest.fixture(scope="module")
 def delivered() -> dict[int, tuple["b.Solid", "b.Mesh"]]:
-    """Return what scenes make, with their meshes, by their seeds."""
+    """Return the solids of random scenes with their meshes, by seed."""
     found = {}
     for seed in sorted({*SCENES, *FOUND, *MET, *THIN}):
         try:
@@ -259,7 +259,7 @@ def test_delivered_meshes_do_not_cross(
 
 
 def turned_grid(seed: int) -> FloatArray:
-    """Return points of a turned grid: many lie in one plane, but for what rounding does."""
+    """Return random points of a rotated grid, many of which are coplanar up to rounding."""
     rng = np.random.default_rng(seed)
     turn = rotation(float(rng.uniform(0, 360)), rng.normal(size=3)).matrix
     return apply(turn, rng.integers(0, 5, (60, 3)).astype(float))
@@ -280,14 +280,14 @@ def test_hulls_do_not_cross() -> None:
 
 
 def placed(points: FloatArray, seed: int) -> FloatArray:
-    """Return points turned at random."""
+    """Return the points rotated at random."""
     rng = np.random.default_rng(seed)
     turn = rotation(float(rng.uniform(0, 360)), rng.normal(size=3)).matrix
     return apply(turn, points)
 
 
 def grid(*sizes: int) -> FloatArray:
-    """Return the points of a grid with so many along each axis."""
+    """Return the points of a grid with these numbers of points along the axes."""
     axes = np.meshgrid(*[np.arange(size) for size in sizes], indexing="ij")
     return np.stack(axes, axis=-1).reshape(-1, 3).astype(float)
 
@@ -322,7 +322,7 @@ CLOUDS: dict[str, tuple[FloatArray, int | None]] = {
 
 
 def before_faces(points: FloatArray, mesh: "b.Mesh") -> float:
-    """Return how far points lie before faces of a mesh, at most."""
+    """Return the largest distance of points outside the planes of a mesh's faces."""
     long = mesh.vertices.astype(np.longdouble)
     p, q, r = (long[mesh.faces[:, k]] for k in range(3))
     normals = np.cross(q - p, r - p)
@@ -365,9 +365,9 @@ KNOT = [(0, 0, 0), (10, 0, 0), (10, 10, 0), (5, 10, 0), (5, -10, 0)]
 
 
 def dented(points: FloatArray) -> FloatArray:
-    """Return the corners of a cube, one of them between two others, off the lattice by a map.
+    """Return the corners of a cube with one between two others, mapped off the lattice.
 
-    The doubles are exact, so that one triangle has no area; on the lattice it has some.
+    The doubles are exact, so that one triangle has no area; after snapping it has an area.
     """
     moved = points.copy()
     moved[(points == (0, 1, 1)).all(axis=1)] = (0.25, 0.75, 1)
@@ -483,7 +483,7 @@ def test_tetrahedra_with_joined_vertices(turn: int) -> None:
 
 
 def tetrahedron(corners: np.ndarray) -> np.ndarray:
-    """Return corners so ordered that the volume is positive; none if there is no volume."""
+    """Return four corners ordered to positive volume; none if the volume is zero."""
     size = round(np.linalg.det(corners[1:] - corners[0]))
     return corners[:0] if size == 0 else corners if size > 0 else corners[[1, 0, 2, 3]]
 
@@ -549,7 +549,7 @@ def test_meshes_in_single_precision_do_not_cross(
 
 
 def crossings_are_told(mesh: "b.Mesh") -> bool:
-    """Return whether findings count the triangles that cross in single precision."""
+    """Return true if findings have the number of triangles that cross in single precision."""
     result, findings = settled(mesh)
     rounded = result.vertices.astype(np.float32).astype(np.float64)
     found = mesh_faults(rounded, result.faces)
@@ -560,7 +560,7 @@ def crossings_are_told(mesh: "b.Mesh") -> bool:
 
 
 def crosses_in_places(mesh: "b.Mesh") -> bool:
-    """Return whether a mesh crosses itself once vertices are joined as readers of STL join them."""
+    """Return true if a mesh crosses itself after joining vertices as readers of STL do."""
     vertices, places = welded(mesh.vertices.astype(np.float32).astype(np.float64))
     return len(mesh_faults(vertices, places[mesh.faces])["crossings"]) > 0
 
@@ -605,7 +605,7 @@ def test_what_is_thinner_than_single_precision_keeps_a_volume(
 
 
 def closed_chain() -> "b.Solid":
-    """Return boxes that touch along parts of edges and are one piece elsewhere."""
+    """Return boxes in a ring that touch along parts of edges or are joined."""
     ends = [
         ((0, 0, 0), (2, 2, 2)),
         ((2, 2, 0.5), (4, 4, 1.5)),
@@ -719,7 +719,7 @@ def test_what_is_said_of_faces_stays_where_moving_is_mended() -> None:
 
 
 def has_volume(mesh: "b.Mesh", expected: Fraction, most: float) -> bool:
-    """Say whether a mesh has a volume within a bound, in fractions where doubles err."""
+    """Return true if a mesh's volume is within a bound, computed in fractions if necessary."""
     return (
         abs(mesh.volume - float(expected)) <= most
         or abs(exact_volume((mesh.vertices, mesh.faces), FINER) - expected) <= most
@@ -746,7 +746,7 @@ def test_what_single_precision_leaves_is_numbered_anew(
 
 
 def is_mended_by_uniting(mesh: "b.Mesh", reach: float) -> bool:
-    """Say whether a mesh settles in single precision after all; assert what else must be so."""
+    """Return true if a mesh settles in single precision; assert what must be true anyway."""
     delivered, findings = settled(mesh)
     assert (delivered.vertices == delivered.vertices.astype(np.float32)).all()
     assert_closed(delivered.faces)
@@ -761,7 +761,7 @@ def is_mended_by_uniting(mesh: "b.Mesh", reach: float) -> bool:
 
 
 def distances(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Return how far points lie from the nearest of some triangles."""
+    """Return the distance of each point from the nearest triangle."""
     nearest = np.full(len(points), np.inf)
     for triangle in triangles:
         many = np.tile(triangle, (len(points), 1, 1))

@@ -1,4 +1,4 @@
-"""The random scenes, files and scripts of `scripts/fuzz`: a few of each, and what judges them."""
+"""Some of the random scenes, files and scripts of `scripts/fuzz`, and tests of their judges."""
 
 import dataclasses
 import json
@@ -102,7 +102,7 @@ def test_sizes_lie_on_both_sides_of_each_threshold_of_the_core() -> None:
 
 
 class Forgetful(Kernel):
-    """Loses a face far from the tool, or makes another mesh on several threads."""
+    """A wrong kernel that loses a face far from the tool, or differs with several threads."""
 
     def __init__(self, threads: int = 0) -> None:
         self.threads, self.calls = threads, 0
@@ -174,7 +174,7 @@ def test_the_same_in_other_words_is_not_the_same_bytes() -> None:
 
 
 class Shifted(Kernel):
-    """A kernel that says the wrong thing about unions."""
+    """A wrong kernel that classifies points of unions wrongly."""
 
     def classify(self, solid: "b.Solid", points: object) -> list[int]:
         found = super().classify(solid, points)  # type: ignore[arg-type]

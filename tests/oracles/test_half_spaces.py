@@ -1,4 +1,4 @@
-"""Half-spaces against hyperplanes and points in fractions, which know nothing of a lattice."""
+"""Half-spaces against exact hyperplanes and points in fractions, without a lattice."""
 
 import math
 import random
@@ -34,7 +34,7 @@ SMALL, DECIMALS = entries(20), entries(9999, 3)
 
 
 def written(number: Fraction) -> bool:
-    """Say whether a double is written as this number."""
+    """Return true if a fraction is the shortest decimal of a double."""
     return Fraction(repr(float(number))) == number
 
 
@@ -47,7 +47,7 @@ def half(plane: Plane) -> b.Solid:
 
 
 def solid_of(points: Sequence[Sequence[Any]]) -> b.Solid:
-    """Return the tetrahedron of four points."""
+    """Return the tetrahedron with four given corners."""
     faces = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
     edges = [[Fraction(x) - y for x, y in zip(p, points[0], strict=True)] for p in points[1:]]
     turned = faces if determinant(edges) > 0 else faces[:, ::-1]
@@ -55,7 +55,7 @@ def solid_of(points: Sequence[Sequence[Any]]) -> b.Solid:
 
 
 def through(points: Sequence[Sequence[int]], inside: Sequence[int]) -> Plane:
-    """Return the plane of three points, a fourth one inside."""
+    """Return the plane through three points, with a fourth point inside."""
     a = [Fraction(x) for x in points[0]]
     u, v = ([x - y for x, y in zip(p, a, strict=True)] for p in points[1:])
     normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
@@ -68,7 +68,7 @@ def turned(plane: Plane) -> Plane:
 
 
 def moved_by(solid: b.Solid) -> float:
-    """Return what the findings say of how far a plane was moved, 0 if nothing."""
+    """Return the distance that a finding says a plane was moved, or 0 without a finding."""
     told = [found for found in solid.findings if found.code == "half_space_rounded"]
     words = " ".join(found.message for found in told).split()
     return float(words[words.index("most") + 1]) if told else 0.0

@@ -1,4 +1,4 @@
-"""Measures of meshes in doubles beside exact ones."""
+"""Measures of meshes in doubles, compared with exact ones."""
 
 from fractions import Fraction
 
@@ -12,7 +12,7 @@ EPSILON = float(np.finfo(np.float64).eps)
 
 
 def exact_volume(mesh: b.Mesh) -> Fraction:
-    """Return the volume of the mesh as its doubles are."""
+    """Return the exact volume of a mesh of doubles."""
     vertices = [tuple(map(Fraction, row)) for row in mesh.vertices.tolist()]
     sixfold = Fraction(0)
     for p, q, r in mesh.faces.tolist():
@@ -22,7 +22,7 @@ def exact_volume(mesh: b.Mesh) -> Fraction:
 
 
 def small_parts(size: float, distance: float) -> b.Mesh:
-    """Return two turned balls of some size on a diagonal."""
+    """Return a mesh of two balls, `distance` apart."""
     vertices, faces = icosphere(2)
     ball = vertices * size, faces
     far = np.array([0.5, 0.3, -0.8]) * distance
@@ -48,7 +48,7 @@ def test_the_centroid_of_small_parts_far_from_each_other(distance: float) -> Non
 
 
 def exact_moments(mesh: b.Mesh) -> tuple[list[Fraction], list[list[Fraction]]]:
-    """Return the centroid of the mesh as its doubles are, and the second moments about it."""
+    """Return the exact centroid of a mesh of doubles, and the second moments about it."""
     vertices = [tuple(map(Fraction, row)) for row in mesh.vertices.tolist()]
     volume, first = Fraction(0), [Fraction(0)] * 3
     second = [[Fraction(0)] * 3 for _ in range(3)]

@@ -98,7 +98,7 @@ def test_what_is_moved_crosses_itself_nowhere_in_silence() -> None:
 
 
 def on_way(seed: int) -> Iterator["b.Solid"]:
-    """Yield what moving and putting together make, one after the other."""
+    """Yield the solids that random rotations and unions make, one after the other."""
     rng = np.random.default_rng([77, seed])
     first = some_parts(rng, 1, 5)
     if first.volume <= 0:
@@ -125,7 +125,7 @@ def test_what_the_lattice_moves_crosses_itself_nowhere_in_silence() -> None:
 
 
 def on_lattice_way(seed: int) -> Iterator["b.Solid"]:
-    """Yield what motions of the lattice make, one after the other."""
+    """Yield the solids that random lattice motions make, one after the other."""
     rng = np.random.default_rng([79, seed])
     first = some_parts(rng, 1, 5)
     if first.volume <= 0:
@@ -166,7 +166,7 @@ def test_a_moved_solid_united_with_itself_stays_the_same_set() -> None:
 
 
 def with_t_junctions(rng: Random, solid: "b.Solid") -> "tuple[np.ndarray, np.ndarray]":
-    """Divide edges of some faces, and not of those beyond them, or by a face without area."""
+    """Return a solid's mesh with T-junctions: faces divided on one side of an edge, or flat."""
     mesh = solid.to_mesh()
     vertices, faces = mesh.vertices.tolist(), mesh.faces.tolist()
     for _ in range(rng.integers(1, 6)):

@@ -1,4 +1,4 @@
-"""Random scripts have the volumes that OpenSCAD gives them, where it is installed."""
+"""Random scripts have the volumes that OpenSCAD computes, if it is installed."""
 
 import math
 import os
@@ -68,10 +68,10 @@ def half(rng: Rng) -> str:
 
 
 def extrusion(rng: Rng, inside: str) -> str:
-    """Return an extrusion; what is projected is not twisted.
+    """Return a random extrusion; it has no twist if it contains a projection.
 
-    OpenSCAD drops corners of projections that lie within its grid of a straight line, and twisted
-    faces depend on such corners far more than on their places.
+    OpenSCAD drops corners of projections that are closer to a straight line than its grid, and
+    twisted faces depend on such corners.
     """
     twist = "0" if "projection" in inside else number(rng, -90, 90)
     return (
@@ -107,7 +107,7 @@ def one_of(rng: Rng, makers: list[Callable[[], str]]) -> str:
 
 
 def openscads_volume(text: str, folder: Path) -> float | None:
-    """Return None if OpenSCAD complains, or writes no closed mesh, which happens to it."""
+    """Return OpenSCAD's volume of a script; None for a warning or an open mesh."""
     script, output = folder / "model.csg", folder / "model.stl"
     script.write_text(text)
     output.unlink(missing_ok=True)

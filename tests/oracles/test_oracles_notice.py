@@ -1,7 +1,7 @@
-"""Each oracle fails when what it judges is broken on purpose.
+"""Each oracle fails if the results that it judges are made wrong on purpose.
 
-A fault changes the answers of the package in one small way; the oracle's own test, run under it,
-must fail. An oracle that passes under all faults judges nothing.
+A fault changes the package's results in one small respect; the oracle's own test must then fail. An
+oracle that passes with all faults judges nothing.
 """
 
 import importlib
@@ -38,7 +38,7 @@ FINE = 10**12
 
 
 def turn_point(patch: Patch) -> None:
-    """Say the opposite of the first point that is not on the boundary."""
+    """Make the classification of the first point that is not on the boundary wrong."""
     right = b.Solid.classify
 
     def wrong(self: b.Solid, points: Any) -> Any:
@@ -59,7 +59,7 @@ def shift_volume(patch: Patch) -> None:
 
 
 def changed_mesh(change: Callable[[b.Mesh], b.Mesh]) -> Broken:
-    """Return the fault that changes every mesh with faces."""
+    """Return a fault that changes every mesh with faces."""
 
     def fault(patch: Patch) -> None:
         right = b.Solid.to_mesh
@@ -90,13 +90,13 @@ def vertex_moved(mesh: b.Mesh, by: float = 0.01) -> b.Mesh:
 
 
 def swap_operands(patch: Patch) -> None:
-    """Take the first operand of a difference away from the second."""
+    """Exchange the operands of differences."""
     right = b.Solid.__sub__
     patch.setattr(b.Solid, "__sub__", lambda self, other: right(other, self))
 
 
 def part_coplanar(patch: Patch) -> None:
-    """Move second operands of unions aside by a step, so that nothing is coplanar."""
+    """Shift second operands of unions by a lattice step, so that no faces are coplanar."""
     right = b.Solid.__or__
 
     def wrong(self: b.Solid, other: b.Solid) -> b.Solid:
@@ -109,7 +109,7 @@ def part_coplanar(patch: Patch) -> None:
 
 
 def other_facet(patch: Patch) -> None:
-    """Say of the first ray that hits something that it hits another facet."""
+    """Make the facet of the first ray that hits one wrong."""
     right = bsp.RayCaster.first_hit
 
     def wrong(self: bsp.RayCaster, *args: Any, **options: Any) -> bsp.Hits:
@@ -122,7 +122,7 @@ def other_facet(patch: Patch) -> None:
 
 
 def turn_shadow(patch: Patch) -> None:
-    """Say the opposite of one ray's shadow in a hundred."""
+    """Make the occlusion of every hundredth ray wrong."""
     right = bsp.RayCaster.occluded
 
     def wrong(self: bsp.RayCaster, *args: Any, **options: Any) -> Any:
@@ -134,7 +134,7 @@ def turn_shadow(patch: Patch) -> None:
 
 
 def paint_backwards(patch: Patch) -> None:
-    """Paint the nearest first."""
+    """Reverse the painter's order."""
     right = bsp.PartitionTree.back_to_front
 
     def wrong(self: bsp.PartitionTree, **options: Any) -> Any:
@@ -145,7 +145,7 @@ def paint_backwards(patch: Patch) -> None:
 
 
 def turn_region_point(patch: Patch) -> None:
-    """Say the opposite of the first point that is on no boundary."""
+    """Make the classification of the first point not on a region's boundary wrong."""
     right = bsp.Region.classify
 
     def wrong(self: bsp.Region, points: Any) -> Any:
@@ -164,7 +164,7 @@ def shift_area(patch: Patch) -> None:
 
 
 def rays_scene() -> Any:
-    """Return the scene at which the tests of rays cast."""
+    """Return the scene of the tests of rays."""
     return importlib.import_module("oracles.test_ray_hits").lattice_scene()
 
 
@@ -320,7 +320,7 @@ def test_a_rival_that_is_wrong_speaks_against_no_result() -> None:
 
 
 class Faulty(Kernel):
-    """A kernel of which one answer is wrong."""
+    """A kernel with one wrong result, named by `fault`."""
 
     def __init__(self, fault: str) -> None:
         self._fault = fault

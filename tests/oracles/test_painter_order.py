@@ -1,4 +1,4 @@
-"""The painter's order against rays cast through the scene in rational arithmetic."""
+"""The painter's order against rays cast through scenes in rational arithmetic."""
 
 from fractions import Fraction
 from typing import Any, TypeAlias
@@ -35,7 +35,7 @@ def minus(a: Point, b: Point) -> Point:
 
 
 def hit_triangle(corners: Any, eye: Point, along: Point) -> Fraction | None:
-    """Return the ray's parameter where it crosses the interior of a triangle."""
+    """Return the parameter at which a ray crosses the interior of a triangle, or None."""
     a, b, c = (exact(p) for p in corners)
     normal = cross(minus(b, a), minus(c, a))
     slope = dot(normal, along)
@@ -48,7 +48,7 @@ def hit_triangle(corners: Any, eye: Point, along: Point) -> Fraction | None:
 
 
 def hit_segment(corners: Any, eye: Point, along: Point) -> Fraction | None:
-    """Return the ray's parameter where it crosses the interior of a segment."""
+    """Return the parameter at which a ray crosses the interior of a segment, or None."""
     a, b = (exact(p) for p in corners)
     u, w = minus(b, a), minus(a, eye)
     slope = along[0] * u[1] - along[1] * u[0]
@@ -60,7 +60,7 @@ def hit_segment(corners: Any, eye: Point, along: Point) -> Fraction | None:
 
 
 def depth_in(piece: Any, place: Any) -> float:
-    """Return how deep a point of its hyperplane lies inside a convex fragment; below 0 outside."""
+    """Return how far inside a convex fragment a point of its plane is; negative outside."""
     if len(piece) == 2:
         u = piece[1] - piece[0]
         s = float((place - piece[0]) @ u / (u @ u))
@@ -78,9 +78,9 @@ def depth_in(piece: Any, place: Any) -> float:
 
 
 def judge(facets: Any, order: bsp.Fragments, rays: list[tuple[Point, Point]], ahead: bool) -> int:
-    """Assert that along each ray the fragments come farthest first; return how many pairs were.
+    """Assert that along each ray fragments are ordered farthest first; return the number of pairs.
 
-    `ahead` says that only what lies before the eye is seen.
+    `ahead` is true if only the half line before the eye counts.
     """
     hit = hit_segment if np.shape(facets)[-1] == 2 else hit_triangle
     pairs = 0
@@ -107,7 +107,7 @@ def judge(facets: Any, order: bsp.Fragments, rays: list[tuple[Point, Point]], ah
 
 
 def soup(random: np.random.Generator, count: int, dimension: int) -> Any:
-    """Return random segments or triangles that cross, with whole coordinates."""
+    """Return random segments or triangles with integer coordinates that cross each other."""
     while True:
         facets = random.integers(-9, 10, (count, dimension, dimension)).astype(float)
         edges = facets[:, 1:] - facets[:, :1]
@@ -174,7 +174,7 @@ def test_front_to_back_is_the_reverse() -> None:
 
 
 def bars() -> Any:
-    """Return three long triangles of which each passes over the next one, seen from above."""
+    """Return three long triangles that overlap cyclically seen from above."""
     turns = [2 * np.pi * k / 3 for k in range(3)]
     bars = []
     for turn in turns:
@@ -187,7 +187,7 @@ def bars() -> Any:
 
 
 def covered(bars: Any, upper: int, lower: int, random: np.random.Generator) -> bool:
-    """Say whether one bar hides the other somewhere, and nowhere the other way round."""
+    """Return true if the upper bar hides the lower one at some points and never the reverse."""
     seen = set()
     for weights in random.dirichlet(np.ones(3), 400):
         x, y, _ = weights @ bars[lower]

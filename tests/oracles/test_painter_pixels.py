@@ -31,7 +31,7 @@ AROUND = [np.array(shift) for shift in product((-CLEAR, 0.0, CLEAR), repeat=2)]
 
 
 def soup(seed: int, count: int) -> Floats:
-    """Return triangles through each other, with whole coordinates."""
+    """Return random triangles with integer coordinates that cross each other."""
     random = np.random.default_rng(seed)
     facets = random.integers(-9, 10, (count, 3, 3)).astype(float)
     areas = np.cross(facets[:, 1] - facets[:, 0], facets[:, 2] - facets[:, 0])
@@ -40,7 +40,7 @@ def soup(seed: int, count: int) -> Floats:
 
 
 def bars(long: float, wide: float, tilt: float) -> Floats:
-    """Return triangles of three bars, each over the next one and under the one before."""
+    """Return the triangles of three bars that overlap cyclically."""
     corner = [(-long, 1), (long, 1), (long, 1 + wide), (-long, 1 + wide)]
     bar = np.array([(x, y, tilt * (x > 0)) for x, y in corner])
     turns = [
@@ -51,7 +51,7 @@ def bars(long: float, wide: float, tilt: float) -> Floats:
 
 
 def part() -> Floats:
-    """Return the triangles of a block with two holes that meet."""
+    """Return the triangles of a block with two intersecting holes."""
     hole = b.cylinder(h=9, r=1.2, segments=8)
     block = (
         b.box((6, 5, 4)) - hole.translate(3, 2.5, -2) - hole.rotate((0, 90, 0)).translate(-1, 2, 2)
@@ -76,7 +76,7 @@ SCENES: dict[str, tuple[Floats, bsp.Camera]] = {
 
 
 def ray(camera: bsp.Camera, pixel: Floats) -> tuple[Floats, Floats]:
-    """Return start and direction of the ray through a point of the picture."""
+    """Return origin and direction of the ray through a position in the picture."""
     width, height = SIZE
     across, up = (pixel - np.array([width, height]) / 2) * (2 / height) * camera.half_height
     right, upwards, away = camera.axes
@@ -87,7 +87,7 @@ def ray(camera: bsp.Camera, pixel: Floats) -> tuple[Floats, Floats]:
 
 
 def nearest(facets: Floats, start: Floats, along: Floats) -> int:
-    """Return the facet that a ray meets first, in doubles; -1 for none."""
+    """Return the index of the facet that a ray meets first, in doubles; -1 for none."""
     a, u, v = facets[:, 0], facets[:, 1] - facets[:, 0], facets[:, 2] - facets[:, 0]
     with np.errstate(divide="ignore", invalid="ignore"):
         p, arm = np.cross(along, v), start - a
@@ -100,7 +100,7 @@ def nearest(facets: Floats, start: Floats, along: Floats) -> int:
 
 
 def exactly_nearest(facets: list[list[Exact]], start: Exact, along: Exact) -> int:
-    """Return the same in rational arithmetic."""
+    """Return the index of the facet that a ray meets first, exactly; -1 for none."""
     best, found = None, -1
     for number, (a, c, e) in enumerate(facets):
         u, v, arm = minus(c, a), minus(e, a), minus(start, a)
@@ -131,7 +131,7 @@ def rational(values: Any) -> Any:
 
 
 def borders(facets: Floats, camera: bsp.Camera) -> Floats:
-    """Return the edges in front of the eye, (n, 2, 2) in pixels."""
+    """Return the edges of facets in front of the eye, (n, 2, 2) in pixels."""
     ends = np.stack([facets, np.roll(facets, -1, axis=1)], axis=2).reshape(-1, 2, 3)
     placed = (ends - camera.origin) @ camera.axes.T
     if camera.is_perspective:
@@ -148,7 +148,7 @@ def borders(facets: Floats, camera: bsp.Camera) -> Floats:
 
 
 def distance(spot: Floats, ends: Floats) -> float:
-    """Return how far the nearest of some segments is."""
+    """Return the distance of a point from the nearest of segments."""
     along, arm = ends[:, 1] - ends[:, 0], spot - ends[:, 0]
     share = (arm * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-300)
     gap = arm - np.clip(share, 0, 1)[:, None] * along
@@ -157,7 +157,7 @@ def distance(spot: Floats, ends: Floats) -> float:
 
 @cache
 def judged(name: str) -> list[tuple[tuple[int, int], int]]:
-    """Return pixels away from all borders, and what is seen there."""
+    """Return random pixels away from all edges, with the facet visible at each."""
     facets, camera = SCENES[name]
     random = np.random.default_rng(draw(name, 2**32))
     exact, edges = rational(facets), borders(facets, camera)
@@ -176,7 +176,7 @@ def judged(name: str) -> list[tuple[tuple[int, int], int]]:
 
 
 def picture_of(facets: Floats, camera: bsp.Camera, policy: bsp.Policy) -> bsp.Picture:
-    """Return a picture in which each facet has a colour of its own."""
+    """Return a picture in which each facet has a different colour."""
     colors = 0.3 + 0.7 * np.random.default_rng(4).random((len(facets), 3))
     tree = bsp.PartitionTree(facets, policy)
     return bsp.picture(
@@ -185,7 +185,7 @@ def picture_of(facets: Floats, camera: bsp.Camera, policy: bsp.Policy) -> bsp.Pi
 
 
 def sources(picture: bsp.Picture) -> dict[tuple[int, ...], int]:
-    """Return the facet that each colour is of."""
+    """Return the facet of each colour in a picture."""
     painting = picture.painting
     assert painting.fills is not None
     fills = map(tuple, painting.fills.tolist())
@@ -195,7 +195,7 @@ def sources(picture: bsp.Picture) -> dict[tuple[int, ...], int]:
 
 
 def windings(path: str, x: float, y: float) -> int:
-    """Return how often the outlines of a path go around a point."""
+    """Return the winding number of the outlines of an SVG path about a point."""
     total = 0
     for loop in re.findall(r"M([^Mz]*)z", path):
         steps = np.array([[int(n) for n in pair.split(",")] for pair in re.split("[l ]", loop)])

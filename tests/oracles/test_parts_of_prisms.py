@@ -1,4 +1,4 @@
-"""The parts of prisms are prisms over the parts of their bases, which another kernel finds."""
+"""The parts of a prism are the prisms over the parts of its base, which other code computes."""
 
 from random import Random
 
@@ -22,7 +22,7 @@ def triangle(random: Random) -> b.Region:
 
 
 def base_and_prism(seed: int) -> tuple[b.Region, b.Solid]:
-    """Return what a square and triangles make in the plane, and what prisms over them make."""
+    """Return a random expression of a square and triangles, and the same of prisms over them."""
     random = Random(seed)
     base = b.Region.rectangle(REACH, REACH)
     prism = base.extrude(HEIGHT)

@@ -1,7 +1,7 @@
-"""Every answer of the ray caster against brute force in integers and fractions.
+"""All results of the ray caster against brute force in integers and fractions.
 
-The oracle works otherwise than the core: it finds the point in the facet's plane first and then
-asks in a projection on which side of each edge it lies.
+The oracle uses another method than the core: it computes the point in the facet's plane, and then
+in a projection the side of each edge on which it lies.
 """
 
 from fractions import Fraction
@@ -19,7 +19,7 @@ Flags = npt.NDArray[np.bool_]
 
 
 def lattice_scene() -> Integers:
-    """Return a ball, coplanar, overlapping and repeated triangles, needles; (n, 3, 3)."""
+    """Return a ball, and coplanar, overlapping, repeated and needle triangles, (n, 3, 3)."""
     rng = np.random.default_rng(3)
     vertices, faces = icosphere(1)
     ball = np.round(vertices * 40).astype(np.int64)[faces]
@@ -33,7 +33,7 @@ def lattice_scene() -> Integers:
 
 
 def lattice_rays(scene: Integers, count: int) -> tuple[Integers, Integers]:
-    """Return rays of all kinds: free, aimed at vertices and edges, from vertices, within planes."""
+    """Return random rays: free, through vertices and edges, from vertices, in facets' planes."""
     rng = np.random.default_rng(4)
     origins = rng.integers(-90, 91, (count, 3))
     facets = scene[rng.integers(0, len(scene), count)]
@@ -58,7 +58,7 @@ def lattice_rays(scene: Integers, count: int) -> tuple[Integers, Integers]:
 def crossings(
     origins: Integers, directions: Integers, scene: Integers
 ) -> tuple[Integers, Integers, Flags, Flags]:
-    """Return numerator, denominator > 0, whether each ray meets each facet, and whether within."""
+    """Return numerator and denominator of t, whether each ray hits each facet, and if in-plane."""
     a, b, c = scene[:, 0], scene[:, 1], scene[:, 2]
     normals = np.cross(b - a, c - a)
     below = directions @ normals.T
@@ -84,7 +84,7 @@ def crossings(
 
 
 def first_within(origin: Integers, direction: Integers, corners: Integers) -> Fraction | None:
-    """Return the first parameter of a ray in a triangle's plane on the triangle."""
+    """Return the least t at which a ray in a triangle's plane is in the triangle, or None."""
     o = [Fraction(int(x)) for x in origin]
     d = [Fraction(int(x)) for x in direction]
     points = [[Fraction(int(x)) for x in corner] for corner in corners]
@@ -119,7 +119,7 @@ def _holds(points: list[list[Fraction]], o: list[Fraction]) -> bool:
 def _on_edge(
     o: list[Fraction], d: list[Fraction], p: list[Fraction], q: list[Fraction]
 ) -> list[Fraction]:
-    """Return the parameters at which a line meets a segment in its plane (ends if within)."""
+    """Return the values of t at which a line meets a segment in its plane; both ends if within."""
     along = _less(q, p)
     span = _cross(d, along)
     square = _dot(span, span)
@@ -135,7 +135,7 @@ def _on_edge(
 def first_by_brute_force(
     origins: Integers, directions: Integers, scene: Integers
 ) -> tuple[Integers, list[Fraction | None]]:
-    """Return the first facet of each ray, -1 for none, and its parameter."""
+    """Return the first facet of each ray, -1 for none, and the exact t of the hit."""
     above, below, hit, within = crossings(origins, directions, scene)
     facet = np.full(len(origins), -1)
     best = [np.ones(len(origins), dtype=np.int64), np.zeros(len(origins), dtype=np.int64)]
@@ -289,7 +289,7 @@ def test_intervals_through_voxels() -> None:
 
 
 def wall(cell: Integers, axis: int, side: int) -> Integers:
-    """Return two triangles of a unit cell, facing outwards."""
+    """Return the two triangles of one side of a unit cell, facing outwards."""
     u, v = np.eye(3, dtype=np.int64)[[(axis + 1) % 3, (axis + 2) % 3]]
     corner = cell + side * np.eye(3, dtype=np.int64)[axis]
     quad = [corner, corner + u, corner + u + v, corner + v]

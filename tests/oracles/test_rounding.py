@@ -1,4 +1,4 @@
-"""The effect on triangles of rounding to doubles, recounted with fractions."""
+"""Triangles that rounding to doubles reverses, counted in exact fractions."""
 
 from fractions import Fraction
 from typing import Any
@@ -14,7 +14,7 @@ Vector = list[Fraction]
 
 
 def nearly_equal_cubes(seed: int) -> list[b.Solid]:
-    """Return turned cubes of 100 km or more whose corners differ by lattice steps of 1 nm."""
+    """Return rotated cubes of 100 km or more whose corners differ by lattice steps of 1 nm."""
     rng = np.random.default_rng(seed)
     size = 10.0 ** rng.integers(5, 7)
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
@@ -36,13 +36,13 @@ def cross(corners: list[Vector]) -> Vector:
 
 
 def exact_normal(solid: b.Solid, face: int) -> Vector:
-    """Return a face's normal on the lattice."""
+    """Return the exact normal of a face on the lattice."""
     corners = solid.vertices[solid.faces[face]]
     return cross([[Fraction(round(Fraction(x) * STEP)) for x in corner] for corner in corners])
 
 
 def turned_triangles(mesh: Any, operands: list[b.Solid]) -> int:
-    """Count the triangles that do not face as their source does, along its main axis."""
+    """Return the number of triangles that face opposite to their source faces."""
     count = 0
     for corners, (operand, face) in zip(mesh.vertices[mesh.faces], mesh.source, strict=True):
         normal = exact_normal(operands[operand], face)

@@ -1,4 +1,4 @@
-"""Simplified solids, measured from outside: how far surfaces lie apart, and what they are."""
+"""Simplified solids: the distance of their surfaces from the old ones, and their soundness."""
 
 import time
 from pathlib import Path
@@ -34,7 +34,7 @@ def bound_of(solid: "b.Solid") -> float:
 
 
 def samples(mesh: "b.Mesh", count: int) -> np.ndarray:
-    """Return all corners, and points in the triangles: of each at least its middle."""
+    """Return all corners of a mesh and random points on its triangles, at least one on each."""
     rng = np.random.default_rng(0)
     corners = mesh.vertices[mesh.faces]
     areas = np.linalg.norm(np.cross(*(corners[:, 1:] - corners[:, :1]).swapaxes(0, 1)), axis=1)
@@ -46,7 +46,7 @@ def samples(mesh: "b.Mesh", count: int) -> np.ndarray:
 
 
 def farthest(mesh: "b.Mesh", other: "b.Mesh", count: int = 4000) -> float:
-    """Return how far samples of a mesh are from another; the library trimesh says what is near."""
+    """Return the largest distance of samples of a mesh from another mesh."""
     points = samples(mesh, count)
     body: Any = trimesh.Trimesh(other.vertices, other.faces, process=False)
     near: Any = trimesh.proximity.nearby_faces(body, points)
@@ -58,7 +58,7 @@ def farthest(mesh: "b.Mesh", other: "b.Mesh", count: int = 4000) -> float:
 
 
 def to_triangles(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Return the distance of each point from its triangle; 64 binary places suit slivers."""
+    """Return the distance of each point from its triangle, in extended precision."""
     p, (a, q, r) = points.astype(np.longdouble), corners.astype(np.longdouble).swapaxes(0, 1)
     sides = [to_segments(p, *ends) for ends in ((a, q), (q, r), (r, a))]
     u, v, w = q - a, r - a, p - a
@@ -81,7 +81,7 @@ def to_segments(p: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def assert_simplified(before: "b.Solid", after: "b.Solid", tolerance: float) -> None:
-    """Check what `Solid.simplify` promises."""
+    """Assert everything that `Solid.simplify` promises."""
     old, new = before.normalized().to_mesh(), after.to_mesh()
     bound = bound_of(after)
     assert 0 < bound <= tolerance and len(new.faces) <= len(old.faces)

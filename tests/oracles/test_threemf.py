@@ -1,4 +1,4 @@
-"""Packages of 3MF as the reader of the 3MF consortium, lib3mf, has them."""
+"""3MF files as lib3mf, the reader of the 3MF consortium, reads them."""
 
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ NAMES = ["wood", "a b", "ä", "1%/2", "..", "paint"]
 
 
 def strict(path: Path) -> Any:
-    """Return what lib3mf reads; it must have nothing to say about the file."""
+    """Return lib3mf's model of a file, and assert that it has no warnings."""
     model = lib3mf.Wrapper().CreateModel()
     reader = model.QueryReader("3mf")
     reader.SetStrictModeActive(True)

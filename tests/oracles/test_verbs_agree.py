@@ -1,4 +1,4 @@
-"""What is made of a solid is the same on every lattice, at every size and place, from any mesh."""
+"""Results are the same on every lattice, at every scale and position, and from any mesh."""
 
 import pickle
 from collections.abc import Callable, Iterable
@@ -23,7 +23,7 @@ Verb: TypeAlias = Callable[[b.Solid, float, np.ndarray], Made]
 
 
 def along(at: np.ndarray, offset: float, unit: float) -> float:
-    """Return how far along the axis a plane is, given that in units from the origin."""
+    """Return the offset of a plane along the axis, given in units from the origin `at`."""
     return float(offset * unit + np.dot(AXIS, at))
 
 
@@ -80,7 +80,7 @@ FORMS: dict[str, Callable[[b.Solid], b.Solid]] = {
 def made(
     seed: int, pitch: int | None = None, unit: float = 1.0, at: Iterable[float] = (0, 0, 0)
 ) -> b.Solid:
-    """Return a random set on a lattice, of a size, at a place."""
+    """Return a random solid on a lattice, scaled by `unit` and translated to `at`."""
     random = Random(seed)
 
     def placed(shape: Arrays) -> b.Solid:
@@ -90,9 +90,9 @@ def made(
 
 
 def sizes(of: Made, unit: float) -> list[float]:
-    """Return the volume and the area, or the area, in units.
+    """Return volume and area, or area, of results, in units.
 
-    Rounding leaves slits in shadows, of two lengths and no width.
+    The perimeter is left out, since rounding leaves slits in projections.
     """
     if isinstance(of, list):
         return [float(len(of)), *(size for solid in of for size in sizes(solid, unit))]
@@ -102,7 +102,7 @@ def sizes(of: Made, unit: float) -> list[float]:
 
 
 def assert_alike(solids: list[tuple[b.Solid, float, Iterable[float]]], doubt: float = 1e-6) -> None:
-    """Look at what all verbs make of one set in several sizes and places, the first as a model."""
+    """Assert that all methods give the same for one set in several scales and positions."""
     first = solids[0][0]
     if first.is_empty:
         return

@@ -1,6 +1,6 @@
-"""Unions of unit cells of a small lattice against boolean arrays.
+"""Unions of unit cells of a small grid against boolean arrays.
 
-Everything is coplanar with everything, and every answer is known without geometry.
+All faces lie in common planes, and all results are known without geometry.
 """
 
 from fractions import Fraction
@@ -33,18 +33,18 @@ OPERATIONS = [
 
 
 def solid_of(grid: Grid) -> "b.Solid":
-    """Return the cells as one mesh of touching boxes, whose inner walls are doubled."""
+    """Return the true cells as one mesh of touching boxes with double inner walls."""
     return b.Solid(*cells_as_boxes(grid)) if grid.any() else b.Solid.empty()
 
 
 def exposed_area(grid: Grid) -> int:
-    """Count the unit squares between a set and an unset cell."""
+    """Return the number of unit squares between true and false cells."""
     padded = np.pad(grid, 1).astype(np.int8)
     return sum(int(np.abs(np.diff(padded, axis=axis)).sum()) for axis in range(3))
 
 
 def assert_matches(solid: "b.Solid", grid: Grid) -> None:
-    """Compare volume, area and the label of every cell with the array."""
+    """Assert that the solid's volume, area and classification of all cells equal the array's."""
     assert solid.volume_exact == int(grid.sum()), f"cells {np.argwhere(grid).tolist()}"
     mesh = assert_sound(solid)
     assert mesh.area == pytest.approx(exposed_area(grid), rel=1e-12)
@@ -53,13 +53,13 @@ def assert_matches(solid: "b.Solid", grid: Grid) -> None:
 
 
 def random_grids(shape: tuple[int, int, int], count: int, seed: int) -> list[Grid]:
-    """Return random fillings, from sparse to dense."""
+    """Return random arrays, from sparse to dense."""
     rng = np.random.default_rng(seed)
     return [rng.random(shape) < rng.uniform(0.2, 0.8) for _ in range(count)]
 
 
 def all_grids() -> list[Grid]:
-    """Return all 256 fillings of 2 × 2 × 2 cells."""
+    """Return all 256 arrays of 2 × 2 × 2 cells."""
     return [np.array(bits, dtype=bool).reshape(2, 2, 2) for bits in product((0, 1), repeat=8)]
 
 
@@ -133,7 +133,7 @@ RULES = {
 
 
 def volume_below(grid: Grid, normal: list[int], offset: int) -> Fraction:
-    """Return the volume of the cells where ``normal . x <= offset``, by corners of the cube."""
+    """Return the exact volume of the true cells where ``normal . x <= offset``."""
     sizes = [abs(entry) for entry in normal if entry]
     lowest = sum(min(entry, 0) for entry in normal)
     total = 0

@@ -1,4 +1,4 @@
-"""The folder that the tests of the command line work in."""
+"""Fixtures for tests of the command line and of pages."""
 
 import io
 import os
@@ -16,7 +16,7 @@ from support.shapes import cuboid
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Return a folder with two overlapping cubes; relative names mean files in it."""
+    """Return the current folder, a temporary one with the files of two overlapping cubes."""
     monkeypatch.chdir(tmp_path)
     put("a.off", cuboid((0, 0, 0), (2, 2, 2)))
     put("c.stl", cuboid((1, 1, 1), (3, 3, 3)))
@@ -25,14 +25,14 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
-    """Return the one browser of all tests of pages."""
+    """Yield the one browser for all tests of pages."""
     with started(webgl=True) as running:
         yield running
 
 
 @pytest.fixture
 def piped(monkeypatch: pytest.MonkeyPatch, capsysbinary: pytest.CaptureFixture[bytes]) -> Piped:
-    """Return what does as `support.cli.finished` in this process, which costs a tenth."""
+    """Return a function like `support.cli.finished` that runs in this process, ten times faster."""
 
     def answer(*arguments: str | bytes, given: bytes = b"") -> tuple[int, bytes, bytes]:
         monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(given)))

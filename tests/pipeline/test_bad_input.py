@@ -1,4 +1,4 @@
-"""Bad input at the Python door: a clear error, or a finding and a right result."""
+"""Invalid input of Python functions leads to a clear error, or to a finding and a right result."""
 
 from collections.abc import Callable
 from fractions import Fraction
@@ -13,27 +13,27 @@ from support.shapes import Arrays, cube, cuboid, flipped, joined, moved, octahed
 
 
 def with_vertex(value: float) -> Arrays:
-    """Return a cube with one spoilt coordinate."""
+    """Return a cube with one coordinate replaced."""
     vertices, faces = cube()
     vertices[3, 1] = value
     return vertices, faces
 
 
 def without_face(count: int) -> Arrays:
-    """Return a cube with holes."""
+    """Return a cube without its first faces."""
     vertices, faces = cube()
     return vertices, faces[count:]
 
 
 def with_index(value: int) -> Arrays:
-    """Return a cube one of whose faces names a vertex that is not there."""
+    """Return a cube with a face that uses a vertex that does not exist."""
     vertices, faces = cube()
     faces[5, 2] = value
     return vertices, faces
 
 
 def turned_face() -> Arrays:
-    """Return a cube one of whose faces is turned round."""
+    """Return a cube with one face reversed."""
     vertices, faces = cube()
     faces[4] = faces[4, ::-1]
     return vertices, faces

@@ -1,4 +1,4 @@
-"""The command line as scripts see it: exit codes, streams, files, and no tracebacks."""
+"""The command line as scripts use it: exit codes, streams, files, and no tracebacks."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""The verb bench, on small forms of its cases."""
+"""The command bench, with small items of its cases."""
 
 import json
 from pathlib import Path
@@ -80,7 +80,7 @@ def test_cases_are_measured_recorded_and_shown_again(capsys: Capture, tmp_path: 
 
 
 def _measured_at_once(monkeypatch: pytest.MonkeyPatch, stop_at: str = "") -> list[str]:
-    """Let cases have no items, and an interrupt come at one of them; return what is measured."""
+    """Make cases empty and interrupt at one of them; return the list of cases that were run."""
     measured: list[str] = []
 
     def run_case(key: str, *_: object) -> dict[str, Any]:

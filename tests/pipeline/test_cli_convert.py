@@ -1,4 +1,4 @@
-"""Conversions: what is written, what is told to be lost, and what is refused."""
+"""The command convert: files that are written, losses that are reported, and refusals."""
 
 import json
 import os

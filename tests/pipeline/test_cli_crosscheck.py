@@ -1,4 +1,4 @@
-"""The verb validate, as a user meets it: verdicts, files, limits, interruptions."""
+"""The command crosscheck: verdicts, files, limits, interruptions."""
 
 import json
 import os
@@ -26,7 +26,7 @@ def lines(path: str = "r.jsonl") -> list[dict[str, Any]]:
 
 
 def many(count: int) -> None:
-    """Put cubes into a folder, each touching the others in its own way."""
+    """Write cubes into a folder, each of which touches the others differently."""
     Path("parts").mkdir()
     for number in range(count):
         put(f"parts/{number:02d}.off", cuboid((number, 0, 0), (number + 3, 2, 2 + number % 3)))
@@ -243,7 +243,7 @@ def test_wrong_input_is_told(
 
 
 def children_of(process: int) -> list[int]:
-    """Return the children of all threads of a process."""
+    """Return the ids of the child processes of all threads of a process."""
     lists = Path(f"/proc/{process}/task").glob("*/children")
     return [int(pid) for each in lists for pid in each.read_text("utf-8").split()]
 
@@ -264,7 +264,7 @@ def _lives(pid: int) -> bool:
 
 
 def started_campaign(folder: Path) -> Any:
-    """Start a campaign, and return its process once a few cases are on file."""
+    """Start a campaign, and return its process after a few cases are recorded."""
     many(14)
     running = process(
         "crosscheck", "parts", "-j", "2", "--results", "r.jsonl", stderr=-1, stdout=-1, cwd=folder

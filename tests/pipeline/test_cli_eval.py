@@ -1,4 +1,4 @@
-"""Formulas at the command line."""
+"""The command eval: formulas over files."""
 
 from fractions import Fraction
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The verbs that look at files and compare them: info, compare, split, repair, doctor."""
+"""The commands that examine and compare files: info, compare, split, repair, doctor."""
 
 import json
 import sys

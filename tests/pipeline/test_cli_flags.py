@@ -1,4 +1,4 @@
-"""Options that several verbs share, verb by verb."""
+"""Options that several commands have in common, command by command."""
 
 import io
 import os
@@ -35,7 +35,7 @@ SUFFIXES = {"slice": ".svg", "render": ".svg", "tree": ".json"}
 
 @pytest.fixture
 def opened(folder: Path) -> Path:
-    """Return the folder with an open cube in open.off, of side 1."""
+    """Return the folder, with a unit cube without one face in open.off."""
     put("open.off", (cube()[0], cube()[1][1:]))
     return folder
 

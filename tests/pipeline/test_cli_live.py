@@ -1,4 +1,4 @@
-"""Pages that follow their files, from a server on this machine."""
+"""Live pages, which follow changes of their files, from a server on this machine."""
 
 import http.client
 import json
@@ -25,7 +25,7 @@ _SAID = Path("log/said.txt")
 
 @contextmanager
 def serving(*arguments: str) -> Iterator[tuple[int, "subprocess.Popen[bytes]"]]:
-    """Start a server and yield its port; Ctrl-C ends it quietly."""
+    """Start a server and yield its port and process; assert that Ctrl-C ends it quietly."""
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
     running = process(*arguments, "--no-open", "--json", **pipes)
     try:
@@ -49,7 +49,7 @@ def asked(port: int, path: str, **headers: str) -> tuple[int, str]:
 
 
 def changed(port: int, before: str) -> str:
-    """Wait until the state is another."""
+    """Wait until the server's state differs from `before`, and return it."""
     for _ in range(300):
         now = asked(port, "/changes")[1]
         if now != before:
@@ -119,7 +119,7 @@ def test_only_this_machine_is_answered() -> None:
 
 @contextmanager
 def watching(*arguments: str) -> Iterator["subprocess.Popen[bytes]"]:
-    """Run a script again and again until Ctrl-C."""
+    """Run a script with ``--watch`` until Ctrl-C, and yield its process."""
     # Not beside the script, where what is said would be a change.
     _SAID.parent.mkdir()
     with _SAID.open("w") as said:

@@ -1,4 +1,4 @@
-"""Verbs that shape, draw and take apart: hull, simplify, project, explode, clash."""
+"""The commands that shape and take apart: hull, simplify, project, explode, clash."""
 
 import json
 from pathlib import Path

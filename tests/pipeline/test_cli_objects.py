@@ -1,4 +1,4 @@
-"""Objects keep their names through set operations."""
+"""Objects keep their names through set operations of the command line."""
 
 import json
 from pathlib import Path
@@ -13,7 +13,7 @@ from support.shapes import cuboid, joined
 
 @pytest.fixture
 def files(folder: Path) -> Path:
-    """Add an assembly of a body with a pin in it and a knob apart, and a lid."""
+    """Add an assembly of a body with a pin in it and a separate knob, and a lid."""
     parts = [
         b.Assembly("body", b.box(2, 2, 2)),
         b.Assembly("pin", b.box(1, 1, 4)),

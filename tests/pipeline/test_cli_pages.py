@@ -1,4 +1,4 @@
-"""Pages that checks and comparisons write."""
+"""The HTML pages that the commands check and compare write."""
 
 import json
 import os
@@ -19,20 +19,20 @@ from support.shapes import cube, cuboid, joined
 
 
 def models(page: str) -> list[dict[str, Any]]:
-    """Return what a page gives to the viewer, for each view."""
+    """Return the models, as JSON values, that a page gives to its viewers."""
     text = Path(page).read_text(encoding="utf-8")
     found = re.findall(r'<script type="application/json" id="[a-z0-9-]*model">(.*?)</script>', text)
     return [json.loads(one) for one in found]
 
 
 def model(page: str) -> dict[str, Any]:
-    """Return what a page gives to its only view."""
+    """Return the model of a page with one viewer."""
     (found,) = models(page)
     return found
 
 
 def layers(page: str) -> dict[str, int]:
-    """Return the triangles of each layer, or its lines if it has none."""
+    """Return for each layer of a page the number of its triangles, or else of its segments."""
     return {one["name"]: one["triangles"] or one["segments"] for one in model(page)["layers"]}
 
 
@@ -101,7 +101,7 @@ def test_other_faults_are_marked(folder: Path) -> None:
 
 
 def reported(capsys: Capture) -> tuple[int, list[tuple[str, str]], dict[str, dict[str, str]]]:
-    """Check a folder of five; return the exit code, the cards, and the cases of JUnit."""
+    """Check a folder of five files; return the exit code, the page's cards and the JUnit cases."""
     Path("in/deep").mkdir(parents=True)
     Path("a.off").rename("in/a.off")
     vertices, faces = cube()

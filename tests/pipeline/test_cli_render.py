@@ -1,4 +1,4 @@
-"""Pictures at the command line."""
+"""The command render: pictures of meshes."""
 
 import io
 import json
@@ -38,7 +38,7 @@ def test_front_of_a_cube_is_a_square(folder: Path, capsys: Capture) -> None:
 
 
 def _seen(capsys: Capture, *arguments: str) -> "np.ndarray[Any, Any]":
-    """Return the pixels of a picture of these arguments, without edges."""
+    """Return the pixels of the picture that the command renders, without edges."""
     code, _, err = ran(capsys, "render", *arguments, "-o", "seen.png", "--background", "none")
     assert (code, err) == (0, "")
     with Image.open("seen.png") as image:
@@ -46,7 +46,7 @@ def _seen(capsys: Capture, *arguments: str) -> "np.ndarray[Any, Any]":
 
 
 def _size(pixels: "np.ndarray[Any, Any]") -> tuple[int, int]:
-    """Return width and height of what is not transparent."""
+    """Return width and height of the part of a picture that is not transparent."""
     rows, columns = (np.flatnonzero((pixels[:, :, 3] > 0).any(axis=axis)) for axis in (1, 0))
     return int(np.ptp(columns)) + 1, int(np.ptp(rows)) + 1
 

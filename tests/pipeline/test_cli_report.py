@@ -1,4 +1,4 @@
-"""Reports at the command line."""
+"""The command report: reports of campaigns."""
 
 import json
 from pathlib import Path
@@ -13,7 +13,7 @@ from support.results import case, disagreeing, header, write_results
 
 @pytest.fixture
 def shards(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Return a folder with the results of two shards; relative names mean files in it."""
+    """Return the current folder, a temporary one with the results of two parts of a campaign."""
     monkeypatch.chdir(tmp_path)
     agreeing = case("corner", "union", b.cube(2), b.cube(2).translate(1, 1, 1))
     write_results(tmp_path / "r-1.jsonl", [header(), agreeing])

@@ -1,4 +1,4 @@
-"""Scripts at the command line."""
+"""The command run: scripts at the command line."""
 
 import json
 import os

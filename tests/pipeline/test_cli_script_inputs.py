@@ -1,4 +1,4 @@
-"""Scripts are inputs of every verb that takes meshes."""
+"""Scripts are accepted by every command that takes meshes."""
 
 import json
 from pathlib import Path

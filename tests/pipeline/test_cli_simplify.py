@@ -1,4 +1,4 @@
-"""The option --simplify: lengths, what is told, and which verbs take it."""
+"""The option --simplify: lengths, messages, and the commands that have it."""
 
 import json
 from dataclasses import replace
@@ -17,7 +17,7 @@ MODEL = "near.off"
 
 @pytest.fixture
 def near(folder: Path) -> Path:
-    """A cube with a bump that is 0.0001 high: 28 triangles, 20 without it."""
+    """Return the folder, with a cube that has a bump 0.0001 high: 28 triangles, 20 without it."""
     (b.cube(1) | b.cube(0.5).translate(0.5001, 0.25, 0.25)).save(MODEL)
     return folder
 

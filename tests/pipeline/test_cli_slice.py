@@ -1,4 +1,4 @@
-"""Sections at the command line."""
+"""The command slice: sections of meshes."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Streams, names that are no text, full disks, interrupts, completion, and how fast it starts."""
+"""Streams, file names that are no text, full disks, interrupts, completion, and startup time."""
 
 import errno
 import io
@@ -134,7 +134,7 @@ def test_a_full_output(folder: Path, arguments: list[str]) -> None:
 
 
 def closed(number: int) -> Any:
-    """Return what closes a standard stream of a process before it starts."""
+    """Return a function that closes the standard stream with this number in a new process."""
     return lambda: os.close(number)
 
 
@@ -304,7 +304,7 @@ ANSWERS = [
 
 
 def at_most(size: int) -> Any:
-    """Return what lets no file of a process grow beyond a size."""
+    """Return a function that limits the size of files of a new process."""
 
     def limit() -> None:
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)

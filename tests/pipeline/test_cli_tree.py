@@ -1,4 +1,4 @@
-"""Trees of scripts at the command line: shown, simplified and converted."""
+"""The command tree: trees of scripts printed, simplified and converted."""
 
 import io
 import json

@@ -1,4 +1,4 @@
-"""Pages of meshes at the command line."""
+"""The command view: HTML pages of meshes."""
 
 import json
 import os
@@ -16,7 +16,7 @@ _SCREENS = ("DISPLAY", "WAYLAND_DISPLAY", "SSH_CONNECTION", "SSH_TTY")
 
 @pytest.fixture
 def opened(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Return the addresses that a browser is asked to open, on a machine with a screen."""
+    """Return the list of addresses that a browser is asked to open, as on a desktop."""
     asked: list[str] = []
 
     def opening(address: str) -> bool:

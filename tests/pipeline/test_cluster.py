@@ -1,4 +1,4 @@
-"""A campaign on the workers of Dask distributed."""
+"""Campaigns on the workers of Dask distributed."""
 
 import json
 import threading
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.filterwarnings("ignore")
 
 @pytest.fixture
 def scheduler() -> Iterator[Any]:
-    """Return a scheduler with one worker of two threads in this process."""
+    """Yield a scheduler with one worker of two threads in this process."""
     from distributed import LocalCluster
 
     place = LocalCluster(  # type: ignore[no-untyped-call]

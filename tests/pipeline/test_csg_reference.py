@@ -1,7 +1,7 @@
-"""Scripts give what OpenSCAD 2021.01 gives: small ones from the corpus, real ones beside it.
+"""Scripts give the results of OpenSCAD 2021.01: small ones of the corpus, and real ones.
 
-The golden volumes and boxes were measured on the STL files that Debian's openscad 2021.01-6 writes
-of the same scripts. It writes six significant digits, and rounds plane figures to 2**-16 before.
+The reference volumes and boxes were measured on STL files that Debian's openscad 2021.01-6 wrote
+for the same scripts. It writes six significant digits, and first rounds plane figures to 2**-16.
 """
 
 import csv

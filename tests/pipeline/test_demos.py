@@ -1,4 +1,4 @@
-"""The demonstrations that no other engine passes together."""
+"""Demonstrations that no other engine passes completely."""
 
 import time
 from statistics import median
@@ -12,7 +12,7 @@ from support.shapes import cube, moved, random_rotation, turned
 
 
 def pair(shift: tuple[float, float, float]) -> tuple["b.Solid", "b.Solid"]:
-    """Return the unit cube and its shifted copy."""
+    """Return the unit cube and a shifted copy."""
     return b.Solid(*cube()), b.Solid(*moved(cube(), shift))
 
 
@@ -52,7 +52,7 @@ def test_cubes_turned_by_45_degrees_share_their_caps() -> None:
 
 
 def test_cut_and_put_back() -> None:
-    """A ← (A − R) ∪ (A ∩ R) is A after every round, and a round costs what it cost at first."""
+    """A ← (A − R) ∪ (A ∩ R) is A after every round, and later rounds take no longer."""
     rounds = 1000
     start = b.Solid(*cube())
     solid, times = start, []

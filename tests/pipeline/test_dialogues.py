@@ -1,4 +1,4 @@
-"""The words of the tool, verbatim, in the situations that people meet first."""
+"""The exact messages of the command line in the situations that users meet first."""
 
 import io
 import json
@@ -16,7 +16,7 @@ from support.shapes import cuboid, flipped, icosphere, joined
 
 @pytest.fixture(autouse=True)
 def files(folder: Path) -> None:
-    """Add an open file to the two good ones."""
+    """Add an open mesh to the two valid files."""
     del folder
     vertices, faces = cuboid((0, 0, 0), (2, 2, 2))
     put("open.stl", (vertices, faces[1:]))

@@ -1,4 +1,4 @@
-"""Every example runs, prints something, and leaves the files that it names."""
+"""Every example runs, prints something, and writes the files listed for it."""
 
 import os
 import subprocess
@@ -52,6 +52,6 @@ TOLD = {
 
 
 def assert_model(stem: str, text: str) -> None:
-    """Assert that a model says it is sound, and what it is about."""
+    """Assert that a model's output says that it is sound, and has its expected figures."""
     assert "closed: True\ncertified in single precision: True\n" in text
     assert TOLD.get(stem, "") in text

@@ -1,4 +1,4 @@
-"""Every exit code, from every verb that can end in it; what fails writes nothing."""
+"""Every exit code of every command that has it; a command that fails writes no file."""
 
 import errno
 import io
@@ -184,7 +184,7 @@ CODES = {
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """Return a folder of files, good and bad, and work in it."""
+    """Change to a temporary folder with valid and invalid files, and yield it."""
     folder = tmp_path_factory.mktemp("place")
     before = Path.cwd()
     os.chdir(folder)
@@ -214,7 +214,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 def written(before: set[str]) -> set[str]:
-    """Return the files that have appeared, after taking them away."""
+    """Return the names of new files in the current folder, after deleting them."""
     new = set(os.listdir()) - before
     for name in new:
         os.unlink(name)
@@ -356,7 +356,7 @@ def test_code_5_when_the_disk_is_full(place: Path, verb: str) -> None:
 
 
 def _no_large_files() -> None:
-    """Let no file grow beyond 2000 bytes, as on a disk that is nearly full."""
+    """Limit the size of files to 2000 bytes, as on a disk that is nearly full."""
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
 

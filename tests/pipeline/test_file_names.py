@@ -1,4 +1,4 @@
-"""Names of files that are legal, and unusual."""
+"""File names that are legal but unusual."""
 
 import os
 import sys

@@ -1,4 +1,4 @@
-"""The gallery shows pictures that are there, and names the examples that write them."""
+"""The gallery's pictures exist, and it names the examples that write them."""
 
 import re
 from pathlib import Path
@@ -51,7 +51,7 @@ def test_the_code_on_the_page_makes_the_picture_below_it(block: str, tmp_path: P
 
 
 def _small(path: Path) -> "np.ndarray":
-    """Return a picture in greys, a fourth as wide, as numbers up to 255."""
+    """Return a picture in grey values up to 255, reduced to a fourth of its width."""
     with Image.open(path) as picture:
         return np.asarray(picture.convert("L").reduce(4), dtype=float)
 

@@ -1,4 +1,4 @@
-"""Ctrl-C is quiet from the moment at which the command line's own code begins."""
+"""Ctrl-C is quiet from the moment at which the command line's own code starts."""
 
 import os
 import pickle
@@ -88,7 +88,7 @@ SLOW = "import time\ntime.sleep(60)\n"
 
 
 def interrupted(delay: float, *arguments: str) -> tuple[int, bytes, bytes]:
-    """Run the command line, interrupt it as a terminal does, and return how it ended."""
+    """Run the command line, send Ctrl-C after a delay, and return exit code and both streams."""
     with subprocess.Popen(
         [sys.executable, "-c", ENTRY, *arguments],
         stdout=subprocess.PIPE,

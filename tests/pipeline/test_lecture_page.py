@@ -1,4 +1,4 @@
-"""The interactive lecture in a real browser: every control, by mouse, keyboard and touch size."""
+"""The interactive lecture in a real browser: every control, by mouse, keyboard and touch."""
 
 import json
 import math
@@ -30,7 +30,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def browser(browser: Browser, page: Path) -> Browser:
-    """Return the one browser, which shows the lecture from here on."""
+    """Return the browser of all tests, with the lecture opened."""
     browser.open(page)
     browser.wait(_READY)
     return browser
@@ -41,7 +41,7 @@ def _tile(browser: Browser, figure: str, key: str) -> str:
 
 
 def _press(browser: Browser, selector: str, *keys: str) -> None:
-    """Give keys to the first of the elements, SVG or not."""
+    """Send keys to the first element that matches a selector, also in SVG."""
     for key in keys:
         browser.run(
             "const e = document.querySelector(arguments[0]); e.focus();"
@@ -53,7 +53,7 @@ def _press(browser: Browser, selector: str, *keys: str) -> None:
 
 
 def _drag(browser: Browser, selector: str, by: tuple[int, int]) -> None:
-    """Drag an element as a pointer does."""
+    """Drag an element by an offset in pixels, with pointer events."""
     browser.run(
         "const e = document.querySelector(arguments[0]), [dx, dy] = arguments[1];"
         "e.scrollIntoView({block: 'center', behavior: 'instant'});"
@@ -69,7 +69,7 @@ def _drag(browser: Browser, selector: str, by: tuple[int, int]) -> None:
 
 
 def _core(browser: Browser, expression: str) -> Any:
-    """Return what the page's own core answers, as JSON."""
+    """Return the JSON result of an expression that calls the page's own core."""
     return json.loads(browser.run(f"return {expression}"))
 
 
@@ -365,7 +365,7 @@ def test_rays_grow_the_tree(browser: Browser) -> None:
 
 
 def _labels(view: dict[str, Any], low: float, high: float) -> list[tuple[float, float]]:
-    """Return the intervals of the in leaves, joined where they touch."""
+    """Return the intervals of the in-leaves of a 1D tree, joined where they touch."""
     inside = [node["region"] for node in view["nodes"] if node["label"] == "In"]
     ends: list[tuple[float, float]] = []
     for a, b in sorted(sorted(wall[0][0] for wall in region) for region in inside):
@@ -407,7 +407,7 @@ def test_cells_of_a_merge_fill_the_region_of_the_library(browser: Browser, opera
 
 
 def _area(walls: list[list[list[float]]]) -> float:
-    """Return the area of a region inside its walls, which have it to their left."""
+    """Return the area of a region to the left of its walls."""
     return sum(a[0] * b[1] - b[0] * a[1] for a, b in walls) / 2
 
 

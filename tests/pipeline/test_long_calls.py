@@ -1,4 +1,4 @@
-"""Ctrl-C ends every long call soon, whatever the call is doing and however small its input is."""
+"""Ctrl-C ends every long call soon, whatever the call does and however small its input is."""
 
 import gc
 import os

@@ -1,4 +1,4 @@
-"""The manual is what happens: its code runs, and its output is right."""
+"""The manual is correct: its code runs, and its output is as shown."""
 
 import doctest
 import json
@@ -84,7 +84,7 @@ def test_every_verb_has_a_page_with_an_example() -> None:
 
 
 def described(text: str) -> set[str]:
-    """Return the names of the objects, without members, that pages describe to Sphinx."""
+    """Return the names of the objects, without members, that API pages describe."""
     form = r"^::::\{py:(\w+)\} ([\w.]+)"
     names, module = set(), ""
     for role, name in re.findall(form, text, re.MULTILINE):
@@ -149,7 +149,7 @@ def test_examples_have_one_name_for_the_package() -> None:
 
 
 def modules() -> list[str]:
-    """Return the modules of the package whose docstrings have examples."""
+    """Return the names of the package's modules with examples in docstrings."""
     files = [path for path in (ROOT / "bspcsg").rglob("*.py") if ">>> " in path.read_text("utf-8")]
     names = [".".join(path.relative_to(ROOT).with_suffix("").parts) for path in files]
     return sorted(name.removesuffix(".__init__") for name in names)

@@ -29,7 +29,7 @@ def alive(found: "list[psutil.Process]") -> "list[psutil.Process]":
 
 
 def killed(running: "subprocess.Popen[bytes]") -> "list[psutil.Process]":
-    """Kill a process; return what it had started, and what of that lives on."""
+    """Kill a process; return its child processes, and those of them that are still alive."""
     started: list[psutil.Process] = psutil.Process(running.pid).children(recursive=True)
     running.kill()
     running.wait()

@@ -1,4 +1,4 @@
-"""Pages in a real browser, opened as files."""
+"""HTML pages in a real browser, opened as files."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -27,7 +27,7 @@ _DRAWN = "document.querySelector('.stage[data-drawn]')"
 
 @pytest.fixture(scope="module")
 def blind() -> Iterator[Browser]:
-    """Return a browser without WebGL."""
+    """Yield a browser without WebGL."""
     with started(webgl=False) as running:
         yield running
 
@@ -50,7 +50,7 @@ def view(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def checked(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return what `check` says of a ball with a hole."""
+    """Return the page that `check` writes for a ball with a hole."""
     folder = tmp_path_factory.mktemp("checked")
     vertices, faces = b.sphere(r=1, segments=16).to_mesh()
     put(str(folder / "open.off"), (vertices, np.delete(faces, [100, 101], axis=0)))
@@ -60,7 +60,7 @@ def checked(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def compared(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return what `compare` says of two boxes."""
+    """Return the page that `compare` writes for two boxes."""
     folder = tmp_path_factory.mktemp("compared")
     files = [str(folder / f"{height}.off") for height in (2, 3)]
     for name, height in zip(files, (2, 3), strict=True):
@@ -82,7 +82,7 @@ def _parts() -> list[Layer]:
 
 
 def _change(before: "np.ndarray", after: "np.ndarray") -> float:
-    """Return the share of pixels that are clearly different."""
+    """Return the fraction of pixels that differ clearly."""
     return float((np.abs(before.astype(int) - after).max(axis=2) > 24).mean())
 
 
@@ -112,7 +112,7 @@ _LONG = "a_mesh_with_a_rather_long_name_as_people_have_them_v12_final"
 
 
 def _clipped(browser: Browser, selector: str) -> list[str]:
-    """Return the texts of elements that a desktop does not show whole."""
+    """Return the texts of elements that are not entirely visible on a desktop."""
     found = browser.run(
         "return [...document.querySelectorAll(arguments[0])].filter(e =>"
         " e.scrollWidth > e.clientWidth + 1 || e.getBoundingClientRect().right > innerWidth)"

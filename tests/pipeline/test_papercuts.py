@@ -1,4 +1,4 @@
-"""The command line is pleasant every day: one test for each thing that once was not."""
+"""The command line is pleasant to use: one test for each small flaw that has been fixed."""
 
 import json
 import os

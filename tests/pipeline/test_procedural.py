@@ -1,8 +1,8 @@
-"""Constructions that other engines use as their own test suite, with known measures.
+"""Constructions with known measures that other engines use as their test suite.
 
-The cases are those of Manifold's boolean and sample tests; volumes, areas and topology follow from
-the construction. Two wedges that meet in an edge or a point are two parts here, whatever their
-number is elsewhere.
+The cases are Manifold's boolean and sample tests; volumes, areas and topology follow from the
+construction. Two wedges that meet in an edge or a point count as two parts here, whatever other
+engines count.
 """
 
 from collections.abc import Callable
@@ -29,7 +29,7 @@ TETRAHEDRON = [(-1, -1, 1), (-1, 1, -1), (1, -1, -1), (1, 1, 1)]
 
 
 def box(low: tuple[float, float, float], high: tuple[float, float, float]) -> "b.Solid":
-    """Return a box from its corners."""
+    """Return the box between two corners."""
     return b.Solid(*cuboid(low, high))
 
 
@@ -39,29 +39,29 @@ def tetra() -> "b.Solid":
 
 
 def unit() -> "b.Solid":
-    """Return the unit cube at the origin."""
+    """Return the unit cube with a corner at the origin."""
     return b.Solid(*cube())
 
 
 def mirrored() -> "b.Solid":
-    """Mirror two boxes and take one from the other."""
+    """Return the difference of two mirrored boxes."""
     small = b.Solid(*cube()).scale((0.5, -1, 0.5))
     return unit().scale((1, -1, 1)) - small
 
 
 def three_boxes() -> "b.Solid":
-    """Stack three boxes that share planes."""
+    """Return the union of three boxes with coplanar faces."""
     base = box((-0.6, -1, 0), (0.6, 0, 1))
     return base | box((-0.5, 0, 0.5), (0.5, 0.8, 1)) | box((-0.6, -0.1, 0), (0.6, 0, 0.5))
 
 
 def corner() -> "b.Solid":
-    """Return the corner of a cube."""
+    """Return the tetrahedron at one corner of the unit cube."""
     return b.Solid(*tetrahedron([(0, 0, 0), (0, 1, 0), (1, 0, 0), (0, 0, 1)]))
 
 
 def diamonds() -> "b.Solid":
-    """Set a diamond over a diamond-shaped hole and cut a wedge off it: edges and points touch."""
+    """Return a diamond over a diamond-shaped hole, with a wedge cut off: edges and points touch."""
     outer = b.Solid(*prism([(0, 2), (2, 0), (4, 2), (2, 4)], 0, 1))
     hole = [(1, 2), (2, 1), (3, 2), (2, 3)]
     ring = outer - b.Solid(*prism(hole, 0, 1))
@@ -69,19 +69,19 @@ def diamonds() -> "b.Solid":
 
 
 def octagonal_ring() -> "b.Solid":
-    """Take a turned, smaller octagon out of an octagonal prism of the same height."""
+    """Return an octagonal prism without a smaller, rotated one of the same height."""
     turn = 185 * 3.141592653589793 / 180
     inner = b.Solid(*prism(regular_outline(8, 0.8, turn), 0, 1))
     return b.Solid(*prism(regular_outline(8), 0, 1)) - inner
 
 
 def two_columns() -> "b.Solid":
-    """Take two shifted cubes out of a cube: two columns stay."""
+    """Return a cube without two shifted cubes, which leaves two columns."""
     return unit() - unit().translate(0.3, 0.3, 0) - unit().translate(-0.3, -0.3, 0)
 
 
 def crossed_tetrahedra() -> "b.Solid":
-    """Put two tetrahedra edge to edge."""
+    """Return two tetrahedra that touch with crossed edges."""
     quarter_turn = affine([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
     return tetra().translate(0, 0, -1) | tetra().translate(0, 0, 1).transform(quarter_turn)
 
@@ -92,12 +92,12 @@ def block() -> "b.Solid":
 
 
 def bump() -> "b.Solid":
-    """Return an octahedron about the middle of the block's top."""
+    """Return an octahedron around the centre of the block's top."""
     return b.Solid(*moved(octahedron(), (0, 0, 1)))
 
 
 def upright() -> "b.Solid":
-    """Shift the block, then turn it so that it stands on z = 0."""
+    """Return the block shifted and then rotated so that it stands on z = 0."""
     quarter_turn = affine([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
     return block().translate(0, 1, 0).transform(quarter_turn)
 
@@ -113,7 +113,7 @@ def square_ring() -> "b.Solid":
 
 
 def pointed_ring() -> "b.Solid":
-    """Draw the square frame together to a point."""
+    """Return a square pyramid without a smaller one with the same apex."""
     return b.Solid(*pyramid(2, (0, 0, 1))) - b.Solid(*pyramid(1, (0, 0, 1)))
 
 
@@ -141,7 +141,7 @@ def sponge(depth: int) -> "b.Solid":
 
 
 class Case(NamedTuple):
-    """One row: how it is made and what must come out (Euler number of all surfaces together)."""
+    """A construction and its expected measures; the Euler number is of all surfaces together."""
 
     build: Callable[[], "b.Solid"]
     volume: Fraction | float

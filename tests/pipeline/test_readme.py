@@ -1,4 +1,4 @@
-"""The README shows what happens: its code runs, and its output is right."""
+"""The README is correct: its code runs, and its output is as shown."""
 
 import os
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The measuring scripts run, at small counts, on the meshes of the repository."""
+"""The measuring scripts run, with small counts, on the meshes of the repository."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The same parts in several tools: they run, and are the same parts."""
+"""The same parts as scripts for several tools: the scripts run, and the parts are equal."""
 
 import shutil
 import subprocess
@@ -22,7 +22,7 @@ def _present(tool: str) -> list[str]:
 
 
 def _volume(path: Path) -> float:
-    """Return what a script prints."""
+    """Return the volume that a script prints."""
     done = subprocess.run(
         [sys.executable, str(path)], capture_output=True, text=True, timeout=110, check=False
     )
@@ -32,7 +32,7 @@ def _volume(path: Path) -> float:
 
 @pytest.fixture(scope="module")
 def volumes() -> dict[str, float]:
-    """Return the volumes of our parts."""
+    """Return the volume of each part made by our script."""
     found = {}
     for part in PARTS:
         names: dict[str, object] = {}

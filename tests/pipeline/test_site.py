@@ -1,4 +1,4 @@
-"""The site is built without a warning, hangs together, and asks nothing of a network."""
+"""The site is built without warnings, has no broken links, and loads nothing from a network."""
 
 import re
 import zlib
@@ -31,7 +31,7 @@ _FETCHED = re.compile(r"(?:url\(|@import |fetch\(|src=)['\"]?(?:https?:)?//[^'\"
 
 
 class _Page(HTMLParser):
-    """The files that a page loads, the links that it has, and the places on it."""
+    """A page's loaded files, its links, and its anchors."""
 
     def __init__(self, path: Path) -> None:
         super().__init__()
@@ -54,7 +54,7 @@ class _Page(HTMLParser):
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return the folder of a site that was built as strictly as it can be."""
+    """Return the folder of the site, built in strict mode."""
     out = tmp_path_factory.mktemp("site") / "site"
     done = script("site", str(out))
     assert done.returncode == 0, done.stdout + done.stderr

@@ -1,4 +1,4 @@
-"""The command line imports only what the verb at hand needs before it works."""
+"""The command line imports only the modules that a command needs."""
 
 import shutil
 import subprocess

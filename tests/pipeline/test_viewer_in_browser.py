@@ -1,4 +1,4 @@
-"""The view of a model works in a real browser."""
+"""The viewer of a model works in a real browser."""
 
 import base64
 import io
@@ -54,7 +54,7 @@ def _change(before: "np.ndarray[Any, Any]", after: "np.ndarray[Any, Any]") -> fl
 
 
 def _point(browser: Browser, *place: float) -> list[float]:
-    """Return where a point of the model is on the canvas."""
+    """Return the position on the canvas of a point of the model."""
     script = """
         // A picture that is still to come would move the camera.
         view.render();
@@ -95,7 +95,7 @@ def test_points_are_taken_from_the_keyboard(opened: Browser) -> None:
 
 
 def _eye(browser: Browser) -> "tuple[np.ndarray[Any, Any], float, np.ndarray[Any, Any]]":
-    """Return the direction and the distance of the eye, and what it looks at."""
+    """Return the direction and the distance of the eye, and its target."""
     arm, target = browser.run(
         "return [view.eye.arm.toArray(), view.eye.controls.target.toArray()]",
     )
@@ -312,7 +312,7 @@ def test_every_control_has_a_name(opened: Browser) -> None:
 
 
 def _checkered() -> bytes:
-    """Return a picture of coloured squares, each with a darker corner."""
+    """Return a PNG of coloured squares, each with a darker corner."""
     squares = np.random.default_rng(1).integers(60, 255, (8, 8, 3), dtype=np.uint8)
     pixels = squares.repeat(16, axis=0).repeat(16, axis=1)
     pixels.reshape(8, 16, 8, 16, 3)[:, 10:, :, :6] //= 3

@@ -1,4 +1,4 @@
-"""Packages hold what they should, and a fault in one is named; scripts/wheel builds the wheels."""
+"""Checks of wheels and source distributions accept complete ones and name faults."""
 
 import json
 import re
@@ -29,7 +29,7 @@ A page.
 
 
 def put_wheel(folder: Path, change: Callable[[dict[str, bytes]], object] = len) -> Path:
-    """Write a wheel of this package with a core of a few bytes, changed somehow."""
+    """Write a wheel of this package with a tiny core, after a change of its files."""
     files = {name: (ROOT / name).read_bytes() for name in package()}
     files["bspcsg/_core.abi3.so"] = b"\x7fELF"
     files["bspcsg-1.dist-info/METADATA"] = ABOUT.encode()

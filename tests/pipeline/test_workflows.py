@@ -1,4 +1,4 @@
-"""The workflows, the action and the hook: well formed, and their commands do what they say."""
+"""The workflows, the action and the hook are well formed, and their commands work."""
 
 import os
 import re
@@ -73,7 +73,7 @@ def test_a_tag_gets_the_files_that_were_tried() -> None:
 
 @pytest.fixture
 def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A repository with a solid in a folder whose name has a space, on whose path bspcsg is."""
+    """Return a git repository with a solid in a folder with a space; bspcsg is on the PATH."""
     folder = tmp_path / "my parts"
     folder.mkdir()
     b.cube(2).save(folder / "cube.stl")
@@ -92,7 +92,7 @@ def put_open(name: str) -> None:
 
 
 def act(files: str = "", options: str = "") -> tuple[int, str]:
-    """Run the last step of the action on what git knows."""
+    """Run the last step of the action on the files that git tracks; return code and output."""
     subprocess.run(["git", "add", "-A"], check=True)
     action = document(ROOT / "action.yml")
     files = files or action["inputs"]["files"]["default"]
@@ -100,7 +100,7 @@ def act(files: str = "", options: str = "") -> tuple[int, str]:
 
 
 def stepped(number: int, variables: dict[str, str]) -> tuple[int, str]:
-    """Run a step of the action, and return its code and what it prints."""
+    """Run a step of the action; return its exit code and output."""
     step = document(ROOT / "action.yml")["runs"]["steps"][number]
     assert set(step["env"]) == set(variables)
     done = subprocess.run(

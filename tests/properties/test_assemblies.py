@@ -1,4 +1,4 @@
-"""Assemblies through every writer and back: triangles, volumes, objects, names, bytes."""
+"""Assemblies written by every writer and read back: triangles, volumes, objects, names, bytes."""
 
 import math
 import tempfile
@@ -48,7 +48,7 @@ ODD = st.text(max_size=6) | st.sampled_from(
 
 @st.composite
 def assemblies(draw: st.DrawFn, names: st.SearchStrategy[str]) -> RawMesh:
-    """Return some bodies side by side; some share their name, some are one another's mirror."""
+    """Return some bodies side by side; some have equal names or are mirror images."""
     bodies: list[Arrays] = []
     objects = []
     for number in range(draw(st.integers(1, 5))):
@@ -69,7 +69,7 @@ def assemblies(draw: st.DrawFn, names: st.SearchStrategy[str]) -> RawMesh:
 
 
 def volumes(mesh: RawMesh) -> list[Fraction]:
-    """Return the exact signed volume of each object, six times."""
+    """Return six times the exact signed volume of each object that has one."""
     found = []
     for _, faces in parts_of(mesh):
         points = [[list(map(Fraction, corner)) for corner in face] for face in mesh.vertices[faces]]
@@ -86,7 +86,7 @@ def determinant(a: list[Fraction], b: list[Fraction], c: list[Fraction]) -> Frac
 
 
 def written(mesh: RawMesh, suffix: str, text: bool) -> RawMesh:
-    """Write a mesh, twice the same, and read it."""
+    """Assert that writing a mesh twice gives the same bytes, and return the mesh read back."""
     first, second = (b"".join(encoded(mesh, "x", suffix, text).chunks) for _ in range(2))
     assert first == second
     with tempfile.TemporaryDirectory() as folder:
@@ -119,7 +119,7 @@ def test_nothing_is_lost(suffix: str, text: bool, mesh: RawMesh) -> None:
 
 
 def _check_names(found: RawMesh, mesh: RawMesh, suffix: str) -> None:
-    """Equal names stay equal; names of usual letters stay what they are."""
+    """Assert that equal names stay equal, and usual names stay the same."""
     before = [name for name, count in mesh.objects if count]
     after = [name for name, count in found.objects if count] or [found.name]
     if len(before) == 1:
@@ -135,7 +135,7 @@ def _check_names(found: RawMesh, mesh: RawMesh, suffix: str) -> None:
 @given(mesh=assemblies(PLAIN))
 @settings(deadline=None, max_examples=20)
 def test_from_format_to_format(middle: str, mesh: RawMesh) -> None:
-    """The way through another format and back keeps what single precision keeps."""
+    """Converting through another format and back keeps what single precision can store."""
     if len(mesh.faces) == 0:
         return
     mesh = in_single(mesh)

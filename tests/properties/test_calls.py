@@ -1,4 +1,4 @@
-"""Random calls of the public interface end in answers, or in errors that say why."""
+"""Random calls of the public interface return results, or raise errors that say why."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Random probes of coincidence that other engines fail now and then; here none may fail."""
+"""Random probes of coincidence, in which other engines sometimes fail; here none may fail."""
 
 import pytest
 
@@ -6,7 +6,7 @@ from support import DEEP, measures, probes
 
 
 def count(small: int, full: int) -> int:
-    """Return how many rounds to run."""
+    """Return the number of rounds: `full` in a deep run, else `small`."""
     return full if DEEP else small
 
 

@@ -1,4 +1,4 @@
-"""Solids at the ends of the lattice, where doubles are as coarse as it, are those at the origin."""
+"""Solids at the limits of the lattice, where doubles are as coarse, equal those at the origin."""
 
 from random import Random
 
@@ -14,12 +14,12 @@ END = 2**53
 
 
 def triangles(solid: b.Solid) -> list[list[list[float]]]:
-    """Return the corners of each triangle, all in order."""
+    """Return the sorted corners of each triangle, all triangles in order."""
     return sorted(sorted(triangle) for triangle in solid.vertices[solid.faces].tolist())
 
 
 def far_corner(random: Random) -> list[int]:
-    """Return an offset that keeps coordinates from 0 to 8 on the lattice, mostly hardly so."""
+    """Return an offset that keeps coordinates from 0 to 8 on the lattice, mostly near its end."""
     near_end = END - random.randint(9, 90)
     ends = [
         near_end,

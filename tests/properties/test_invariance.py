@@ -1,4 +1,4 @@
-"""Results do not depend on the order of faces, corner a face starts at, axes, place, threads."""
+"""Results do not depend on the order of faces and corners, on axes, position or threads."""
 
 from collections.abc import Iterator
 from itertools import permutations, product
@@ -25,7 +25,7 @@ OPERATIONS = ("union", "intersection", "difference", "xor")
 
 
 def pairs() -> list[tuple[Arrays, Arrays]]:
-    """Return operand pairs from simple to nasty."""
+    """Return pairs of operands, from simple to difficult."""
     rng = np.random.default_rng(7)
     ball = icosphere(3)
     tilted = turned(cube(1.5), random_rotation(rng))
@@ -46,13 +46,13 @@ PAIRS = pairs()
 
 @pytest.fixture(autouse=True)
 def all_threads_again() -> Iterator[None]:
-    """Leave the number of threads as it was."""
+    """Restore the default number of threads after the test."""
     yield
     b.set_threads(0)
 
 
 def result_bytes(first: Arrays, second: Arrays, operation: str) -> tuple[bytes, ...]:
-    """Return the result's arrays as bytes, from operands made anew."""
+    """Return the bytes of a result's arrays, computed from new operands."""
     a, c = b.Solid(*first), b.Solid(*second)
     result = {"union": a | c, "intersection": a & c, "difference": a - c, "xor": a ^ c}[operation]
     mesh = result.to_mesh()
@@ -108,7 +108,7 @@ def signed_permutations() -> list[np.ndarray]:
 
 
 def oriented(mesh: Arrays, matrix: np.ndarray) -> Arrays:
-    """Apply a matrix and turn the faces round if it mirrors."""
+    """Return a mesh under a matrix, with its faces reversed if the matrix mirrors."""
     vertices, faces = turned(mesh, matrix)
     return vertices, faces if np.linalg.det(matrix) > 0 else faces[:, ::-1].copy()
 

@@ -1,4 +1,4 @@
-"""The invariants of partition trees: their facets, the sides, and themselves moved or rebuilt."""
+"""Invariants of partition trees: facets, sides, and trees that are moved or rebuilt."""
 
 from collections import defaultdict
 from fractions import Fraction
@@ -16,7 +16,7 @@ _policies = st.sampled_from(bsp.POLICIES)
 
 @st.composite
 def scenes(draw: st.DrawFn) -> Any:
-    """Return few facets on a small grid, in one to three dimensions: everything coincides."""
+    """Return a few facets on a small grid in one to three dimensions, with many coincidences."""
     dimension = draw(st.integers(1, 3))
     point = st.tuples(*[_whole] * dimension)
     facet = st.lists(point, min_size=dimension, max_size=dimension).filter(_has_extent)
@@ -72,7 +72,7 @@ def test_a_tree_is_rebuilt_from_its_text(facets: Any, policy: bsp.Policy, seed: 
 
 
 def _parts_at_a_tie(one: bsp.PartitionTree, other: bsp.PartitionTree) -> bool:
-    """Return whether another pivot is chosen somewhere, of the same score but for rounding.
+    """Return true if two trees chose different pivots whose scores are equal up to rounding.
 
     Shares of volumes are doubles, so the last bit decides between candidates that are as good.
     """

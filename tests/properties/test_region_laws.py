@@ -1,4 +1,4 @@
-"""Identities of regions, exact, for random outlines."""
+"""Exact identities of regions, for random outlines."""
 
 from typing import Any
 

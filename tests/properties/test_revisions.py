@@ -1,4 +1,4 @@
-"""Two revisions of a mesh are the same but for a few corners, in whatever order their faces are."""
+"""Two revisions of a mesh are equal except for a few corners, whatever the order of faces."""
 
 from collections.abc import Callable
 
@@ -17,7 +17,7 @@ OPERATIONS: dict[str, Callable[[b.Solid, b.Solid], b.Solid]] = {
 
 
 def revised(mesh: Arrays, seed: int) -> Arrays:
-    """Return the mesh with a few neighbouring corners moved, and its faces in another order."""
+    """Return the mesh with a few neighbouring corners moved and its faces in another order."""
     rng = np.random.default_rng(seed)
     vertices, faces = mesh
     distances = np.linalg.norm(vertices - vertices[rng.integers(len(vertices))], axis=1)

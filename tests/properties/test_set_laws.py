@@ -1,4 +1,4 @@
-"""Laws of sets, as exact identities of sets and of rational volumes."""
+"""Laws of set algebra, as exact identities of sets and of rational volumes."""
 
 import numpy as np
 from hypothesis import given

@@ -1,4 +1,4 @@
-"""The same answers from many threads at once as from one after the other."""
+"""Many threads at once give the same results as one after the other."""
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -32,7 +32,7 @@ def cut() -> b.Solid:
 
 
 def through_file(suffix: str) -> object:
-    """Return a file's bytes, and what is read from it."""
+    """Return the bytes of a file of a solid, and the mesh read from it."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / f"x{suffix}"
         b.save(cut(), path)
@@ -94,7 +94,7 @@ PENDING: dict[str, Callable[[], b.Solid]] = {
 
 
 def seen(solid: b.Solid) -> tuple[object, list[int]]:
-    """Return the mesh, and of which meshes it is made."""
+    """Return a solid's mesh, and the indices of the meshes that it was made from."""
     return mesh_of(solid), solid.tree.sources
 
 

@@ -1,4 +1,4 @@
-"""The common part of the tests: plain shapes as arrays, and the checks of a sound result."""
+"""Helpers shared by all tests: plain shapes as arrays, and the checks of a sound result."""
 
 import os
 import subprocess
@@ -27,10 +27,10 @@ COMMIT = os.environ.get("BSPCSG_COMMIT") or _commit()
 
 
 def draw(name: str, count: int) -> int:
-    """Return a number below `count` that depends on the commit and on a name."""
+    """Return a number below `count` that depends only on the commit and on `name`."""
     return zlib.crc32(f"{COMMIT} {name}".encode()) % count
 
 
 def drawn(values: Sequence[T], step: int) -> Sequence[T]:
-    """Return one value in `step`, drawn by the commit; all of them in a deep run."""
+    """Return one value of every `step`, chosen by the commit; all values in a deep run."""
     return values if DEEP else values[draw(repr(values), step) :: step]

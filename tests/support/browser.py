@@ -1,4 +1,4 @@
-"""A browser without a window, and what it did."""
+"""A headless browser, and what its pages do: their texts, pictures, errors and requests."""
 
 import io
 import json
@@ -21,7 +21,7 @@ _BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 @contextmanager
 def started(*, webgl: bool) -> Iterator["Browser"]:
-    """Start Chromium; a test is skipped where it is not installed."""
+    """Yield Chromium, started headless; skip the test if it is not installed."""
     program = next(filter(None, map(shutil.which, _BROWSERS)), None)
     driver = shutil.which("chromedriver")
     if program is None or driver is None:
@@ -44,33 +44,33 @@ def started(*, webgl: bool) -> Iterator["Browser"]:
 
 
 class Browser:
-    """A page at a time, with what tests ask of it."""
+    """A headless browser with one page at a time."""
 
     def __init__(self, running: Any) -> None:
         self._running = running
 
     def open(self, path: Path) -> None:
-        """Open a file, and forget what earlier pages did."""
+        """Open a file, and clear the logs of earlier pages."""
         self._running.get_log("browser")
         self._running.get_log("performance")
         self._running.get(path.as_uri())
 
     def size(self, width: int, height: int) -> None:
-        """Make pages as large as some device shows them."""
+        """Show pages in a window of a mobile device, `width` × `height` pixels."""
         device = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": True}
         self._running.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", device)
 
     def device(self, looks: dict[str, Any] | None) -> None:
-        """Show pages as a device of this size does; as before for None."""
+        """Show pages as a device with these metrics does; None restores the desktop."""
         order = "clearDeviceMetricsOverride" if looks is None else "setDeviceMetricsOverride"
         self._running.execute_cdp_cmd(f"Emulation.{order}", looks or {})
 
     def run(self, script: str, *arguments: Any) -> Any:
-        """Return what the body of a function says in the page."""
+        """Run the body of a JavaScript function in the page, and return its result."""
         return self._running.execute_script(script, *arguments)
 
     def texts(self, selector: str) -> list[str]:
-        """Return the texts of all elements that can be seen."""
+        """Return the texts of all visible elements that match a selector."""
         script = (
             "return [...document.querySelectorAll(arguments[0])]"
             ".filter(e => e.checkVisibility()).map(e => e.textContent.trim())"
@@ -78,17 +78,17 @@ class Browser:
         return list(self.run(script, selector))
 
     def click(self, selector: str, number: int = 0) -> None:
-        """Click the nth of the elements, as a mouse does."""
+        """Click the element with this index among the elements that match a selector."""
         element = self._running.find_elements("css selector", selector)[number]
         self.run("arguments[0].scrollIntoView({block: 'center'})", element)
         element.click()
 
     def type(self, selector: str, *keys: str) -> None:
-        """Give keys to an element."""
+        """Send keys to the element that matches a selector."""
         self._running.find_element("css selector", selector).send_keys(*keys)
 
     def choose(self, label: str, value: str) -> None:
-        """Choose among the options of the select with a label."""
+        """Choose the option with a value in the select element with a label."""
         self.run(
             "const e = document.querySelector(`select[aria-label='${arguments[0]}']`);"
             "e.value = arguments[1]; e.dispatchEvent(new Event('change'))",
@@ -115,7 +115,7 @@ class Browser:
         )
 
     def press(self, selector: str, x: float, y: float) -> None:
-        """Press and release the mouse at a place of an element."""
+        """Press and release the mouse at the position (x, y) in an element."""
         self.run(
             "const [element, x, y] = arguments; const box = element.getBoundingClientRect();"
             "for (const kind of ['pointerdown', 'pointerup']) element.dispatchEvent("
@@ -127,7 +127,7 @@ class Browser:
         )
 
     def drag(self, *path: tuple[float, float], button: str = "left") -> None:
-        """Move the mouse along places of the page with a button pressed."""
+        """Move the mouse along positions in the page with a button pressed."""
         steps = ["mousePressed", *["mouseMoved"] * (len(path) - 2), "mouseReleased"]
         pressed = {"left": 1, "right": 2}[button]
         for kind, (x, y) in zip(steps, path, strict=True):
@@ -135,12 +135,12 @@ class Browser:
             self._running.execute_cdp_cmd("Input.dispatchMouseEvent", event | {"clickCount": 1})
 
     def wheel(self, x: float, y: float, turn: float) -> None:
-        """Turn the mouse's wheel at a place of the page."""
+        """Turn the mouse wheel at a position in the page."""
         event = {"type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": turn}
         self._running.execute_cdp_cmd("Input.dispatchMouseEvent", event)
 
     def touch(self, *steps: Sequence[tuple[float, float]]) -> None:
-        """Lay fingers on places of the page, move them along steps, and lift them."""
+        """Put fingers on positions in the page, move them through the steps, and lift them."""
         kinds = ["touchStart", *["touchMove"] * (len(steps) - 1)]
         for kind, places in (*zip(kinds, steps, strict=True), ("touchEnd", ())):
             points = [{"x": x, "y": y, "id": number} for number, (x, y) in enumerate(places)]
@@ -148,14 +148,14 @@ class Browser:
             self._running.execute_cdp_cmd("Input.dispatchTouchEvent", event)
 
     def prefer(self, theme: str) -> None:
-        """Say that the system is "light" or "dark"."""
+        """Emulate a system that prefers the theme "light" or "dark"."""
         features = [{"name": "prefers-color-scheme", "value": theme}]
         self._running.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
 
     def violations(self) -> list[str]:
-        """Return what axe finds in the page that keeps somebody from using it: rule and element.
+        """Return the accessibility violations that axe finds in the page, as rule and element.
 
-        What a role or name does to a reader it cannot always tell; that is a finding, too.
+        ARIA rules that axe cannot decide count as violations.
         """
         axe = files("axe_core_python") / "axe.min.js"
         self.run(axe.read_text(encoding="utf-8"))
@@ -170,11 +170,11 @@ class Browser:
         )
 
     def run_later(self, script: str) -> Any:
-        """Return what the body of a function gives to its last argument."""
+        """Run the body of an asynchronous JavaScript function, and return its callback's value."""
         return self._running.execute_async_script(script)
 
     def wait(self, condition: str) -> None:
-        """Wait until an expression holds in the page."""
+        """Wait until a JavaScript expression is true in the page."""
         from selenium.webdriver.support.ui import WebDriverWait
 
         WebDriverWait(self._running, 20, poll_frequency=0.05).until(
@@ -182,7 +182,7 @@ class Browser:
         )
 
     def pixels(self, selector: str) -> "np.ndarray[Any, np.dtype[np.uint8]]":
-        """Return what an element looks like, (h, w, 3), when all that was asked for is drawn."""
+        """Return the pixels of an element, (h, w, 3) uint8, after all drawing is finished."""
         # A view is drawn roughly while it moves.
         self.wait("![...document.querySelectorAll('.stage')].some(e => e.view?.isMoving)")
         self._running.execute_async_script(
@@ -194,12 +194,12 @@ class Browser:
             return np.asarray(image.convert("RGB"))
 
     def errors(self) -> list[str]:
-        """Return what the console got as errors."""
+        """Return the error messages in the console."""
         log = self._running.get_log("browser")
         return [entry["message"] for entry in log if entry["level"] == "SEVERE"]
 
     def requests(self) -> list[str]:
-        """Return the addresses that were asked for since the page was opened."""
+        """Return the URLs requested since the page was opened."""
         messages = [
             json.loads(e["message"])["message"] for e in self._running.get_log("performance")
         ]

@@ -1,4 +1,4 @@
-"""The checks that every result must pass, whoever asks."""
+"""The checks that every result must pass."""
 
 import manifold3d
 import numpy as np
@@ -10,7 +10,7 @@ from .shapes import Faces, Vertices
 
 
 def open_edges(faces: Faces) -> list[tuple[int, int]]:
-    """Return the directed edges that do not have exactly one opposite, by index."""
+    """Return the directed edges, by vertex indices, that do not have exactly one opposite edge."""
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     forth, count = np.unique(np.stack([start, end], axis=1), axis=0, return_counts=True)
     back = {(int(v), int(u)) for u, v in forth}
@@ -22,7 +22,7 @@ def open_edges(faces: Faces) -> list[tuple[int, int]]:
 
 
 def assert_closed(faces: Faces) -> None:
-    """Every directed edge has exactly one opposite."""
+    """Assert that each directed edge has exactly one opposite edge."""
     assert (faces[:, 0] != faces[:, 1]).all()
     assert (faces[:, 1] != faces[:, 2]).all()
     assert (faces[:, 2] != faces[:, 0]).all()
@@ -31,19 +31,19 @@ def assert_closed(faces: Faces) -> None:
 
 
 def manifold_status(vertices: Vertices, faces: Faces) -> str:
-    """Return manifold3d's word on the mesh, in double precision."""
+    """Return manifold3d's status of a mesh in double precision."""
     mesh = manifold3d.Mesh64(np.array(vertices, order="C"), np.array(faces, np.uint64, order="C"))
     return str(manifold3d.Manifold(mesh).status().name)
 
 
 def assert_accepted(vertices: Vertices, faces: Faces) -> None:
-    """Both validators take the mesh for a solid."""
+    """Assert that manifold3d and trimesh both accept a mesh as a solid."""
     assert manifold_status(vertices, faces) == "NoError"
     assert trimesh.Trimesh(vertices, faces, process=False).is_volume
 
 
 def assert_sound(solid: "b.Solid") -> "b.Mesh":
-    """Return the reduced mesh: closed, accepted, and bounding what the solid says it holds."""
+    """Assert that the reduced mesh is closed, accepted and has the solid's volume; return it."""
     assert_closed(solid.to_mesh().faces)
     mesh = solid.normalized().to_mesh()
     assert mesh.vertices.dtype == np.float64 and mesh.vertices.shape[1:] == (3,)
@@ -63,5 +63,5 @@ def assert_sound(solid: "b.Solid") -> "b.Mesh":
 
 
 def facts(mesh: "b.Mesh") -> tuple[int, int, int]:
-    """Return vertices, faces and connected surfaces."""
+    """Return the numbers of vertices, faces and connected surfaces of a mesh."""
     return len(mesh.vertices), len(mesh.faces), mesh.surface_count

@@ -1,4 +1,4 @@
-"""Running the command line, in this process and as a process of its own."""
+"""Run the command line, in this process or in a process of its own."""
 
 import os
 import signal
@@ -20,10 +20,10 @@ Capture = pytest.CaptureFixture[str]
 
 
 class Piped(Protocol):
-    """Runs a command with bytes in its streams."""
+    """A function that runs a command with bytes as its standard input."""
 
     def __call__(self, *arguments: str | bytes, given: bytes = b"") -> tuple[int, bytes, bytes]:
-        """Return exit code and both streams."""
+        """Return the exit code, standard output and standard error."""
 
 
 def put(name: str, mesh: Arrays) -> None:
@@ -32,7 +32,7 @@ def put(name: str, mesh: Arrays) -> None:
 
 
 def ran(capsys: Capture, *arguments: str) -> tuple[int, str, str]:
-    """Run a command in this process; return exit code and both streams."""
+    """Run a command in this process; return exit code, standard output and standard error."""
     code = run(arguments)
     said = capsys.readouterr()
     assert "Traceback" not in said.out + said.err
@@ -40,7 +40,7 @@ def ran(capsys: Capture, *arguments: str) -> tuple[int, str, str]:
 
 
 def process(*arguments: str | bytes, **settings: Any) -> "subprocess.Popen[bytes]":
-    """Start a command as a process of its own; `before` is called in it first."""
+    """Start a command in a process of its own; `before` is called there first."""
     path = str(Path(bspcsg.__file__).parent.parent)
     environment = {**os.environ, "PYTHONPATH": path, **settings.pop("more", {})}
     command = [sys.executable, "-m", "bspcsg", *arguments]
@@ -57,14 +57,14 @@ def process(*arguments: str | bytes, **settings: Any) -> "subprocess.Popen[bytes
 
 
 def heed_interrupts() -> None:
-    """Undo what a shell does to programs in the background: they ignore interrupts."""
+    """Restore the default action of SIGINT, which shells set to "ignore" in the background."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def finished(
     *arguments: str | bytes, given: bytes = b"", **settings: Any
 ) -> tuple[int, bytes, bytes]:
-    """Run a command as a process of its own; return exit code and both streams."""
+    """Run a command in a process of its own; return exit code, standard output and error."""
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
     running = process(*arguments, **{**pipes, **settings})
     out, err = running.communicate(given, timeout=60)
@@ -73,7 +73,7 @@ def finished(
 
 
 def script(name: str, *arguments: str) -> "subprocess.CompletedProcess[str]":
-    """Run one of the project's scripts with the interpreter of the tests."""
+    """Run one of the project's scripts with the Python of the tests."""
     root = Path(__file__).resolve().parents[2]
     return subprocess.run(
         [str(root / "scripts" / name), *arguments],

@@ -1,4 +1,4 @@
-"""Scenes of parts that nearly coincide, down to a billionth of a unit."""
+"""Random scenes of parts that nearly coincide, with differences down to 1e-9 units."""
 
 import random
 from collections.abc import Callable
@@ -57,7 +57,7 @@ def _part(rng: random.Random) -> "b.Solid":
 
 
 def scene(seed: int) -> "b.Solid":
-    """Return an expression of two to six parts, some of them copies hardly moved or turned."""
+    """Return a random expression of two to six parts, some of them slightly moved copies."""
     rng = random.Random(seed)
     parts = [_part(rng) for _ in range(rng.randrange(2, 5))]
     if rng.random() < 0.4:

@@ -1,4 +1,4 @@
-"""Pages of Markdown whose code is run, and whose shown output is compared with what is printed."""
+"""Run the code of Markdown pages, and compare its output with the output shown on the page."""
 
 import contextlib
 import glob
@@ -44,20 +44,20 @@ ANYTHING = "…"
 
 @dataclass
 class Session:
-    """The state that the blocks of one page share: variables, and the last exit code."""
+    """The state that all blocks of a page share: variables and the last exit code."""
 
     variables: dict[str, Any] = field(default_factory=dict)
     code: int = 0
 
     def python(self, text: str) -> str:
-        """Run a block of Python, and return what it prints."""
+        """Run a block of Python code, and return its output."""
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
             exec(compile(text, "block", "exec"), self.variables)
         return printed.getvalue()
 
     def command(self, line: str) -> str:
-        """Run a line of a console, and return what it prints on both streams."""
+        """Run a line of a console block, and return its standard output and error together."""
         if line == "echo $?":
             return f"{self.code}\n"
         words = shlex.split(line)
@@ -83,7 +83,7 @@ class Session:
 
 
 def _bare(line: str) -> str:
-    """Return a line without what is quoted."""
+    """Return a command line without its quoted parts."""
     return re.sub(r"'[^']*'|\"[^\"]*\"", "", line)
 
 
@@ -92,12 +92,12 @@ def _expanded(word: str) -> list[str]:
 
 
 def blocks(page: str) -> list[tuple[str, str]]:
-    """Return language and text of each block."""
+    """Return the language and the text of each code block of a page."""
     return _BLOCK.findall(page)
 
 
 def exchanges(block: str) -> Iterator[tuple[str, str]]:
-    """Yield each command of a console block with the output shown below it."""
+    """Yield each command of a console block with the output that is shown below it."""
     for part in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]:
         first, *rest = part.splitlines(keepends=True)
         more = list(itertools.takewhile(lambda line: line.startswith(_GOES_ON), rest))
@@ -106,12 +106,12 @@ def exchanges(block: str) -> Iterator[tuple[str, str]]:
 
 
 def expected_of(block: str) -> list[str]:
-    """Return what the comments of a Python block say is printed."""
+    """Return the outputs that the comments ``# -> …`` of a Python block announce."""
     return re.findall(r"# -> (.*)$", block, re.MULTILINE)
 
 
 def same(printed: str, shown: str) -> bool:
-    """Say whether an output is the one that is shown, but for times, versions and sizes."""
+    """Return true if an output equals the shown one, apart from times, versions and sizes."""
     pattern = "\n".join(re.escape(line) for line in _lines(shown))
     anything = re.escape(ANYTHING)
     pattern = re.sub(rf"^{anything}$", r"[\\s\\S]*", pattern, flags=re.MULTILINE)
@@ -119,7 +119,7 @@ def same(printed: str, shown: str) -> bool:
 
 
 def _lines(text: str) -> list[str]:
-    """Return the lines without blanks at their ends, times, versions and sizes of files."""
+    """Return the lines of a text with times, versions and file sizes replaced by ``#``."""
     text = re.sub(r"\d+(\.\d+)? (m?s|minutes?)\b", "# s", text)
     text = re.sub(r"\b\d+ kB\b", "# kB", text)
     text = re.sub(r"\b\d+\.\d+\.\d+\b", "#.#.#", text)
@@ -127,7 +127,7 @@ def _lines(text: str) -> list[str]:
 
 
 def with_generated(name: str, page: str, text: str) -> str:
-    """Return a page with a text between its marks."""
+    """Return a page with the text between its marks replaced."""
     before, begin, rest = page.partition(_BEGIN)
     _, end, after = rest.partition(_END)
     if not begin or not end:
@@ -136,12 +136,12 @@ def with_generated(name: str, page: str, text: str) -> str:
 
 
 def pictures(page: str) -> list[str]:
-    """Return the pictures that the code of a page makes; they lie in `pictures` beside it."""
+    """Return the names of the pictures in `pictures` that the code of a page makes."""
     return re.findall(r"!\[[^\]]+\]\(pictures/([^)]+)\)", page)
 
 
 def looks_like(path: Path, expected: Path) -> bool:
-    """Say whether two pictures are of one size, and the same but for how edges are smoothed."""
+    """Return true if two pictures have one size and differ at most in the smoothing of edges."""
     with Image.open(path) as one, Image.open(expected) as other:
         if one.size != other.size:
             return False
@@ -150,14 +150,14 @@ def looks_like(path: Path, expected: Path) -> bool:
 
 
 def page_files() -> list[Path]:
-    """Return the pages written by hand."""
+    """Return the paths of all pages that are written by hand."""
     return sorted(path for path in DOCS.rglob("*.md") if path.parent.name != "api")
 
 
 def rewritten(path: Path) -> str:
-    """Return a page with the output of its commands as it is, and put its pictures beside it.
+    """Return a page with the current output of its commands, and write its pictures.
 
-    Output that has “…” in it is kept.
+    Shown output that contains “…” is not replaced.
     """
     import tempfile
 
@@ -193,7 +193,7 @@ def _trimmed(printed: str) -> str:
 
 
 def prepare(folder: Path) -> None:
-    """Fill a folder with the meshes that the pages speak of."""
+    """Link the example meshes that the pages use into a folder."""
     for path in (ROOT / "examples" / "meshes").iterdir():
         if path.suffix != ".md":
             (folder / path.name).symlink_to(path)

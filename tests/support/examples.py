@@ -1,4 +1,4 @@
-"""The files that each example writes."""
+"""The names of the files that each example writes."""
 
 _PAINTED = ("cycle.svg", "lines.svg", "part.svg", "plane.svg", "scan.png")
 _SECTIONS = ("low", "high", "side", "slanted")

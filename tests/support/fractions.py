@@ -1,4 +1,4 @@
-"""Triangles in fractions: what two of them have in common, without the core."""
+"""Intersections of triangles in exact fractions, without the core."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -10,7 +10,7 @@ Corners = Sequence[Vector]
 
 
 def exact(points: Any) -> list[Vector]:
-    """Return points of doubles as what they are."""
+    """Return points of doubles as points of exact fractions."""
     return [tuple(Fraction(float(x)) for x in point) for point in points]
 
 
@@ -36,21 +36,21 @@ def is_flat(triangle: Corners) -> bool:
 
 
 def is_on_both_sides(triangle: Corners, plane: Corners) -> bool:
-    """Return whether corners of a triangle lie on both sides of another's plane."""
+    """Return true if a triangle has corners strictly on both sides of the plane of another one."""
     n = normal(plane)
     heights = [dot(n, minus(p, plane[0])) for p in triangle]
     return min(heights) < 0 < max(heights)
 
 
 def _holds(triangle: Corners, point: Vector) -> bool:
-    """Return whether a point of a triangle's plane lies in the triangle."""
+    """Return true if a point in a triangle's plane lies in the closed triangle."""
     n = normal(triangle)
     edges = zip(triangle, (*triangle[1:], triangle[0]), strict=True)
     return all(dot(cross(minus(q, p), minus(point, p)), n) >= 0 for p, q in edges)
 
 
 def _cuts(first: Corners, second: Corners) -> set[Vector]:
-    """Return the points of the first one's edges in the second, for different planes."""
+    """Return the points at which edges of the first triangle meet the second, in another plane."""
     n, found = normal(second), set()
     heights = [dot(n, minus(p, second[0])) for p in first]
     for i, j in ((0, 1), (1, 2), (2, 0)):
@@ -67,7 +67,7 @@ def _cuts(first: Corners, second: Corners) -> set[Vector]:
 
 
 def _within(p: Vector, q: Vector, triangle: Corners) -> set[Vector]:
-    """Return the ends of a segment's part in a triangle of its plane."""
+    """Return the ends of the part of a segment that lies in a triangle of its plane."""
     n, low, high = normal(triangle), Fraction(0), Fraction(1)
     for a, b in zip(triangle, (*triangle[1:], triangle[0]), strict=True):
         inward = cross(n, minus(b, a))
@@ -83,7 +83,7 @@ def _within(p: Vector, q: Vector, triangle: Corners) -> set[Vector]:
 
 
 def _overlap(first: Corners, second: Corners) -> bool:
-    """Return whether two triangles of one plane have an area in common: clip one by the other."""
+    """Return true if two triangles in one plane have an area in common."""
     n, rest = normal(second), list(first)
     for a, b in zip(second, (*second[1:], second[0]), strict=True):
         inward = cross(n, minus(b, a))
@@ -102,9 +102,9 @@ def _overlap(first: Corners, second: Corners) -> bool:
 
 
 def common_dimension(first: Corners, second: Corners) -> int:
-    """Return the dimension of what two triangles with area have in common, -1 for nothing.
+    """Return the dimension of the intersection of two triangles, -1 if it is empty.
 
-    Of triangles in one plane 2 or less than that, as -1.
+    For triangles in one plane it is 2, or -1 if they have no area in common.
     """
     n = normal(second)
     if all(dot(n, minus(p, second[0])) == 0 for p in first):

@@ -1,4 +1,4 @@
-"""GLB as other programs write it, put together piece by piece."""
+"""Build GLB files as other programs write them."""
 
 import json
 from typing import Any
@@ -16,18 +16,18 @@ TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 
 
 class Scene:
-    """A GLB in the making: one mesh at one node, and what is put there.
+    """A GLB file under construction, with one mesh at one node.
 
     Parameters
     ----------
     positions : (n, 3) array
-        In the type in which they are stored.
+        Positions of vertices, in the type in which they are stored.
     faces : (m, 3) int array
-        Of at most 65 536 vertices.
+        Triangles over at most 65 536 vertices.
     stride : int
-        Bytes from one position to the next; 0 for no gaps.
+        The number of bytes from one position to the next; 0 for no gaps.
     accessor
-        What else is said of positions.
+        Further properties of the accessor of positions.
     """
 
     def __init__(
@@ -45,7 +45,7 @@ class Scene:
         self.tree |= {"meshes": [{"primitives": [self.primitive]}], "nodes": [self.node]}
 
     def view(self, values: Numbers, stride: int = 0) -> int:
-        """Add a view of rows; return its number."""
+        """Add a buffer view with rows of numbers, and return its index."""
         self.data += bytes(-len(self.data) % 4)
         told: dict[str, Any] = {"buffer": 0, "byteOffset": len(self.data)}
         data = values.tobytes()
@@ -58,7 +58,7 @@ class Scene:
         return len(self.tree["bufferViews"]) - 1
 
     def add(self, values: Numbers, stride: int = 0, **further: Any) -> int:
-        """Add an accessor of rows; return its number."""
+        """Add an accessor with rows of numbers, and return its index."""
         values = np.ascontiguousarray(values)
         self.tree["accessors"].append(
             {
@@ -72,7 +72,7 @@ class Scene:
         return len(self.tree["accessors"]) - 1
 
     def replace(self, accessor: int, places: list[int], values: Numbers) -> dict[str, Any]:
-        """Make an accessor sparse; return what is said of it."""
+        """Make an accessor sparse, with values at these indices; return its sparse entry."""
         indices = np.array(places, "u1").reshape(-1, 1)
         sparse = {
             "count": len(places),
@@ -83,7 +83,7 @@ class Scene:
         return sparse
 
     def blur(self, accessor: int, places: list[int]) -> None:
-        """Overwrite what a view of an accessor holds of elements that are replaced."""
+        """Overwrite the elements at these indices in the buffer view of an accessor."""
         view = self.tree["bufferViews"][self.tree["accessors"][accessor]["bufferView"]]
         size = view.get("byteStride", 12)
         for place in places:
@@ -91,12 +91,12 @@ class Scene:
             self.data = self.data[:at] + b"\x7f" * size + self.data[at + size :]
 
     def place(self, **given: Numbers) -> None:
-        """Show the mesh at several places."""
+        """Add instances of the mesh, with the extension EXT_mesh_gpu_instancing."""
         told = {key: self.add(values, normalized=True) for key, values in given.items()}
         self.node["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": told}}
         self.tree["extensionsRequired"] = ["EXT_mesh_gpu_instancing"]
 
     def bytes(self) -> bytes:
-        """Return the file."""
+        """Return the bytes of the GLB file."""
         self.tree["buffers"] = [{"byteLength": len(self.data)}]
         return glb_of(json.dumps(self.tree).encode(), self.data + bytes(-len(self.data) % 4))

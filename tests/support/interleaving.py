@@ -1,7 +1,7 @@
-"""Two threads on one object, one of which comes between two lines of the other.
+"""Run two threads on one object so that one interrupts the other at any line.
 
-Where threads change over is up to chance. Here one is traced, and the other's whole work is done at
-one of its lines; so all places can be tried.
+Usually chance decides where threads switch. Here the first function is traced, and the whole second
+function runs at one of its lines; so all lines can be tried.
 """
 
 import sys
@@ -19,7 +19,7 @@ _Second = TypeVar("_Second")
 
 
 class _Between:
-    """A tracer that calls something before the line of this number is carried out."""
+    """A trace function that calls `call` before the line with this number is executed."""
 
     def __init__(self, line: int, call: Callable[[], None]) -> None:
         self._left = line
@@ -46,7 +46,7 @@ def interleaved(
     first: Callable[[Any], _First],
     second: Callable[[Any], _Second],
 ) -> Iterator[tuple[_First, _Second]]:
-    """Yield what both find at an object, for each line of our code at which the second may come."""
+    """Yield the results of both functions on an object, for each line at which `second` can run."""
     before, line = sys.gettrace(), 0
     while True:
         shared = make()

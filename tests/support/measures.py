@@ -1,4 +1,4 @@
-"""Figures with bounds, each a function that returns what broke its bound and the figures."""
+"""Measurements with bounds: each function returns the violations and the measured figures."""
 
 import gc
 import time
@@ -43,11 +43,11 @@ MAX_REPORTED_SHARE = 0.01
 
 
 def crossings(rounds: int) -> Measured:
-    """Count the scenes of nearly coincident parts whose meshes cross, also in a binary STL.
+    """Count the scenes of nearly coincident parts whose meshes cross themselves.
 
-    Looked at is what was delivered: the mesh, and the triangles that the file holds, joined where
-    coordinates are equal. A crossing that no finding tells of is a failure, and so are too many,
-    and vertices of the mesh that lie in one place without a finding.
+    Both the delivered mesh and the triangles of a binary STL file, joined at equal coordinates, are
+    tested. A failure is a crossing without a finding, too many crossings, or vertices with equal
+    coordinates without a finding.
     """
     failed, counts = [], Counter[str]()
     for seed in range(rounds):
@@ -85,9 +85,9 @@ def _touches(mesh: "b.Mesh") -> bool:
 
 
 def shares_of_proofs(triangles: int, turns: int = 5) -> Measured:
-    """Return the shares of the time of writing that the proofs take, format by format.
+    """Return the fraction of the time of writing a file that proofs take, by format.
 
-    On the wall, as a user waits: until the file is on the disk.
+    The time is wall-clock time until the file is on the disk.
     """
     mesh = b.sphere(1, segments=round(triangles**0.5)).rotate((10, 20, 30)).to_mesh()
     failed, figures = [], {}
@@ -107,9 +107,9 @@ def shares_of_proofs(triangles: int, turns: int = 5) -> Measured:
 
 
 def _share(mesh: "b.Mesh", path: Path, text: bool, turns: int) -> float:
-    """Return the share of the proof in writing a file: the median of some turns.
+    """Return the median fraction of the time of writing a file that its proof takes.
 
-    The file is written while it is proved, so that the time of either is taken apart.
+    The proof runs while the file is written, so both times are measured separately.
     """
     shares = []
     for _ in range(turns):
@@ -130,7 +130,7 @@ def _share(mesh: "b.Mesh", path: Path, text: bool, turns: int) -> float:
 
 
 class _Watched(atomic._Growing):
-    """A file that is written as it is read, and the time of writing it."""
+    """A file that is written while it is read back, with the time spent on writing."""
 
     writing = 0.0
 
@@ -141,9 +141,9 @@ class _Watched(atomic._Growing):
 
 
 def shares_of_checks(triangles: int, turns: int = 15) -> Measured:
-    """Return the shares of the time from a binary file to its volume that checks take.
+    """Return the fraction of the time from a binary file to its volume that checks take.
 
-    Looked at is what `trusted` leaves out: the proof that faces meet in edges and vertices only.
+    The checks are those that `trusted` omits: the proof that faces meet only in edges and vertices.
     """
     mesh = b.sphere(1, segments=round(triangles**0.5)).rotate((10, 20, 30)).to_mesh()
     failed, figures = [], {}
@@ -165,10 +165,9 @@ def shares_of_checks(triangles: int, turns: int = 15) -> Measured:
 
 
 def _share_of_proof(work: Callable[[bool], None], turns: int) -> float:
-    """Return the proof's share in the least times with it and without it, turn by turn.
+    """Return the fraction of the least time that the proof takes, from turns with and without it.
 
-    What other users of a machine do to its caches and clocks only makes work longer: the least
-    times are those that were disturbed least. A median of shares has the disturbance of both.
+    Other load on the machine only makes times longer, so the least times are the best estimates.
     """
     times: dict[bool, list[float]] = {False: [], True: []}
     for turn in range(turns):
@@ -178,7 +177,7 @@ def _share_of_proof(work: Callable[[bool], None], turns: int) -> float:
 
 
 def _time_of(work: Callable[[bool], None], proves: bool) -> float:
-    """Return the seconds of the processors that some work takes."""
+    """Return the processor time of one call of `work`, in seconds."""
     gc.collect()
     began = time.process_time()
     work(proves)

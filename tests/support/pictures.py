@@ -1,4 +1,4 @@
-"""The smallest picture that is one."""
+"""The smallest valid picture, as a PNG file."""
 
 #: A PNG of one red pixel.
 PIXEL = (

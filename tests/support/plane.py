@@ -1,4 +1,4 @@
-"""Regions by brute force: winding numbers and areas in rational arithmetic."""
+"""Winding numbers and areas of regions by brute force, in rational arithmetic."""
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
@@ -20,7 +20,7 @@ def edges_of(loops: Sequence[Loop]) -> list[tuple[tuple[int, int], tuple[int, in
 
 
 def winding_number(loops: Sequence[Loop], x: Fraction, y: Fraction) -> int:
-    """Return the winding number about a point that lies on no edge."""
+    """Return the winding number of outlines about a point that lies on no edge."""
     number = 0
     for (ax, ay), (bx, by) in edges_of(loops):
         turn = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
@@ -32,7 +32,7 @@ def winding_number(loops: Sequence[Loop], x: Fraction, y: Fraction) -> int:
 
 
 def area(loops: Sequence[Loop], rule: str) -> Fraction:
-    """Return the exact area, by trapezoids between all heights where something changes."""
+    """Return the exact area of a region, by trapezoids between the heights of all vertices."""
     edges = [e for e in edges_of(loops) if e[0][1] != e[1][1]]
     levels = sorted(_levels(edges))
     total = Fraction(0)
@@ -53,7 +53,7 @@ def _levels(edges: list[tuple[tuple[int, int], tuple[int, int]]]) -> set[Fractio
 
 
 def _slab(edges: list[tuple[tuple[int, int], tuple[int, int]]], y: Fraction, rule: str) -> Fraction:
-    """Return the length inside at one height that no vertex lies on."""
+    """Return the length of a region on a horizontal line through no vertex."""
     crossings = []
     for (ax, ay), (bx, by) in edges:
         if min(ay, by) < y < max(ay, by):

@@ -1,4 +1,4 @@
-"""Points and hyperplanes in fractions, without a lattice: what half-spaces are compared with."""
+"""Exact points and hyperplanes in fractions, with which half-spaces are compared."""
 
 import random
 from collections.abc import Callable, Sequence
@@ -13,12 +13,12 @@ Entry = Callable[[random.Random], Fraction]
 
 
 def entries(size: int, places: int = 0) -> Entry:
-    """Return a source of decimals below `size` steps of the last place."""
+    """Return a source of random decimals with `places` places, up to `size` units of the last."""
     return lambda rng: Fraction(rng.randint(-size, size), 10**places)
 
 
 def vector(rng: random.Random, entry: Entry, dimension: int = 3) -> list[Fraction]:
-    """Return a random vector, not zero."""
+    """Return a random vector of fractions that is not zero."""
     while True:
         row = [entry(rng) for _ in range(dimension)]
         if any(row):
@@ -26,18 +26,18 @@ def vector(rng: random.Random, entry: Entry, dimension: int = 3) -> list[Fractio
 
 
 def dot(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:
-    """Return the inner product."""
+    """Return the exact inner product of two vectors."""
     return sum((x * y for x, y in zip(a, b, strict=True)), Fraction(0))
 
 
 def side(plane: Plane, point: Sequence[Fraction]) -> int:
-    """Return +1 for points inside the half-space, 0 on its border, -1 outside."""
+    """Return 1 for a point inside a half-space, 0 on its boundary, -1 outside."""
     value = plane[1] - dot(plane[0], point)
     return (value > 0) - (value < 0)
 
 
 def determinant(rows: Sequence[Sequence[Fraction]]) -> Fraction:
-    """Return the determinant, by its first row."""
+    """Return the exact determinant of a square matrix."""
     if not rows:
         return Fraction(1)
     total = Fraction(0)
@@ -48,7 +48,7 @@ def determinant(rows: Sequence[Sequence[Fraction]]) -> Fraction:
 
 
 def meet(planes: Sequence[Plane]) -> list[Fraction]:
-    """Return the point of as many hyperplanes as there are dimensions, by Cramer's rule."""
+    """Return the common point of d hyperplanes in d dimensions."""
     whole = determinant([normal for normal, _ in planes])
     replaced = [
         [[*normal[:k], offset, *normal[k + 1 :]] for normal, offset in planes]
@@ -58,18 +58,18 @@ def meet(planes: Sequence[Plane]) -> list[Fraction]:
 
 
 def corners(planes: Sequence[Plane]) -> list[list[Fraction]]:
-    """Return the corners of the simplex between one hyperplane more than there are dimensions."""
+    """Return the corners of the simplex that d + 1 hyperplanes in d dimensions bound."""
     return [meet(some) for some in combinations(planes, len(planes) - 1)]
 
 
 def simplex_measure(points: Sequence[Sequence[Fraction]]) -> Fraction:
-    """Return the length, area or volume of a simplex."""
+    """Return the exact length, area or volume of a simplex."""
     edges = [[x - y for x, y in zip(p, points[0], strict=True)] for p in points[1:]]
     return abs(determinant(edges)) / {1: 1, 2: 2, 3: 6}[len(edges)]
 
 
 def simplex_around(rng: random.Random, entry: Entry, dimension: int) -> list[Plane]:
-    """Return hyperplanes through whole points, all with the origin strictly inside."""
+    """Return d + 1 random hyperplanes that bound a simplex around the origin."""
     while True:
         normals = [vector(rng, entry, dimension) for _ in range(dimension)]
         if determinant(normals) == 0:

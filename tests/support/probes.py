@@ -1,7 +1,7 @@
-"""The random probes, each a function that returns what failed.
+"""Random probes of coincidences: each function returns the rounds that failed.
 
-Round k of a probe draws from the generator seeded with (seed, k), so that a failing round can be
-repeated alone.
+Round k of a probe uses the random generator seeded with (seed, k), so that it can be repeated
+alone.
 """
 
 from collections.abc import Callable
@@ -20,14 +20,14 @@ BOX = (8, 12, 1)
 
 
 class Failure(NamedTuple):
-    """A round that went wrong."""
+    """A round of a probe that failed, and why."""
 
     round: int
     what: str
 
 
 def failures(rounds: int, seed: int, probe: Callable[[Rng], str]) -> list[Failure]:
-    """Run a probe and keep the rounds that return words."""
+    """Run a probe for all rounds, and return the rounds for which it returns a complaint."""
     told = ((k, probe(np.random.default_rng([seed, k]))) for k in range(rounds))
     return [Failure(k, what) for k, what in told if what]
 
@@ -46,7 +46,7 @@ def _is_box(solid: "b.Solid", like: "b.Solid") -> str:
 
 
 def points_on_half_spaces(rounds: int, seed: int) -> list[Failure]:
-    """Whole numbers of a plane through a point of whole numbers: the point is on its border."""
+    """Check that integer points on planes with integer normals are on the half-spaces' boundary."""
 
     def probe(rng: Rng) -> str:
         normal, point = rng.integers(-20, 21, 3), rng.integers(-50, 51, 3)
@@ -59,7 +59,7 @@ def points_on_half_spaces(rounds: int, seed: int) -> list[Failure]:
 
 
 def corner_of_a_box() -> list[Failure]:
-    """A box within a half-space through three of its corners is their tetrahedron."""
+    """Check that a box and a half-space through three of its corners intersect in a tetrahedron."""
 
     def probe(_: Rng) -> str:
         corners = np.array([(0.0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
@@ -70,7 +70,7 @@ def corner_of_a_box() -> list[Failure]:
 
 
 def glued_tetrahedra(rounds: int, seed: int) -> list[Failure]:
-    """Two tetrahedra on one triangle: 5 vertices, 6 triangles, one part."""
+    """Check that two tetrahedra on one triangle unite to 5 vertices, 6 triangles and one part."""
 
     def probe(rng: Rng) -> str:
         shared, above = rng.uniform(-1, 1, (3, 3)), rng.uniform(-1, 1, 3)
@@ -96,7 +96,7 @@ def _turned_cube(rng: Rng, reach: float) -> "b.Solid":
 
 
 def parts_reunited(rounds: int, seed: int) -> list[Failure]:
-    """(A ∩ B) ∪ (A − B) is A, for cubes in general position."""
+    """Check that (A ∩ B) ∪ (A − B) is A, for cubes in general position."""
 
     def probe(rng: Rng) -> str:
         a, c = _turned_cube(rng, 0), _turned_cube(rng, 0.6)
@@ -106,7 +106,7 @@ def parts_reunited(rounds: int, seed: int) -> list[Failure]:
 
 
 def halves_reunited(rounds: int, seed: int) -> list[Failure]:
-    """Both sides of a random plane cut, put together, are the cube."""
+    """Check that both parts of a cube on the sides of a random plane unite to the cube."""
 
     def probe(rng: Rng) -> str:
         a = _turned_cube(rng, 0)
@@ -124,7 +124,7 @@ def halves_reunited(rounds: int, seed: int) -> list[Failure]:
 
 
 def boxes_turned_together(rounds: int, seed: int) -> list[Failure]:
-    """Two cubes that share a face, turned by the same matrix: one box of 12 triangles."""
+    """Check that two cubes with a common face, rotated together, unite to a box of 12 triangles."""
 
     def probe(rng: Rng) -> str:
         together = affine(random_rotation(rng), rng.uniform(-1, 1, 3))
@@ -136,7 +136,7 @@ def boxes_turned_together(rounds: int, seed: int) -> list[Failure]:
 
 
 def half_of_turned_box(rounds: int, seed: int) -> list[Failure]:
-    """A 2 × 1 × 1 box minus its half, turned by the same matrix: the other half."""
+    """Check that a 2 × 1 × 1 box minus its half, both rotated together, is its other half."""
 
     def probe(rng: Rng) -> str:
         together = affine(random_rotation(rng))
@@ -148,7 +148,7 @@ def half_of_turned_box(rounds: int, seed: int) -> list[Failure]:
 
 
 def cubes_at(far: float) -> list[Failure]:
-    """Two overlapping unit cubes at any distance from the origin keep their volumes."""
+    """Check the volumes of set operations on two overlapping unit cubes far from the origin."""
 
     def probe(_: Rng) -> str:
         a = b.Solid(*moved(cube(), (far, 0, 0)))
@@ -162,7 +162,7 @@ def cubes_at(far: float) -> list[Failure]:
 
 
 def nearly_identical_cubes(rounds: int, seed: int) -> list[Failure]:
-    """Cubes a few lattice steps apart, or less than one: exact volumes, closed results."""
+    """Check exact volumes of cubes that are at most some lattice steps apart."""
 
     def probe(rng: Rng) -> str:
         shift = rng.integers(-3, 4, 3) * 10.0 ** float(rng.integers(-11, -7))
@@ -176,7 +176,7 @@ def nearly_identical_cubes(rounds: int, seed: int) -> list[Failure]:
 
 
 def decimals_meet() -> list[Failure]:
-    """Sums of decimals that doubles cannot hold still land on one point."""
+    """Check that sums of decimals that are no doubles snap to one lattice point."""
 
     def probe(_: Rng) -> str:
         small = b.Solid(*cube(0.3)) | b.Solid(*moved(cube(0.3), (0.1 + 0.2, 0, 0)))
@@ -192,7 +192,7 @@ def decimals_meet() -> list[Failure]:
 
 
 def chains_of_cubes(rounds: int, length: int, seed: int) -> list[Failure]:
-    """Chains of + and − over cubes turned by little or at random: closed, and volumes add up."""
+    """Check that chains of set operations on rotated cubes are closed and their volumes add up."""
 
     def probe(rng: Rng) -> str:
         solid = _turned_cube(rng, 0)

@@ -1,7 +1,7 @@
-"""Programs that use the library before and after their process divides.
+"""Programs that use the library before and after their process forks.
 
-Each runs as a process of its own, ``python -m support.processes NAME [COUNT]``, and ends with 0 if
-all went as it should.
+Each runs in a process of its own, ``python -m support.processes NAME [COUNT]``, and ends with 0 if
+nothing fails.
 """
 
 import importlib
@@ -35,18 +35,18 @@ REQUESTS = 4
 
 
 def job(k: int) -> b.Solid:
-    """Return one of many different solids, of more elements than one thread is given."""
+    """Return solid number k, with enough faces for several threads."""
     ball = b.sphere(10, segments=48)
     return ball - b.sphere(8, segments=48).translate((k % 7 + 1, k % 5, 0.25))
 
 
 def small_job(k: int) -> b.Solid:
-    """Return one of many different solids that is made at once."""
+    """Return solid number k, with so few faces that it takes no time."""
     return b.box((4, 4, 4)) - b.box((1, 2, 3)).translate((k % 5 * 0.5, 0.25, k % 3))
 
 
 def triangles(solid: b.Solid) -> set[tuple[Corner, Corner, Corner]]:
-    """Return the triangles of the mesh, each from its least corner on."""
+    """Return the triangles of a solid's mesh, each starting with its least corner."""
     mesh = solid.to_mesh()
     found = set()
     for corners in mesh.vertices[mesh.faces].tolist():
@@ -56,12 +56,12 @@ def triangles(solid: b.Solid) -> set[tuple[Corner, Corner, Corner]]:
 
 
 def same(one: b.Solid, other: b.Solid) -> bool:
-    """Say whether two solids have the same triangles in every bit, and are the same set."""
+    """Return true if two solids are equal sets with bitwise equal triangles."""
     return triangles(one) == triangles(other) and one.equals(other)
 
 
 def ended(child: int, patience: float = TIMEOUT) -> int:
-    """Wait for a child; return its status as `os.waitpid` has it. Kill it if it is stuck."""
+    """Wait for a child and return its status as `os.waitpid` does; kill it after a time limit."""
     until = time.monotonic() + patience
     while time.monotonic() < until:
         found, status = os.waitpid(child, os.WNOHANG)
@@ -74,7 +74,7 @@ def ended(child: int, patience: float = TIMEOUT) -> int:
 
 
 def in_child(work: Callable[[], object]) -> int:
-    """Fork; return the child, which ends with 0 unless the work raises."""
+    """Fork; return the child's id, and in the child run `work` and exit with 0 unless it raises."""
     child = os.fork()
     if child:
         return child
@@ -88,14 +88,14 @@ def in_child(work: Callable[[], object]) -> int:
 
 
 def answer(work: Callable[[], object], file: str) -> None:
-    """Fork and wait; the child leaves its answer, pickled, in a file."""
+    """Run `work` in a forked child, which pickles the result to a file, and wait for it."""
     child = in_child(lambda: Path(file).write_bytes(pickle.dumps(work())))
     if ended(child):
         raise RuntimeError("the child failed")
 
 
 def fork() -> None:
-    """The parent works, then a child, then the child's child."""
+    """Compute in the parent, in a forked child, and in a child of that child."""
     expected = [job(k) for k in range(3)]
     expected[0].to_mesh()
     answer(lambda: job(0), "child")
@@ -113,13 +113,13 @@ def fork() -> None:
 
 
 def crowd_of_cubes() -> b.Solid:
-    """Return a solid of few faces, of which so many meet in one place that threads share them."""
+    """Return a solid of few faces, of which so many meet at a point that threads share the work."""
     cubes = [b.cube(2, center=True).rotate((31 * k, 17 * k, 7 * k)) for k in range(1, 31)]
     return b.union(*cubes)
 
 
 def crowd() -> None:
-    """A small operation starts no threads, and a crowd of few faces does; a child has its own."""
+    """Check that a small operation starts no threads, that many faces do, and that children can."""
 
     def threads_of_process() -> int:
         return len(list(Path("/proc/self/task").iterdir()))
@@ -135,7 +135,7 @@ def crowd() -> None:
 
 
 def method(name: str) -> Callable[[], None]:
-    """Return a program that shares jobs among processes begun in one way."""
+    """Return a program that distributes jobs to processes with one start method."""
 
     def program() -> None:
         expected = [job(k) for k in range(4)]
@@ -152,7 +152,7 @@ def method(name: str) -> Callable[[], None]:
 
 
 def joblib() -> None:
-    """Jobs through joblib's loky, which sends operands and results pickled."""
+    """Run jobs with joblib's loky backend, which pickles operands and results."""
     from joblib import Parallel, delayed
 
     expected = [job(k) for k in range(4)]
@@ -164,7 +164,7 @@ def joblib() -> None:
 
 
 def preload() -> None:
-    """A server loads and uses the library, then forks workers that answer requests."""
+    """Use the library in a server, then fork workers that answer requests."""
     loaded = job(0)
     loaded.to_mesh()
     assert bsp.Region.rectangle(2).area == 4
@@ -187,12 +187,12 @@ def preload() -> None:
 
 
 def volume_of_difference(one: b.Solid, other: b.Solid) -> float:
-    """Return what asks for the operands' caches, too."""
+    """Return the volume of a difference, which uses the operands' caches."""
     return (one - other).volume
 
 
 def busy() -> None:
-    """Fork again and again while another thread works on the operands that children use."""
+    """Fork repeatedly while another thread works on the operands that the children use."""
     ball, over = b.sphere(10, segments=96), threading.Event()
     others = [b.sphere(9, segments=96).translate((k + 0.5, 0, 0)) for k in range(6)]
 
@@ -216,7 +216,7 @@ def busy() -> None:
 
 
 def casting() -> None:
-    """A caster that another thread uses while the process is forked is refused in the child."""
+    """Check that a caster in use by another thread at a fork is refused in the child."""
     mesh = b.sphere(10, segments=256).to_mesh()
     caster, idle = bsp.RayCaster(mesh), bsp.RayCaster(mesh)
     origins = np.random.default_rng(1).uniform(-20, 20, (400_000, 3))
@@ -256,14 +256,14 @@ def casting() -> None:
 
 
 def balls_side_by_side(segments: int) -> list[b.Solid]:
-    """Return balls of which each reaches into the next, with their trees built."""
+    """Return overlapping balls in a row, with their trees built."""
     balls = [b.sphere(10, segments=segments).translate((k * 0.37, k * 0.21, 0)) for k in range(5)]
     assert all(ball.tree for ball in balls)
     return balls
 
 
 def handler() -> None:
-    """A signal handler forks in the middle of an operation."""
+    """Fork in a signal handler in the middle of an operation."""
     parent, missed = os.getpid(), 42
     statuses = []
 
@@ -293,7 +293,7 @@ def handler() -> None:
 
 
 def threads() -> None:
-    """The settings of the number of threads hold in a child, too."""
+    """Check that the settings of the number of threads apply in a child."""
     count = int(os.environ["RAYON_NUM_THREADS"])
 
     def running() -> int:
@@ -316,7 +316,7 @@ def threads() -> None:
 
 
 def ending(after: int = 100) -> None:
-    """The program ends while daemon threads are in the core, after so many milliseconds."""
+    """End the program while daemon threads are in the core, after `after` milliseconds."""
 
     def work() -> None:
         while True:
@@ -328,7 +328,7 @@ def ending(after: int = 100) -> None:
 
 
 def many(jobs: int = 1000) -> None:
-    """Many jobs one after the other, and 64 at a time, through a pool that was forked."""
+    """Run many jobs one after the other, and 64 at a time, in forked pools."""
     job(0).to_mesh()
     expected = [small_job(k).volume for k in range(15)]
     context = multiprocessing.get_context("fork")
@@ -342,7 +342,7 @@ def many(jobs: int = 1000) -> None:
 
 
 def memory(count: int = 100_000) -> None:
-    """Print by how many 10^6 bytes the process has grown after so many small operations."""
+    """Print the growth of the process in 10^6 bytes during `count` small operations."""
 
     def operations(first: int, count: int) -> None:
         for k in range(first, first + count):
@@ -355,7 +355,7 @@ def memory(count: int = 100_000) -> None:
 
 
 def stack(count: int = 300) -> None:
-    """Combine many solids in one place in a thread with little stack, as some systems give it."""
+    """Combine many solids at one point in a thread with a small stack."""
     corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
     faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
     steps = np.array([0.0003, 0.0002, 0.0001])

@@ -1,4 +1,4 @@
-"""Drawings as pixels, and pictures compared with kept ones."""
+"""Drawings as pixels, and the comparison of pictures with stored ones."""
 
 import os
 from pathlib import Path
@@ -34,9 +34,9 @@ Colour: TypeAlias = tuple[int, int, int] | None
 
 
 def assert_as_kept(picture: Image.Image, name: str, folder: Path) -> None:
-    """Compare a picture with the one that is kept; a failure leaves both and their difference.
+    """Compare a picture with the stored one; on failure write both and their difference.
 
-    With `KEEP` in the environment the picture is kept instead.
+    If the environment variable `KEEP` is set, store the picture instead.
     """
     path = GOLDEN / f"{name}.png"
     if KEEP in os.environ:
@@ -56,19 +56,19 @@ def assert_as_kept(picture: Image.Image, name: str, folder: Path) -> None:
 
 
 def are_alike(one: Image.Image, other: Image.Image) -> bool:
-    """Say whether two pictures are the same but for a few pixels."""
+    """Return true if at most five pixels in a thousand of two pictures differ."""
     return differing(one, other) * 1000 <= _MAX_DIFFERING_PER_MILLE * one.width * one.height
 
 
 def differing(one: Image.Image, other: Image.Image) -> int:
-    """Return the number of pixels that are not alike."""
+    """Return the number of pixels that differ between two pictures."""
     assert one.size == other.size
     off = ImageChops.difference(one.convert("RGB"), other.convert("RGB"))
     return int((np.asarray(off).max(axis=2) > _MAX_CHANNEL_DIFFERENCE).sum())
 
 
 def side_by_side(*pictures: Image.Image) -> Image.Image:
-    """Return pictures of one size beside each other."""
+    """Return one picture with pictures of equal size in a row."""
     width, height = pictures[0].size
     row = Image.new("RGB", (width * len(pictures), height))
     for place, picture in enumerate(pictures):
@@ -77,7 +77,7 @@ def side_by_side(*pictures: Image.Image) -> Image.Image:
 
 
 def of_svg(text: str, folder: Path) -> Image.Image:
-    """Return an SVG drawing of filled and stroked paths as pixels."""
+    """Return an SVG drawing of filled and stroked paths as a picture."""
     path = folder / "drawing.svg"
     path.write_text(text, encoding="utf-8")
     drawing = svgelements.SVG.parse(path)
@@ -98,7 +98,7 @@ def of_svg(text: str, folder: Path) -> Image.Image:
 
 
 def of_dxf(path: Path) -> Image.Image:
-    """Return the polylines of a DXF drawing as pixels."""
+    """Return the polylines of a DXF drawing as a picture."""
     lines = [
         [(x, -y) for x, y in entity.get_points("xy")]
         for entity in readfile(path).modelspace()
@@ -125,7 +125,7 @@ def _colour(colour: svgelements.Color) -> Colour:
 
 
 def _fill(image: Image.Image, loops: list[list[tuple[float, float]]], colour: Colour) -> None:
-    """Fill what an odd number of loops goes round."""
+    """Fill the pixels that an odd number of loops encloses."""
     if colour is None:
         return
     mask = Image.new("1", image.size)

@@ -1,4 +1,4 @@
-"""Values that make no sense, and what functions have to say to them."""
+"""Invalid arguments, and the check that functions refuse them with an error."""
 
 import inspect
 import math
@@ -51,14 +51,14 @@ _SOON = 1.0
 
 
 def calls(row: Row) -> Iterator[tuple[str, str, dict[str, Any]]]:
-    """Yield the parameter, the bad value's name and all arguments."""
+    """Yield for each parameter and each bad value: the parameter, the value's name, arguments."""
     for parameter in row[1]:
         for what, bad in {**NEVER, **AT_TIMES}.items():
             yield parameter, what, {**row[1], parameter: bad}
 
 
 def assert_refused_at_once(name: str, row: Row, taken: Mapping[tuple[str, str], object]) -> None:
-    """Assert that bad values raise errors with a code, soon; `taken` names what takes anything."""
+    """Assert that bad arguments raise errors with a code, soon; `taken` has the exceptions."""
     for parameter, what, arguments in calls(row):
         begun = time.process_time()
         try:
@@ -73,12 +73,12 @@ def assert_refused_at_once(name: str, row: Row, taken: Mapping[tuple[str, str], 
 
 
 def parameters_of(value: Any) -> list[str]:
-    """Return the names of what a function or a method takes."""
+    """Return the names of the parameters of a function or method."""
     return [name for name in inspect.signature(value).parameters if name != "self"]
 
 
 def methods_of(*kinds: type) -> set[str]:
-    """Return the public methods that take something, as ``Kind.name``."""
+    """Return the public methods with parameters of classes, as ``Class.method``."""
     return {
         f"{kind.__name__}.{name}"
         for kind in kinds
@@ -90,7 +90,7 @@ def methods_of(*kinds: type) -> set[str]:
 
 
 def missing_parameters(rows: Mapping[str, Row], place: Any, apart: set[str]) -> list[str]:
-    """Return what the rows of functions and methods of a module give no value to."""
+    """Return the parameters of functions and methods for which the rows have no value."""
     given: dict[str, set[str]] = {}
     for name, (_, good) in rows.items():
         given.setdefault(name.split()[0], set()).update(good)

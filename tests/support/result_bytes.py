@@ -1,4 +1,4 @@
-"""The bytes of results as short words, by which two builds are compared."""
+"""Short hashes of the bytes of results, by which two builds are compared."""
 
 import hashlib
 import json
@@ -39,7 +39,7 @@ _DIGITS = 16
 
 
 def word(result: Callable[[], "b.Solid"]) -> str:
-    """Return a word for the snapshot, the mesh and the origins of a result, or its error's code."""
+    """Return a hash of a result's snapshot, mesh and origins, or the code of its error."""
     try:
         solid = result()
         snapshot = solid.tree.dump()
@@ -58,7 +58,7 @@ def word(result: Callable[[], "b.Solid"]) -> str:
 
 
 def words_of_cases(cases: Sequence[Path] = CASES) -> Iterator[tuple[str, str]]:
-    """Name each case of the corpus, and each pair of its operands by operation, with its word."""
+    """Yield name and hash of each case of the corpus, and of all operations on its operands."""
     for path in cases:
         case = json.loads(path.read_text("utf-8"))
         yield path.stem, word(lambda case=case: evaluate(case))  # type: ignore[misc]
@@ -73,7 +73,7 @@ def words_of_cases(cases: Sequence[Path] = CASES) -> Iterator[tuple[str, str]]:
 def words_of_files(
     folder: Path = MESHES, *, largest: int = MAX_FILE_BYTES
 ) -> Iterator[tuple[str, str]]:
-    """Combine each mesh of a folder with itself, turned, and with the next one, moved there."""
+    """Yield name and hash of each mesh in a folder combined with its copy and with the next one."""
     named = [(path.name, solid) for path, solid in _solids(folder, largest)]
     for (name, solid), (after, other) in zip(named, [*named[1:], *named[:1]], strict=True):
         middle, size = _place(solid)
@@ -97,13 +97,13 @@ def _place(solid: "b.Solid") -> tuple[FloatArray, FloatArray]:
 
 
 def _turned(solid: "b.Solid", about: FloatArray, by: FloatArray) -> "b.Solid":
-    """Turn a solid by an angle whose sine and cosine are short decimals, and move it."""
+    """Return a solid rotated by an angle whose sine and cosine are short decimals, then shifted."""
     turn = np.array([[0.6, -0.8, 0, 0], [0.8, 0.6, 0, 0], [0, 0, 1, 0]])
     return solid.translate(-about).transform(turn).translate(about + by)
 
 
 def words_of_pairs(named: Sequence[tuple[str, "b.Solid"]]) -> Iterator[tuple[str, str]]:
-    """Name all operations of all pairs of solids, each with its word."""
+    """Yield name and hash of all operations on all pairs of solids."""
     for (first, x), (second, y) in combinations(named, 2):
         for name, combined in OPERATIONS.items():
             last = second.rsplit(" ", 1)[-1]
@@ -111,19 +111,19 @@ def words_of_pairs(named: Sequence[tuple[str, "b.Solid"]]) -> Iterator[tuple[str
 
 
 def recorded() -> dict[str, str]:
-    """Return the words that are kept."""
+    """Return the recorded hashes by name."""
     lines = RECORD.read_text(encoding="utf-8").splitlines()
     return dict(line.split("\t") for line in lines)
 
 
 def write(words: dict[str, str]) -> None:
-    """Keep these words."""
+    """Record these hashes."""
     rows = "".join(f"{name}\t{word}\n" for name, word in words.items())
     RECORD.write_text(rows, encoding="utf-8")
 
 
 def differences(before: dict[str, str], after: dict[str, str]) -> list[str]:
-    """Say of each result that is another one, or is on one side only, what it was and is."""
+    """Return a line for each result whose hash differs or is missing on one side."""
     names = [*before, *(name for name in after if name not in before)]
     rows = ((name, before.get(name, "none"), after.get(name, "none")) for name in names)
     return [f"{name}: {old} before, {new} now" for name, old, new in rows if old != new]

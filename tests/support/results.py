@@ -1,4 +1,4 @@
-"""A small campaign's results, made without the runner of campaigns."""
+"""The records of a small campaign, made without running one."""
 
 import json
 from collections.abc import Iterable, Sequence
@@ -14,7 +14,7 @@ Record = dict[str, Any]
 
 
 def header(**other: Any) -> Record:
-    """Return the header of a run."""
+    """Return the record of a run."""
     machine = {"processor": "a processor", "cores": 2, "memory_gb": 8.0, "system": "a system"}
     return {
         "schema": 1,
@@ -29,7 +29,7 @@ def header(**other: Any) -> Record:
 
 
 def solids() -> list[tuple[str, b.Solid, b.Solid]]:
-    """Return pairs of solids by name."""
+    """Return pairs of solids, each with a name."""
     cube = b.cube(2, center=True)
     return [
         ("corner", cube, cube.translate(1, 1, 1)),
@@ -82,7 +82,7 @@ def case(name: str, operation: Any, first: b.Solid, second: b.Solid, **other: An
 
 
 def disagreeing() -> Record:
-    """Return a record of two results that differ by a small cube."""
+    """Return a record of a case in which two results differ by a small cube."""
     first, second = b.cube(2), b.cube(0.5).translate(2, 0, 0)
     found = case("<b>bump</b>", "union", first, second)
     difference = {"volume": 0.125, "thickness": 0.166, "equal": False, "place": [2.0, 0.0, 0.0]}
@@ -96,9 +96,9 @@ def disagreeing() -> Record:
 def keep_meshes(
     record: Record, folder: Path, operands: Sequence[b.Solid], result: b.Solid, other: b.Solid
 ) -> Record:
-    """Store the meshes of a case beside its results, and return the record that names them.
+    """Write the meshes of a case beside its results, and return the record with their path.
 
-    `other` is what manifold3d is said to have made.
+    `other` stands for manifold3d's result.
     """
     name = f"meshes-{len(list(folder.glob('meshes-*.npz')))}.npz"
     meshes = [solid.to_mesh() for solid in operands]
@@ -108,7 +108,7 @@ def keep_meshes(
 
 
 def records(folder: Path) -> list[Record]:
-    """Return a header and cases with and without meshes, one of which failed."""
+    """Return a run and cases, with and without meshes, one of which failed."""
     found = [header()]
     for name, first, second in solids():
         for operation in ("union", "difference"):

@@ -1,4 +1,4 @@
-"""Short scripts, and what they come to."""
+"""Short scripts, and the volumes of their results."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Closed meshes as plain arrays, made without the package under test."""
+"""Closed meshes as plain arrays (vertices, faces), made without the package under test."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -31,7 +31,7 @@ def cube(side: float = 1.0) -> Arrays:
 
 
 def tetrahedron(corners: npt.ArrayLike) -> Arrays:
-    """Return four triangles, turned so that the volume is positive."""
+    """Return a tetrahedron with four given corners, oriented to positive volume."""
     points = np.asarray(corners, dtype=np.float64)
     faces = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)], dtype=np.int64)
     a, b, c, d = points
@@ -39,7 +39,7 @@ def tetrahedron(corners: npt.ArrayLike) -> Arrays:
 
 
 def octahedron() -> Arrays:
-    """Return the octahedron with corners at distance 1 on the axes."""
+    """Return the octahedron with corners on the axes at distance 1 from the origin."""
     points = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)])
     faces = [
         (x, y, z) if (x + y + z) % 2 == 0 else (y, x, z)
@@ -89,7 +89,7 @@ def _subdivide(points: Vertices, faces: Faces) -> Arrays:
 
 
 def prism(outline: Sequence[tuple[float, float]], low: float, high: float) -> Arrays:
-    """Return the prism over a convex counter-clockwise outline."""
+    """Return the prism over a convex counter-clockwise outline, from z = `low` to z = `high`."""
     n = len(outline)
     points = np.array([(x, y, z) for z in (low, high) for x, y in outline], dtype=np.float64)
     caps = [t for k in range(1, n - 1) for t in ((0, k + 1, k), (n, n + k, n + k + 1))]
@@ -101,20 +101,20 @@ def prism(outline: Sequence[tuple[float, float]], low: float, high: float) -> Ar
 def regular_outline(
     sides: int, radius: float = 1.0, turn: float = 0.0
 ) -> list[tuple[float, float]]:
-    """Return a regular polygon, counter-clockwise; `turn` is in radians."""
+    """Return the corners of a regular polygon, counter-clockwise, rotated by `turn` radians."""
     angles = turn + 2 * np.pi * np.arange(sides) / sides
     return [(radius * float(np.cos(a)), radius * float(np.sin(a))) for a in angles]
 
 
 def pyramid(base: float, apex: tuple[float, float, float]) -> Arrays:
-    """Return the pyramid over the square of half-width `base` in z = 0."""
+    """Return the pyramid over a square of half side `base` in the plane z = 0."""
     corners = [(-base, -base, 0), (base, -base, 0), (base, base, 0), (-base, base, 0), apex]
     faces = [(0, 3, 2), (0, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
     return np.array(corners, dtype=np.float64), np.array(faces, dtype=np.int64)
 
 
 def joined(*meshes: Arrays) -> Arrays:
-    """Return several meshes as one, nothing welded."""
+    """Return several meshes as one, without welding vertices."""
     starts = np.cumsum([0] + [len(vertices) for vertices, _ in meshes])
     return (
         np.concatenate([vertices for vertices, _ in meshes]),
@@ -123,22 +123,22 @@ def joined(*meshes: Arrays) -> Arrays:
 
 
 def flipped(mesh: Arrays) -> Arrays:
-    """Return the mesh inside out."""
+    """Return the mesh with all faces reversed."""
     return mesh[0], mesh[1][:, ::-1].copy()
 
 
 def moved(mesh: Arrays, by: npt.ArrayLike) -> Arrays:
-    """Return the mesh shifted."""
+    """Return the mesh translated by a vector."""
     return mesh[0] + np.asarray(by, dtype=np.float64), mesh[1]
 
 
 def turned(mesh: Arrays, matrix: npt.NDArray[np.float64]) -> Arrays:
-    """Return the mesh with a 3 × 3 matrix applied to its vertices."""
+    """Return the mesh with its vertices multiplied by a (3, 3) matrix."""
     return mesh[0] @ matrix.T, mesh[1]
 
 
 def random_rotation(rng: np.random.Generator) -> npt.NDArray[np.float64]:
-    """Return a uniformly distributed rotation matrix, from a random quaternion."""
+    """Return a uniformly distributed rotation matrix, (3, 3)."""
     w, x, y, z = (q := rng.normal(size=4)) / np.linalg.norm(q)
     return np.array(
         [
@@ -150,7 +150,7 @@ def random_rotation(rng: np.random.Generator) -> npt.NDArray[np.float64]:
 
 
 def affine(linear: npt.ArrayLike, shift: npt.ArrayLike = (0, 0, 0)) -> npt.NDArray[np.float64]:
-    """Return the 4 × 4 matrix of a linear part and a shift."""
+    """Return the (4, 4) matrix of a linear part and a translation."""
     matrix = np.eye(4)
     matrix[:3, :3] = linear
     matrix[:3, 3] = shift
@@ -158,12 +158,12 @@ def affine(linear: npt.ArrayLike, shift: npt.ArrayLike = (0, 0, 0)) -> npt.NDArr
 
 
 def cells_as_boxes(grid: Grid) -> Arrays:
-    """Return one unit box for each set cell: touching boxes keep their doubled walls."""
+    """Return one unit box for each true cell; touching boxes have double walls."""
     return joined(*[cuboid(cell, cell + 1) for cell in np.argwhere(grid)])
 
 
 def box_of_squares(low: Sequence[int], high: Sequence[int]) -> Arrays:
-    """Return a box of whole corners whose sides are divided into unit squares."""
+    """Return a box with integer corners whose sides are divided into unit squares."""
     sizes = [high[i] - low[i] for i in range(3)]
     points: list[npt.NDArray[np.int64]] = []
     for axis in range(3):
@@ -182,7 +182,7 @@ def box_of_squares(low: Sequence[int], high: Sequence[int]) -> Arrays:
 
 
 def exact_volume(mesh: Arrays, pitch: int = -9) -> Fraction:
-    """Return the signed volume of the mesh snapped to the lattice of step 10^pitch, exactly."""
+    """Return the exact signed volume of a mesh, snapped to the lattice of step 10^pitch."""
     step = Fraction(10) ** pitch
     steps = [[round(Fraction(x) / step) for x in vertex] for vertex in mesh[0].tolist()]
     six = 0

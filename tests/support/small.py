@@ -1,4 +1,4 @@
-"""Random sets of few boxes and tetrahedra with small whole coordinates."""
+"""Random sets of few boxes and tetrahedra with small integer coordinates."""
 
 from collections.abc import Sequence
 from random import Random
@@ -14,7 +14,7 @@ REACH = 8
 
 
 def random_shapes(random: Random) -> list[Arrays]:
-    """Return from two to six boxes and tetrahedra."""
+    """Return two to six random boxes and tetrahedra."""
     return [_random_shape(random) for _ in range(random.randint(2, 6))]
 
 
@@ -29,7 +29,7 @@ def _random_shape(random: Random) -> Arrays:
 
 
 def random_set(random: Random, solids: Sequence[b.Solid]) -> b.Solid:
-    """Return what random operations make of solids, each of which occurs once or several times."""
+    """Return a random expression over solids, each used at least once."""
     terms = [*solids, *random.choices(solids, k=3)]
     while len(terms) > 1:
         at = random.randrange(len(terms) - 1)

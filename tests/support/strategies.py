@@ -1,4 +1,4 @@
-"""Random solids for the property tests: few kinds, many coincidences."""
+"""Random solids for property tests, of few kinds, so that many faces coincide."""
 
 import numpy as np
 from hypothesis import strategies as st
@@ -12,7 +12,7 @@ _small = st.integers(-2, 2)
 
 @st.composite
 def boxes(draw: st.DrawFn) -> "b.Solid":
-    """Return an axis-parallel box with small integer corners: faces coincide often."""
+    """Return an axis-parallel box with small integer corners."""
     low = [draw(_small) for _ in range(3)]
     size = [draw(st.integers(1, 3)) for _ in range(3)]
     return b.Solid(*cuboid(low, [at + length for at, length in zip(low, size, strict=True)]))
@@ -20,7 +20,7 @@ def boxes(draw: st.DrawFn) -> "b.Solid":
 
 @st.composite
 def tetrahedra(draw: st.DrawFn) -> "b.Solid":
-    """Return a tetrahedron on small integer points: shared points, edges and planes."""
+    """Return a tetrahedron with small integer corners."""
     points = np.array(
         draw(
             st.lists(st.tuples(_small, _small, _small), min_size=4, max_size=4, unique=True).filter(
@@ -33,7 +33,7 @@ def tetrahedra(draw: st.DrawFn) -> "b.Solid":
 
 @st.composite
 def turned_cubes(draw: st.DrawFn) -> "b.Solid":
-    """Return a cube in general position."""
+    """Return a cube that is rotated at random."""
     rotation = random_rotation(np.random.default_rng(draw(st.integers(0, 2**32))))
     centred = moved(cube(draw(st.sampled_from([1.0, 2.0, 2.5]))), (-0.5, -0.5, -0.5))
     return b.Solid(*moved(turned(centred, rotation), [draw(_small) / 2 for _ in range(3)]))
@@ -41,7 +41,7 @@ def turned_cubes(draw: st.DrawFn) -> "b.Solid":
 
 @st.composite
 def balls(draw: st.DrawFn) -> "b.Solid":
-    """Return a coarse sphere of the package's own."""
+    """Return a coarse sphere made by the package."""
     ball = b.sphere(
         draw(st.sampled_from([0.75, 1.0, 1.5])), segments=draw(st.sampled_from([6, 8, 12]))
     )
@@ -49,6 +49,6 @@ def balls(draw: st.DrawFn) -> "b.Solid":
 
 
 def solids() -> st.SearchStrategy["b.Solid"]:
-    """Return any of the kinds above, or the empty set."""
+    """Return a strategy for boxes, tetrahedra, rotated cubes, balls and the empty set."""
     kinds = (boxes(), tetrahedra(), turned_cubes(), balls(), st.builds(b.Solid.empty))
     return st.one_of(*kinds)

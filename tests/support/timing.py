@@ -1,11 +1,11 @@
-"""The time that work takes, for tests of how cost grows."""
+"""The processor time of work, for tests of how cost grows."""
 
 import time
 from collections.abc import Callable
 
 
 def seconds(work: Callable[[], object], turns: int = 1) -> float:
-    """Return the processor time of some work, the least of some turns."""
+    """Return the least processor time of several calls of `work`, in seconds."""
 
     def once() -> float:
         began = time.process_time()

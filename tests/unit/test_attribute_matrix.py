@@ -1,4 +1,4 @@
-"""Every kind of attribute on every way out and back: it is equal, or the loss is told."""
+"""Every kind of attribute in every format, written and read back: equal, or reported as lost."""
 
 import io
 import warnings
@@ -95,7 +95,7 @@ def there_and_back(solid: b.Solid, way: str, folder: Path) -> b.Solid:
 
 
 def rows(mesh: b.Mesh, name: str) -> Any:
-    """Return the values of the corners of all faces, in an order that the places alone give."""
+    """Return the values at all corners of faces, in an order that depends only on coordinates."""
     corners = mesh.vertices[mesh.faces].astype(np.float32)
     keys = [(tuple(map(tuple, sorted(f.tolist()))), tuple(c)) for f in corners for c in f.tolist()]
     order = sorted(range(len(keys)), key=keys.__getitem__)

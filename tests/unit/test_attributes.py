@@ -1,4 +1,4 @@
-"""The attributes of a mesh besides its shape, through operations, transforms and copies."""
+"""The attributes of a mesh through operations, transforms and copies."""
 
 import pickle
 from collections.abc import Callable
@@ -383,7 +383,7 @@ def test_tagged_half_spaces_are_turned_as_others_are() -> None:
 
 
 def layers_and_sides(solid: b.Solid) -> set[tuple[int, bool]]:
-    """Return the layers that faces have with whether they lie beyond x = 2."""
+    """Return the layers of faces, each with whether the face lies beyond x = 2."""
     mesh = solid.to_mesh()
     beyond = mesh.vertices[mesh.faces].mean(axis=1)[:, 0] > 2
     layers = mesh.face_attributes["layer"]

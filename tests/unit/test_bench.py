@@ -1,4 +1,4 @@
-"""The parts of the bench: its meshes, its bounds, and what counts as reached."""
+"""The parts of the benchmarks: their meshes, error bounds, and targets."""
 
 import sys
 import tempfile

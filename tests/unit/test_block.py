@@ -1,4 +1,4 @@
-"""Blocks: which solids count in a with statement, and what becomes of them."""
+"""Blocks: the solids of a with statement, and how they are combined."""
 
 import asyncio
 import pickle

@@ -1,4 +1,4 @@
-"""Boxes in boxes, and what is decided by them."""
+"""Boxes in boxes: solids with many separate voids."""
 
 import time
 
@@ -15,13 +15,13 @@ from support.shapes import Arrays, cuboid, flipped, joined
 
 
 def voids(count: int) -> list[Arrays]:
-    """Return cubes of side 1, two apart in rows of 40."""
+    """Return unit cubes, two units apart in rows of 40."""
     at = [(2 * (k % 40), 2 * (k // 40), 0) for k in range(count)]
     return [cuboid((x, y, z), (x + 1, y + 1, z + 1)) for x, y, z in at]
 
 
 def block(count: int) -> Arrays:
-    """Return a block around such cubes."""
+    """Return a block around the cubes of `voids`."""
     return cuboid((-1, -1, -1), (80, 2 * (count // 40) + 2, 2))
 
 

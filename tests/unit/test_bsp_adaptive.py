@@ -1,4 +1,4 @@
-"""Trees that rays stab: the answers of all of them are one, and the counts are what they should."""
+"""Adaptive and static trees: equal hits, and correct counters."""
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -14,7 +14,7 @@ from support.shapes import icosphere
 
 
 def soup(dimension: int, count: int, seed: int = 0) -> FloatArray:
-    """Return random facets that cross each other, (n, d, d)."""
+    """Return random facets that cross each other, (n, d, d), or (n,) in 1D."""
     rng = np.random.default_rng(seed)
     centres = rng.uniform(-10, 10, (count, 1, dimension))
     facets = centres + rng.normal(size=(count, dimension, dimension)) * 2

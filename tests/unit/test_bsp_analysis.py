@@ -1,4 +1,4 @@
-"""The notes' bounds against measurements, each with the chance that the test fails by accident."""
+"""The bounds of the lecture notes against measurements, each with a known chance of failure."""
 
 import math
 from fractions import Fraction
@@ -16,12 +16,12 @@ FAILURE = 1e-6
 
 
 def hoeffding(width: float, count: int, claims: int = 1) -> float:
-    """Return how far one-sided means may be off, for `claims` of them together, but for FAILURE."""
+    """Return how far `claims` means may exceed their expectations, except with chance FAILURE."""
     return width * math.sqrt(math.log(claims / FAILURE) / (2 * count))
 
 
 def fence(posts: int) -> Any:
-    """Return a segment on the x axis and upright ones across its line, to its right."""
+    """Return a segment on the x axis and upright segments to its right that its line crosses."""
     upright = [[[k, -1], [k, 1]] for k in range(2, posts + 2)]
     return np.array([[[0, 0], [1, 0]], *upright])
 
@@ -79,7 +79,7 @@ def test_distances_against_their_definition() -> None:
 
 
 def distances(scene: Any, i: int) -> list[int]:
-    """Count the segments whose crossing with the line of s_i lies between s_i and s_j."""
+    """Return for each s_j the number of segments that the line of s_i crosses before it."""
     (x, y), (u, v) = scene[i].astype(int).tolist()
     du, dv = u - x, v - y
     crossings: dict[int, Fraction] = {}

@@ -1,4 +1,4 @@
-"""Cameras: where points come to be in a picture, and what is refused."""
+"""Cameras: the positions of points in a picture, and refusals."""
 
 from typing import Any, get_args
 

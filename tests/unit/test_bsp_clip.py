@@ -1,4 +1,4 @@
-"""Clipping of many polygons at once, and their outlines."""
+"""Clipping many polygons at once, and merging them into outlines."""
 
 import numpy as np
 

@@ -25,7 +25,7 @@ def drawn(tmp_path: Path, body: str, **options: float) -> bsp.Region:
 
 
 def odd_region() -> bsp.Region:
-    """Return a region with corners off the lattice, holes and an island."""
+    """Return a region with corners off the lattice, a hole and an island."""
     ring = R.circle(1 / 3, 7).rotate(10) - R.circle(0.2, 5)
     return ring.translate(1e3 / 7, -2) | R.circle(0.05, 3).translate(1e3 / 7, -2)
 

@@ -1,4 +1,4 @@
-"""Sets as trees in one, two and three dimensions: the same laws and tables in each."""
+"""Object trees in one, two and three dimensions: the same laws in each."""
 
 import itertools
 import pickle
@@ -23,7 +23,7 @@ OPS: dict[Any, Any] = {
 
 
 def box_facets(low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Return the boundary of a box in the form that its dimension asks for."""
+    """Return the boundary of a box as facets of its dimension."""
     if len(low) == 1:
         return np.array([[low[0], high[0]]])
     if len(low) == 2:
@@ -35,7 +35,7 @@ def box_facets(low: np.ndarray, high: np.ndarray) -> np.ndarray:
 
 
 def random_set(dimension: int, seed: int) -> tuple[bsp.ObjectTree, np.ndarray]:
-    """Return a union of lattice boxes as a tree, and as a grid of unit cells."""
+    """Return a random union of lattice boxes as a tree, and as a boolean array of unit cells."""
     rng = np.random.default_rng(seed)
     cells = np.zeros((SIDE,) * dimension, dtype=bool)
     tree = bsp.ObjectTree.uniform(dimension, full=False)

@@ -1,4 +1,4 @@
-"""Open trees: what nodes hold, regions, conversion; hyperplanes and policies of one's own."""
+"""Partition trees in detail: nodes, regions, leaf form, cuts and policies of the caller."""
 
 import itertools
 import pickle
@@ -380,7 +380,7 @@ class TestInsertion:
 
 
 def fragment_sizes(tree: bsp.PartitionTree) -> list[float]:
-    """Return for each facet the size of all its fragments together."""
+    """Return for each facet the total length or area of its fragments."""
     sizes = np.zeros(tree.fragments.source.max() + 1)
     for index, corners in enumerate(tree.fragments):
         if tree.dimension == 1:

@@ -1,4 +1,4 @@
-"""Panoramas: what a viewer in the plane sees, and what is refused."""
+"""Panoramas: the view of a viewer in the plane, and refusals."""
 
 import io
 from typing import Any

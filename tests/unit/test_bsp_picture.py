@@ -1,4 +1,4 @@
-"""Pictures: what is drawn, files, and what is refused."""
+"""Pictures: their content, files, and refusals."""
 
 import builtins
 import io
@@ -354,7 +354,7 @@ BOTH_WAYS: dict[str, tuple[Any, dict[str, Any]]] = {
 
 
 def by_buffer(monkeypatch: pytest.MonkeyPatch, scene: Any, **looks: Any) -> bsp.Picture:
-    """Return a picture as very large meshes have it."""
+    """Return a picture made with the z-buffer, as for very large meshes."""
     with monkeypatch.context() as patch:
         patch.setattr(painting_picture, "_MAX_TRIANGLES_ORDERED", 0)
         return bsp.picture(scene, **looks)

@@ -1,4 +1,4 @@
-"""Pivot policies, and the cost of the trees they build against brute force."""
+"""Pivot policies, and the costs of their trees against brute force."""
 
 import math
 from fractions import Fraction
@@ -15,7 +15,7 @@ FAILURE = 1e-6
 
 
 def hoeffding(width: float, count: int) -> float:
-    """Return how far a mean of `count` values in an interval may be off, but for FAILURE."""
+    """Return how far a mean of `count` values may be off, except with probability FAILURE."""
     return width * math.sqrt(math.log(2 / FAILURE) / (2 * count))
 
 
@@ -115,7 +115,7 @@ def _is_below(node: bsp.Node | None, other: bsp.Node) -> bool:
 
 
 def exact_cost(tree: bsp.PartitionTree, node: bsp.Node | None, polygon: Any) -> Fraction:
-    """Return C(T) by its definition, with rational areas."""
+    """Return the expected cost C(T) of a tree by its definition, with exact areas."""
     if node is None:
         return Fraction(0)
     step = Fraction(10) ** tree.pitch
@@ -222,7 +222,7 @@ class TestCost:
 
 
 def across(along: Any, random: np.random.Generator) -> Any:
-    """Return a point of the unit disc (interval) across a direction, evenly spread."""
+    """Return a random point of the unit disc (interval in 2D) perpendicular to a direction."""
     if len(along) == 2:
         return np.array([-along[1], along[0]]) * random.uniform(-1, 1)
     first = np.linalg.svd(along[None])[2][1:]
@@ -244,7 +244,7 @@ def sorted_ends(start: Any, along: Any, low: Any, high: Any) -> tuple[float, flo
 
 
 def visited(tree: bsp.PartitionTree, start: Any, along: Any, ends: tuple[float, float]) -> int:
-    """Return how many nodes' regions a line meets, by cutting its interval."""
+    """Return the number of nodes whose regions a line meets, by clipping the line."""
     pending, count = [(0, ends)], 0
     while pending:
         node, (first, last) = pending.pop()

@@ -1,4 +1,4 @@
-"""The ray caster's face to Python: shapes, errors, defined answers, one and two dimensions."""
+"""The Python interface of the ray caster: shapes, errors, and rays in one and two dimensions."""
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor

@@ -1,7 +1,7 @@
-"""Trees, sets and rays refuse values that make no sense: with an error that has a code, at once.
+"""Trees, sets and rays refuse invalid arguments at once, with an error that has a code.
 
-Every parameter of every function and method of `bspcsg.bsp` is given every bad value, the others
-stay good. A new one that is missing here fails the test of completeness.
+Every parameter of every function and method of `bspcsg.bsp` gets every bad value, with all other
+arguments valid. A function that is missing here fails the test of completeness.
 """
 
 import inspect
@@ -34,17 +34,17 @@ TEXT = SPATIAL.to_json()
 
 
 class Visitor:
-    """Looks at nothing."""
+    """A visitor that does nothing."""
 
     def node(self, node: Any) -> None:
-        """Take a node."""
+        """Ignore a node."""
 
     def leaf(self, leaf: Any) -> None:
-        """Take a leaf."""
+        """Ignore a leaf."""
 
 
 def _with(method: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a method of any number of sets, to be called with one by name."""
+    """Return a method that takes any number of sets as a function of one set, by name."""
 
     def called(others: Any) -> Any:
         return method(others)

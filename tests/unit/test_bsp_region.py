@@ -1,4 +1,4 @@
-"""Regions as values: making, measuring, moving, and the way to solids and back."""
+"""Regions as values: making, measuring, moving, and conversion from and to solids."""
 
 import copy
 import math
@@ -19,7 +19,7 @@ STAR = [(math.cos(a), math.sin(a)) for a in np.arange(5) * 4 * math.pi / 5]
 
 
 def plate() -> bsp.Region:
-    """Return a plate with two holes, an island in one of them."""
+    """Return a plate with two holes, one of which has an island."""
     holes = R.rectangle(2).translate(1, 1) | R.rectangle(3).translate(4, 0.5)
     return (R.rectangle(8, 4) - holes) | R.rectangle(1).translate(5, 1.5)
 

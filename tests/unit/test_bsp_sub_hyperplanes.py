@@ -1,4 +1,4 @@
-"""Parts of hyperplanes as values, and the connected paths of boundaries."""
+"""Sub-hyperplanes, and the connected paths of boundaries."""
 
 import math
 import operator
@@ -26,7 +26,7 @@ def told(region: Region) -> Any:
 
 
 class TestPaths:
-    """Also getBoundaryPaths of Commons Geometry's RegionBSPTree2DTest."""
+    """Boundary paths, with the cases getBoundaryPaths of Commons Geometry's RegionBSPTree2DTest."""
 
     def test_nothing_and_everything_have_none(self) -> None:
         assert boundary_paths(Region.empty()) == boundary_paths(Region.full()) == ()

@@ -1,4 +1,4 @@
-"""Traces of trees: a few independent lines that follow them reach the same tree and answer."""
+"""Traces of trees: replaying them with a few independent lines gives the same result."""
 
 import itertools
 import pickle
@@ -115,7 +115,7 @@ class TestConstruction:
 
 
 def nearest(facets: Any, origin: Any, direction: Any) -> float:
-    """Return the first parameter by brute force, in fractions."""
+    """Return the least t at which a ray meets a facet, by brute force in fractions."""
     found = [t for facet in facets if (t := meeting(facet, origin, direction)) is not None]
     return float(min(found, default=float("inf")))
 
@@ -261,12 +261,12 @@ class TestRays:
 
 
 def _children(node: Any) -> list[int | None]:
-    """Return the numbers of a node's children; None for leaves."""
+    """Return the indices of a node's children; None for leaves."""
     return [getattr(side, "index", None) for side in node.children]
 
 
 def visited(tree: Any, index: int, origin: Any, head: Any, stop: float) -> Iterator[int]:
-    """Yield the inner nodes that a ray visits until it has gone as far as `stop`."""
+    """Yield the inner nodes that a ray visits before t = `stop`."""
 
     def enter(node: Any, low: Fraction, high: Fraction | None) -> Iterator[int]:
         if node is None or float(low) >= stop or (high is not None and high < low):
@@ -315,7 +315,7 @@ def complement(tree: Plain) -> Plain:
 
 
 class Replay:
-    """Merging by the names of the cases, without geometry."""
+    """Replays the merging of trees from a trace, without geometry."""
 
     def __init__(self, trace: bsp.MergeTrace) -> None:
         self.steps = iter(trace.steps)
@@ -371,7 +371,7 @@ class Replay:
 
 
 def hyperplanes(trace: bsp.MergeTrace, tree: Plain) -> list[Any]:
-    """Return the hyperplanes of a plain tree in preorder, and its leaves."""
+    """Return the hyperplanes and the leaves of a replayed tree in preorder."""
     if isinstance(tree, int):
         return [tree]
     name, minus, plus = tree

@@ -1,4 +1,4 @@
-"""Partition trees over facets: forms of input, nodes, regions, traversals, dumps."""
+"""Partition trees over facets: forms of input, nodes, regions, traversals, files."""
 
 import json
 import xml.etree.ElementTree as ET
@@ -18,7 +18,7 @@ TRIANGLE = [[0, 0, 1], [4, 0, 1], [0, 4, 1.5]]
 
 
 def wheel() -> Any:
-    """Return four segments of which each one's line cuts the next one."""
+    """Return four segments in a cycle, in which each one's line cuts the next segment."""
     return np.array(
         [[[-1, -3], [-1, 1]], [[-3, 1], [1, 1]], [[1, 3], [1, -1]], [[3, -1], [-1, -1]]]
     )
@@ -407,7 +407,7 @@ class TestPerfect:
 
 
 def has_perfect(segments: list[Any]) -> bool:
-    """Say whether some order of pivots cuts nothing, by trying all."""
+    """Return true if an order of pivots cuts no segment, by trying all orders."""
 
     def side(pivot: Any, point: Any) -> int:
         (x, y), (u, v) = pivot

@@ -1,4 +1,4 @@
-"""Moved trees, trees with labels, sets of directions, and what an eye sees."""
+"""Moved trees, trees with labels, sets of directions, and visibility."""
 
 import itertools
 import math

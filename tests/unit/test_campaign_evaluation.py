@@ -1,4 +1,4 @@
-"""A wrong result is found out, described and kept; so is whatever else comes of a case."""
+"""The evaluation of cases: a wrong result is detected, described and stored."""
 
 from pathlib import Path
 from typing import Any
@@ -28,13 +28,13 @@ def case_of(operation: str, *operands: Operand) -> Case:
 def asked(
     operation: str, settings: EvaluationSettings | None = None, keep: bool = False
 ) -> CaseRecord:
-    """Ask about two cubes of side 3 and 2 with one unit cube in common."""
+    """Return the record of an operation on cubes of side 3 and 2 with a unit cube in common."""
     case = case_of(operation, cube_operand("a", 3), cube_operand("b", 2, 2))
     return evaluate(case, settings or EvaluationSettings(), keep)
 
 
 def a_bump_too_many(*solids: "b.Solid") -> "b.Solid":
-    """Return the intersection with a wrong small cube on top."""
+    """Return the intersection of two solids with a wrong small cube on top."""
     common = solids[0] & solids[1]
     return common | b.cube(0.5).translate(2, 2, 3)
 

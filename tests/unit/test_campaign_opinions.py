@@ -1,4 +1,4 @@
-"""Further engines notice a wrong result, and the ruling says who stands alone."""
+"""Further engines detect a wrong result, and the ruling names the engine that stands alone."""
 
 import json
 import shutil
@@ -24,7 +24,7 @@ needs_openscad = pytest.mark.skipif(
 
 
 def question(ours: "b.Solid | None" = None, operation: str = "difference") -> Question:
-    """Ask about a cube without a corner, and claim that our result is this solid."""
+    """Return a question about a cube without a corner, with `ours` as our result."""
     operands = [b.cube(3), b.cube(2).translate(2, 2, 2)]
     found = examine(operands[0] - operands[1], "difference", operands)
     meshes = [solid.normalized().to_mesh() for solid in operands]
@@ -55,7 +55,7 @@ def test_crossings_tell_right_from_wrong() -> None:
 
 
 def fake_openscad(monkeypatch: pytest.MonkeyPatch, said: str, corners: "Mesh | None") -> None:
-    """Let openscad write a mesh and say something."""
+    """Replace OpenSCAD by a function that writes a mesh and prints a message."""
 
     def run(command: list[str], timeout: float) -> "subprocess.CompletedProcess[str]":
         if corners is not None and "-o" in command:

@@ -1,4 +1,4 @@
-"""Children that crash or hang cost what they were asked, and nothing else."""
+"""Children that crash or hang fail only their own request."""
 
 import os
 from pathlib import Path
@@ -60,7 +60,7 @@ def test_closing_the_answers_ends_the_children(good: str) -> None:
 
 def test_file_that_crashes_the_survey_stays_in(good: str) -> None:
     class Shaky:
-        """Answers about the first file, and crashes at the second."""
+        """A pool that answers for the first file and crashes at the second."""
 
         def answers(self, requests: Any, seconds: float) -> Any:
             yield 0, {"file": good, "triangles": 0, "refused": "open"}

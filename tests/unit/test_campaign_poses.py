@@ -1,4 +1,4 @@
-"""Poses place the second mesh where their names say."""
+"""Poses place the second mesh as their names say."""
 
 import numpy as np
 import pytest

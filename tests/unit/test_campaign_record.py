@@ -1,4 +1,4 @@
-"""Results files: appended line by line, read back whatever a killed writer left."""
+"""Results files: lines are appended, and read back whatever a killed writer left."""
 
 import json
 from pathlib import Path

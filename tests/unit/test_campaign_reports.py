@@ -1,4 +1,4 @@
-"""Summaries of campaigns: counts, JUnit XML and Markdown that hold whatever cases are called."""
+"""Summaries of campaigns: counts, JUnit XML and Markdown, for any names of cases."""
 
 from typing import Any
 from xml.etree import ElementTree as Xml

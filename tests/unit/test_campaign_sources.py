@@ -1,4 +1,4 @@
-"""The cases that a command line means."""
+"""The cases that files and options on a command line stand for."""
 
 import json
 from collections import Counter
@@ -17,7 +17,7 @@ from support.shapes import cube
 
 @pytest.fixture
 def parts(tmp_path: Path) -> Path:
-    """Return a folder with three meshes, a script, and files that are neither."""
+    """Return a folder with three meshes, a script, and other files."""
     folder = tmp_path / "parts"
     (folder / "deep").mkdir(parents=True)
     for side, name in enumerate(("a.off", "b.stl", "deep/c.obj"), 1):
@@ -29,7 +29,7 @@ def parts(tmp_path: Path) -> Path:
 
 
 def inside(folder: Path) -> list[Path]:
-    """Return the files that a folder means to the verb."""
+    """Return the files that the command crosscheck uses of a folder."""
     return files_of([folder], Counter(), also=(".csg",))
 
 

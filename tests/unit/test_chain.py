@@ -1,4 +1,4 @@
-"""Chains of factors: what lists of factors say, at the cost of the last ones."""
+"""Chains of factors: equal to lists of factors, at the cost of the added factors."""
 
 import math
 import pickle
@@ -36,7 +36,7 @@ LISTS = st.tuples(
 
 
 def grown(factors: tuple[Factor, ...]) -> FactorChain:
-    """Return the chain made factor by factor."""
+    """Return the chain of factors, built by adding one after the other."""
     chain = FactorChain()
     for factor in reversed(factors):
         chain = chain.under((factor,))

@@ -1,4 +1,4 @@
-"""Verdicts: right results agree, and every kind of wrong one is found."""
+"""Checks: correct results agree, and every kind of wrong result is detected."""
 
 import json
 import math
@@ -208,7 +208,7 @@ def test_unbounded_results_have_no_mesh() -> None:
 
 
 class OpenResult:
-    """A result whose mesh lacks a face."""
+    """A result whose mesh lacks one face."""
 
     pitch = -9
     is_bounded = True
@@ -320,7 +320,7 @@ def test_counts_of_random_triangles() -> None:
 
 
 def soup(digits: int) -> b.Mesh:
-    """Return triangles between points of very different distances, 10 to the power of ± digits."""
+    """Return triangles between points whose coordinates differ by many powers of ten."""
     rng = np.random.default_rng(2)
     vertices = rng.normal(size=(20, 3)) * 10.0 ** rng.integers(-digits, digits, (20, 1))
     return b.Mesh(vertices, rng.integers(0, 20, (500, 3)), np.zeros((500, 2), np.int64))

@@ -1,4 +1,4 @@
-"""One parser of colours, wherever they are taken."""
+"""One parser reads colours everywhere."""
 
 from pathlib import Path
 from typing import Any

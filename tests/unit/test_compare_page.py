@@ -1,4 +1,4 @@
-"""The page of others' names: each of ours exists, none of theirs is missing."""
+"""The page that compares names with other libraries: ours exist, and none of theirs is missing."""
 
 import re
 from pathlib import Path
@@ -11,7 +11,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "compare.md"
 
 
 def rows(heading: str | None = None) -> list[tuple[str, str]]:
-    """Return the first two cells of each row, below one heading or all."""
+    """Return the first two cells of each table row, below one heading or in the whole page."""
     text = PAGE.read_text("utf-8")
     if heading is not None:
         text = re.split(rf"^## {heading}$", text, flags=re.MULTILINE)[1].split("\n## ")[0]
@@ -21,12 +21,12 @@ def rows(heading: str | None = None) -> list[tuple[str, str]]:
 
 
 def names(cell: str) -> list[str]:
-    """Return the names in a cell, without arguments."""
+    """Return the names in code type in a cell, without arguments."""
     return [found[1] for found in re.finditer(r"`([\w.]+)[^`]*`", cell)]
 
 
 def is_ours(name: str) -> bool:
-    """Say whether a name is one of the package's, of a class's, or of a submodule's."""
+    """Return true if a dotted name exists in the package."""
     owner = b
     for part in name.removeprefix("bspcsg.").split("."):
         if not hasattr(owner, part):

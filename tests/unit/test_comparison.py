@@ -1,4 +1,4 @@
-"""Equality, symmetric difference and distances of two solids."""
+"""The comparison of two solids: equality, symmetric difference and distances."""
 
 import numpy as np
 import pytest

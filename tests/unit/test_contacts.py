@@ -1,4 +1,4 @@
-"""A solid says where it touches itself, wherever it is moved and however it comes back."""
+"""Findings report where a solid touches itself, after any motion and from any file."""
 
 import pickle
 from collections.abc import Callable

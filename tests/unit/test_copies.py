@@ -1,4 +1,4 @@
-"""Everything public can be pickled and copied, and is the same afterwards."""
+"""All public values can be pickled and copied, and the copies are equal."""
 
 import copy
 import importlib
@@ -154,7 +154,7 @@ NAMES = [f"{kind.__module__}.{kind.__name__}" for kind in CLASSES]
 
 
 def assert_same(a: Any, c: Any) -> None:
-    """Compare by everything that can be seen."""
+    """Assert that two values are equal in everything that is visible."""
     assert type(a) is type(c)
     if isinstance(a, np.ndarray):
         assert a.dtype == c.dtype

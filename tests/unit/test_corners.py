@@ -1,4 +1,4 @@
-"""Corners of regions, rounded and cut off; regular polygons and slots."""
+"""Rounded and chamfered corners of regions; regular polygons and slots."""
 
 import math
 from typing import Any
@@ -14,7 +14,7 @@ FRAME = Region.rectangle(10, 10) - Region.rectangle(2, 2).translate(4, 4)
 
 
 def lost(r: float, turn: float, segments: int) -> float:
-    """Area between a corner that turns by so many radians and the chords of its arc."""
+    """Return the area between a corner that turns by an angle and the chords of its arc."""
     steps = max(math.ceil(segments * turn / math.tau - 1e-9), 1)
     return r * r * (math.tan(turn / 2) - steps / 2 * math.sin(turn / steps))
 

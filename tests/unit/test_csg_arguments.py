@@ -1,4 +1,4 @@
-"""The arguments of nodes: what each knows, and what is told of others."""
+"""The arguments of nodes: those that each node knows, and warnings for others."""
 
 import math
 import warnings
@@ -15,7 +15,7 @@ SQUARE = "square(size = [2, 2], center = true);"
 
 
 def told(text: str) -> list[str]:
-    """Return what evaluating a script warns of."""
+    """Return the warnings of evaluating a script."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         csg.evaluate(csg.parse(text, "part.csg"))

@@ -1,4 +1,4 @@
-"""The errors of a script, and the parts that are left out of it."""
+"""The errors of scripts, and the parts of scripts that are left out."""
 
 from pathlib import Path
 

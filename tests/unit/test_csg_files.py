@@ -1,4 +1,4 @@
-"""Files that scripts read: meshes, drawings, tables and pictures of heights."""
+"""Files that scripts read: meshes, drawings, tables and height maps."""
 
 from contextlib import nullcontext
 from pathlib import Path
@@ -109,7 +109,7 @@ def test_names_that_no_file_can_have(tmp_path: Path) -> None:
 
 
 def inside_and_outside(folder: Path) -> Path:
-    """Return a script's folder beside which, and by a link in which, lie other files."""
+    """Return a script's folder with other files beside it and, by a link, inside it."""
     own = folder / "own"
     (own / "parts").mkdir(parents=True)
     (own / "parts" / "table.dat").write_text("1 1\n1 1\n")

@@ -1,4 +1,4 @@
-"""Solids as the expressions that made them."""
+"""Solids written as scripts of the operations that made them."""
 
 import random
 from pathlib import Path
@@ -10,7 +10,7 @@ from bspcsg import csg
 
 
 def names(tree: csg.CsgTree) -> list[str]:
-    """Return the names of all nodes, outermost first."""
+    """Return the names of all nodes of a tree."""
     found, waiting = [], list(tree.nodes)
     while waiting:
         node = waiting.pop()

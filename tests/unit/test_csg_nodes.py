@@ -1,4 +1,4 @@
-"""Nodes of scripts that combine, move and measure."""
+"""Nodes of scripts that combine, move and measure bodies."""
 
 from pathlib import Path
 

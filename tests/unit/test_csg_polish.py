@@ -1,4 +1,4 @@
-"""Corners of scripts that meet but for their six digits."""
+"""Corners in scripts that would coincide without rounding to six digits."""
 
 import math
 import warnings

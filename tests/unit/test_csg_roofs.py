@@ -1,4 +1,4 @@
-"""Roofs over figures, and figures without their holes."""
+"""Roofs over figures, and figures with filled holes."""
 
 import math
 
@@ -16,7 +16,7 @@ CORNER = "polygon([[0, 0], [4, 0], [4, 2], [2, 2], [2, 4], [0, 4]]);"
 
 
 def gear(digits: int) -> Region:
-    """Return a wheel of 50 teeth, whose sides meet at nearly the same times."""
+    """Return a wheel of 50 teeth, whose edges meet at nearly the same heights of a roof."""
     radii = [10 + k // 2 % 2 * 2 for k in range(200)]
     angles = [k * math.pi / 100 for k in range(200)]
     corners = [(r * math.cos(t), r * math.sin(t)) for r, t in zip(radii, angles, strict=True)]
@@ -55,7 +55,7 @@ def test_roofs_by_voronoi_are_the_same_over_convex_figures() -> None:
 
 
 def sections(solid: b.Solid) -> list[tuple[float, float]]:
-    """Return heights, and the areas at them."""
+    """Return four heights of a solid, with the area of the section at each."""
     assert solid.bounds is not None
     top = float(solid.bounds[1][2])
     return [(top * part, solid.slice(top * part).area) for part in (0.1, 0.35, 0.6, 0.85)]

@@ -1,4 +1,4 @@
-"""The number of sides of round things in scripts."""
+"""The number of sides of round shapes in scripts."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Defects of the core: one error, a report that holds the input, and the program goes on."""
+"""Defects of the core lead to one error and a report with the input, and the program continues."""
 
 import json
 import os

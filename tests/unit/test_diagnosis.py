@@ -1,4 +1,4 @@
-"""Every defect is named, counted and placed."""
+"""The diagnosis names, counts and locates every flaw of a mesh."""
 
 import json
 from collections.abc import Callable

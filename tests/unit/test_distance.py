@@ -1,4 +1,4 @@
-"""Distances from triangles, wide ones and needles."""
+"""Distances of points from triangles, wide ones and needles."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What drawings hold and regions do not is told; what others read is read."""
+"""Content of drawings that regions lack is reported; everything else is read."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -25,7 +25,7 @@ def dot(space: Any) -> Any:
 
 
 def written(folder: Path, draw: Draw) -> Path:
-    """Return a DXF file of what is drawn in the model space of a document."""
+    """Return the path of a DXF file that `draw` has filled."""
     document = ezdxf.new()
     draw(document.modelspace(), document)
     document.saveas(folder / "a.dxf")

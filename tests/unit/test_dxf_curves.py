@@ -1,4 +1,4 @@
-"""DXF: curves within their tolerance, blocks, and ends that nearly meet."""
+"""DXF files: curves within their tolerance, blocks, and ends that nearly meet."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -20,7 +20,7 @@ Draw = Callable[[Any], Any]
 
 
 def region_of(folder: Path, draw: Draw, **options: Any) -> Region:
-    """Return what is read of a drawing that is made in the model space."""
+    """Return the region read from a DXF file that `draw` has filled."""
     document = ezdxf.new()
     draw(document.modelspace())
     document.saveas(folder / "x.dxf")
@@ -211,7 +211,7 @@ def test_what_has_no_bound_is_refused(
 
 
 def sides(space: Any, corners: Sequence[tuple[float, float]], gap: float) -> None:
-    """Draw the sides of a polygon, each ending so far before its corner in x."""
+    """Draw the sides of a polygon, with gaps of this width at the corners."""
     for (x, y), end in zip(corners, [*corners[1:], corners[0]], strict=True):
         space.add_line((x + gap, y), (end[0] - gap, end[1]))
 

@@ -20,7 +20,7 @@ TURNS = [(0, 0, 0), (90, 0, 180), (10, 20, 30), (0, 0, 45)]
 
 
 def segment(steps: int) -> float:
-    """Area between a square's corner and the chords of its round one, of radius 1."""
+    """Return the area between a square's corner and the chords of its arc of radius 1."""
     return 1 - steps / 2 * math.sin(math.pi / 2 / steps)
 
 
@@ -229,7 +229,7 @@ def test_a_reflex_corner_is_mitred(turn: Any) -> None:
 
 
 def _like(edges: b.EdgeSelection, original: b.Solid, turn: Any) -> b.EdgeSelection:
-    """Return the edges whose middles were at height 2 before a turn."""
+    """Return the edges that were at height 2 before the rotation `turn`."""
     top = original.edges().where(lambda e: e.middle[:, 2] == 2)
     middles = [b.cube(2e-3, center=True).translate(m).rotate(turn) for m in top.middle.tolist()]
     near = b.union(middles)
@@ -344,14 +344,14 @@ def test_first_the_concave_edges_then_the_others() -> None:
 
 
 def round_prism(area: float, perimeter: float, height: float, r: float) -> float:
-    """Volume of a plate of height 2 r less than this, made thicker by r all around."""
+    """Return the volume of the sum of a plate and a ball of radius r, in total `height` high."""
     middle = (area + perimeter * r + math.pi * r * r) * (height - 2 * r)
     rims = 2 * area * r + perimeter * math.pi * r * r / 2
     return middle + rims + 4 / 3 * math.pi * r**3
 
 
 def flare(side: float, r: float) -> float:
-    """Volume around a square column with edges of radius r, filled in to a plane below it."""
+    """Return the volume of a fillet between a square column with round edges and a plane."""
     z = (np.arange(1000) + 0.5) * r / 1000
     out = r - np.sqrt(r * r - (r - z) ** 2)
     perimeter = 4 * (side - 2 * r) + 2 * math.pi * r
@@ -443,7 +443,7 @@ def test_blends_count_once_in_a_block() -> None:
 
 
 def rims(part: b.Solid) -> b.EdgeSelection:
-    """Return the short edges, those around bores and bosses."""
+    """Return the short edges, which are around bores and bosses."""
     return part.edges().filter(lambda e: e.length < 2.9)
 
 

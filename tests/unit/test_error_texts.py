@@ -1,4 +1,4 @@
-"""Errors and findings quote files, and steer no terminal: they hold no control characters."""
+"""Errors and findings that quote files contain no control characters, which steer terminals."""
 
 import copy
 import errno
@@ -36,18 +36,18 @@ FILES = {
 
 
 def marked() -> list[tuple[str, int]]:
-    """Return each file with the number of each mark in it."""
+    """Return each file with the index of each mark in it."""
     return [(suffix, k) for suffix, text in FILES.items() for k in range(text.count("§"))]
 
 
 def filled(text: str, number: int) -> str:
-    """Return a text whose mark of a number is hostile, and whose others are nothing."""
+    """Return a text with one mark replaced by hostile characters, and all others removed."""
     parts = text.split("§")
     return "".join(parts[: number + 1]) + HOSTILE + "".join(parts[number + 1 :])
 
 
 def load(path: Path) -> tuple[str, ...]:
-    """Return what reading a file tells."""
+    """Return the messages of reading a file."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:

@@ -1,4 +1,4 @@
-"""The graph of operations: plans, sharing, depth, and what is let go."""
+"""Expressions that are not evaluated yet: plans, sharing, depth, and freed memory."""
 
 import gc
 import threading

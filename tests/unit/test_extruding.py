@@ -1,4 +1,4 @@
-"""Extrusions that turn, shrink or lean on the way up."""
+"""Extrusions with twist, scale and taper."""
 
 import math
 from typing import Any

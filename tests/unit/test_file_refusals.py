@@ -1,4 +1,4 @@
-"""Files and scripts refuse values that make no sense: with an error that has a code, at once."""
+"""Functions of files and scripts refuse invalid arguments at once, by errors that have a code."""
 
 import inspect
 import warnings
@@ -20,7 +20,7 @@ DATA = b"".join(io.encoded(RAW, "x.stl", ".stl").chunks)
 
 
 def ignored(polish: Any) -> None:
-    """Be told what polishing did."""
+    """Receive the result of polishing, and ignore it."""
 
 
 #: How scripts are evaluated.

@@ -1,4 +1,4 @@
-"""Formulas over file names: what binds tighter, what is a name, and where errors point."""
+"""Formulas over file names: precedence, names, and the positions of errors."""
 
 import pytest
 from hypothesis import given

@@ -1,4 +1,4 @@
-"""`scripts/fuzz` reads libFuzzer's words, and notices what hangs."""
+"""`scripts/fuzz` reads libFuzzer's output, and detects inputs that hang."""
 
 import json
 import signal

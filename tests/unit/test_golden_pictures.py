@@ -1,6 +1,6 @@
-"""The drawings of the renderers, against pictures that are kept in `tests/golden`.
+"""The renderers' drawings against the pictures in `tests/golden`.
 
-A picture may differ by a few pixels. `support.rasters` says how they are compared and kept.
+A picture may differ in a few pixels. `support.rasters` compares and stores them.
 """
 
 import io
@@ -19,7 +19,7 @@ SIZE = (160, 120)
 
 @pytest.fixture(scope="module")
 def part() -> b.Solid:
-    """Return a block with a hole, a notch and a ball on a corner."""
+    """Return a block with a hole, a notch and a ball at a corner."""
     hole = b.cylinder(h=9, r=0.8, segments=16, center=True).translate(1.5, 1.5, 1)
     notch = b.box(1, 3, 1, center=True).translate(3, 2.5, 2)
     return (b.box(4, 3, 2) - hole - notch) | b.sphere(0.9, 16).translate(4, 0, 2)

@@ -1,4 +1,4 @@
-"""Help can be read: of functions with names of types, of verbs with few options first."""
+"""The help texts are readable: type names in signatures, few options first for commands."""
 
 import inspect
 import pydoc
@@ -15,7 +15,7 @@ from support.cli import Capture, ran
 
 
 def public() -> Iterator[tuple[str, Callable[..., Any]]]:
-    """Yield the public functions, and the methods of the classes that people hold."""
+    """Yield the public functions, and the methods of the main classes, with their names."""
     for name in b.__all__:
         if inspect.isfunction(getattr(b, name)):
             yield name, getattr(b, name)

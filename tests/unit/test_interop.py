@@ -1,4 +1,4 @@
-"""Meshes of other libraries, some of them by stand-ins with the same attributes."""
+"""Meshes of other libraries, some replaced by stand-ins with the same attributes."""
 
 import io
 import sys
@@ -39,7 +39,7 @@ def pymeshlab_mesh() -> Any:
 
 
 def split_manifold_mesh() -> Any:
-    """Return a manifold3d mesh whose seam vertices are doubled and merged by its own tables."""
+    """Return a manifold3d mesh with duplicated vertices that its merge tables join."""
     mesh = manifold().to_mesh64()
     vertices, faces = np.array(mesh.vert_properties), np.array(mesh.tri_verts)
     doubled = faces.copy()
@@ -57,7 +57,7 @@ def padded(faces: Any) -> Any:
 
 
 class VtkLike:
-    """Polygons that, like vtk's, show every cell in one object."""
+    """Polygons that return each cell in the same object, as those of VTK do."""
 
     GetPolys = None
 
@@ -100,7 +100,7 @@ def shape(corners: list[Any]) -> Any:
 
 
 def cadquery_like(*origins: float) -> Any:
-    """Return a workplane with a shape at each place along x."""
+    """Return an object like a workplane of CadQuery, with a shape at each x coordinate."""
     shapes = [
         shape([SimpleNamespace(toTuple=lambda v=v, x=x: (v[0] + x, v[1], v[2])) for v in V])
         for x in origins or (0.0,)
@@ -109,7 +109,7 @@ def cadquery_like(*origins: float) -> Any:
 
 
 def shape_of_loose_faces() -> Any:
-    """Return a shape whose faces share no vertices, as kernels tessellate each face by itself."""
+    """Return a shape whose faces share no vertices, as CAD kernels tessellate them."""
     corners = [tuple(V[index]) for face in F for index in face]
     faces = [tuple(range(k, k + 3)) for k in range(0, len(corners), 3)]
     return SimpleNamespace(tessellate=lambda tolerance: (corners, faces), wrapped=None)

@@ -279,7 +279,7 @@ BOOLEANS = "http://schemas.3mf.io/3dmanufacturing/booleanoperations/2023/07"
 
 
 def shape(number: int, base: int, operation: str, *operands: str, moved: str = "") -> str:
-    """Return an object that is a boolean shape; operands are the words within their elements."""
+    """Return the XML of an object that is a boolean shape; operands are attributes of elements."""
     inner = "".join(f"<bo:boolean {words}/>" for words in operands)
     told = f'operation="{operation}"' if operation else ""
     head = f'<bo:booleanshape xmlns:bo="{BOOLEANS}" objectid="{base}" {told} {moved}>'
@@ -433,7 +433,7 @@ def test_objects_without_triangles_are_told(tmp_path: Path) -> None:
 
 
 def painted(bases: str) -> str:
-    """Return a cube of two base materials by turns."""
+    """Return the XML of a cube with two materials on alternating triangles."""
     told = CUBE
     for k in range(12):
         told = told.replace('"/><triangle', f'" pid="9" p1="{k % 2}" /><triangle', 1)

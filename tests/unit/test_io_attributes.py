@@ -1,4 +1,4 @@
-"""Attributes in files: every format with every kind that it can hold, and what it cannot."""
+"""Attributes in files: each format with each kind that it can store, and with others."""
 
 import io
 import math
@@ -365,7 +365,7 @@ def test_pictures_stay_through_operations_and_assemblies(tmp_path: Path) -> None
 
 
 def repacked(source: Path, target: Path, change: dict[str, tuple[bytes, bytes]]) -> Path:
-    """Write an archive again, with other words in some parts; a part may become nothing."""
+    """Copy an archive with text in some members replaced."""
     with zipfile.ZipFile(source) as given, zipfile.ZipFile(target, "w") as made:
         for name in given.namelist():
             old, new = change.get(name, (b"", b""))

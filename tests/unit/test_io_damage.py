@@ -1,4 +1,4 @@
-"""Files with a few wrong bytes: read as something sound, or refused in one line."""
+"""Files with a few wrong bytes are read as sound solids, or refused in one line."""
 
 import random
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""The empty set in files: what we wrote of it reads back; other files without faces are refused."""
+"""The empty set in files: our own files are read back; other files without faces are refused."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""GLB: metres and axes, nodes, names, single precision, and what is refused."""
+"""GLB: metres and axes, nodes, names, single precision, and refusals."""
 
 import json
 from collections.abc import Callable
@@ -19,7 +19,7 @@ Edit = Callable[[dict[str, Any]], Any]
 
 
 def opened(data: bytes) -> tuple[dict[str, Any], bytes]:
-    """Return the description and the binary chunk with its head."""
+    """Return the JSON document and the binary chunk of a GLB file."""
     size = int.from_bytes(data[12:16], "little")
     return json.loads(data[20 : 20 + size]), data[20 + size :]
 

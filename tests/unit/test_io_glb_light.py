@@ -1,4 +1,4 @@
-"""Colours of GLB are light; ours are what a screen shows."""
+"""Colours in GLB are linear; ours are sRGB."""
 
 import json
 from pathlib import Path

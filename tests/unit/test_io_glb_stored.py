@@ -1,4 +1,4 @@
-"""GLB of other programs: numbers in few bytes or replaced one by one, a mesh at many places."""
+"""GLB of other programs: quantised, sparse and interleaved numbers, and instances."""
 
 import json
 from collections.abc import Callable
@@ -19,7 +19,7 @@ from support.shapes import cube
 
 
 def scene_of(vertices: Numbers | None = None, stride: int = 0, **accessor: Any) -> Scene:
-    """Return a cube of edge 2 in metres, or one with other vertices."""
+    """Return a GLB scene with a cube of edge 2 metres, or with other vertices."""
     usual, faces = cube(2.0)
     points = np.asarray(usual, "f4") if vertices is None else vertices
     return Scene(points, faces, stride, **accessor)
@@ -32,7 +32,7 @@ def read_back(scene: Scene, folder: Path) -> RawMesh:
 
 
 def volume(mesh: RawMesh) -> float:
-    """Return the volume in cubic metres."""
+    """Return the volume of a mesh in cubic metres."""
     return b.Solid(mesh.vertices, mesh.faces).volume / 1e9
 
 

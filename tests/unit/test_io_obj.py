@@ -1,4 +1,4 @@
-"""OBJ: references of all kinds, polygons, continued lines, and what is refused."""
+"""OBJ: references of all kinds, polygons, continued lines, and refusals."""
 
 import math
 import zipfile
@@ -170,14 +170,14 @@ def test_curves_are_reported(tmp_path: Path) -> None:
 
 
 def painted(names: list[str], files: dict[str, bytes], library: str = "m.mtl") -> RawMesh:
-    """Return a square whose halves have materials of these names."""
+    """Return a square whose two triangles have materials of these names."""
     first, second = names
     faces = f"usemtl {first}\nf 1 2 3\nusemtl {second}\nf 1 3 4\n"
     return decoded("x.obj", f"mtllib {library}\n{SQUARE}{faces}".encode(), ".obj", files)
 
 
 def colors(raw: RawMesh) -> list[tuple[float, ...]]:
-    """Return the colours of the halves."""
+    """Return the colour of each triangle's material."""
     said = held(raw.attributes, "said")
     return [said.materials[name].color[:3] for name in said.face["material"].tolist()]
 
@@ -292,7 +292,7 @@ def test_materials_whose_names_become_one_get_names_of_their_own(tmp_path: Path)
 
 
 def of_color(color: tuple[float, ...]) -> b.Solid:
-    """Return a cube of one material."""
+    """Return a cube with one material of this colour."""
     mesh = b.cube(1).to_mesh()
     return b.Solid(
         mesh.vertices,
@@ -303,7 +303,7 @@ def of_color(color: tuple[float, ...]) -> b.Solid:
 
 
 def color_in(path: Path) -> tuple[float, ...]:
-    """Return the colour of the one material in a file."""
+    """Return the colour of the material "a" in a file."""
     return b.load(path).to_mesh().materials["a"].color[:3]
 
 

@@ -1,4 +1,4 @@
-"""OFF and its kin."""
+"""OFF and its variants."""
 
 from pathlib import Path
 

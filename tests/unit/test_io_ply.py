@@ -1,4 +1,4 @@
-"""PLY in its three forms, with every type, polygons and further data."""
+"""PLY in its three forms, with all number types, polygons and additional properties."""
 
 import struct
 from pathlib import Path
@@ -173,7 +173,7 @@ def test_data_after_the_end(tmp_path: Path) -> None:
 
 
 def read_square(vertex: str, faces: str, rows: str, lines: str) -> RawMesh:
-    """Read a square with further columns of vertices, and with these faces."""
+    """Return a square read from a PLY file with additional vertex properties and these faces."""
     corners = ["0 0 0", "1 0 0", "1 1 0", "0 1 0"]
     axes = "".join(f"property float {axis}\n" for axis in "xyz")
     text = (

@@ -1,4 +1,4 @@
-"""Files are proved before they get their names: damage of every kind keeps the old file."""
+"""Files are verified before they are renamed: after damage of any kind the old file remains."""
 
 import dataclasses
 import io
@@ -24,7 +24,7 @@ Written = Mesh | RawMesh
 
 
 def assembly() -> RawMesh:
-    """Return three bodies, two of one name; the ball's corners are of no short decimals."""
+    """Return three bodies, two of which have one name; the ball's corners are no short decimals."""
     bodies = joined(icosphere(1), moved(cube(0.3), (3, 0, 0)), moved(cube(), (0.1, 5, 0)))
     return RawMesh(*bodies, objects=(("lid", 80), ("body", 12), ("lid", 12)))
 
@@ -38,7 +38,7 @@ def form_of(suffix: str, text: bool) -> Form:
 def encode_with(
     monkeypatch: pytest.MonkeyPatch, suffix: str, text: bool, encode: Callable[[Written], Chunks]
 ) -> None:
-    """Let a format be written by something else."""
+    """Replace the function that encodes a format."""
     form, known = form_of(suffix, text), FORMATS[suffix]
     other = dataclasses.replace(form, encode=encode)
     is_text = text or known.binary is None
@@ -116,7 +116,7 @@ def test_faults_are_found(
 
 
 class Watched(io.BytesIO):
-    """A file that remembers how much of it was read at once."""
+    """A file that records how many bytes are read at once."""
 
     def __init__(self, data: bytes) -> None:
         super().__init__(data)

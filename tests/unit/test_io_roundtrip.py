@@ -1,4 +1,4 @@
-"""Written files read back as they were: sets, names, units; and what is lost is said."""
+"""Files read back as they were written: sets, names, units; losses are reported."""
 
 import zipfile
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""3MF as slicers write it: parts that take material away, or are none."""
+"""3MF files of slicers, with parts that are subtracted or are no solids."""
 
 import zipfile
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""STL in both forms: detection, exact welding, and what is refused."""
+"""STL in both forms: detection, exact welding, and refusals."""
 
 import struct
 from pathlib import Path
@@ -178,7 +178,7 @@ def test_names_of_solids_that_are_no_utf_8_stay_apart(tmp_path: Path) -> None:
 
 
 def with_bytes(sizes: list[int], said: list[int] | None = None) -> bytes:
-    """Return a binary cube with attribute bytes behind its triangles, and what is said of them."""
+    """Return a binary STL cube with attribute bytes after its triangles, and stated counts."""
     plain = binary_stl(cube_corners())
     rows = [plain[84 + 50 * k : 132 + 50 * k] for k in range(12)]
     counts = sizes if said is None else said

@@ -1,4 +1,4 @@
-"""Forms of text in which other programs write meshes: each is the cube, or refused with a line."""
+"""Text forms of meshes that other programs write: each is read as the cube, or refused."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The effect of single precision on triangles, counted exactly."""
+"""Triangles that single precision flattens, merges or reverses, counted exactly."""
 
 from fractions import Fraction
 from pathlib import Path
@@ -23,7 +23,7 @@ def exact_normal(triangle: FloatArray) -> Vector:
 
 
 def nasty(rng: np.random.Generator, count: int) -> FloatArray:
-    """Return triangles of few digits, many of them flat, of all sizes and far out."""
+    """Return difficult random triangles: with few digits, flat, of all sizes, and far out."""
     corners = rng.integers(-3, 4, (count, 3, 3)).astype(np.float64)
     corners *= rng.choice([1, 1e-20, 1e20, 0.1, 2.0**-30, 1e-160, 1e150], (count, 1, 1))
     corners += rng.choice([0, 0, 1.0, 1e5, 0.1], (count, 1, 3))

@@ -1,4 +1,4 @@
-"""VTK and VTU through meshio: faces of any kind in, triangles out, bad files refused."""
+"""VTK and VTU files through meshio: faces of any kind are read, triangles written."""
 
 import builtins
 import sys

@@ -1,4 +1,4 @@
-"""Operands that one lattice of the finest step does not hold, and what lies beyond the lattice."""
+"""Operands that do not fit one lattice of the finest step, and coordinates outside lattices."""
 
 from collections.abc import Callable
 

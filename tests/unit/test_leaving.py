@@ -1,4 +1,4 @@
-"""Attributes in the meshes of trimesh and manifold3d that solids become, and back from there."""
+"""Attributes of solids converted to meshes of trimesh and manifold3d, and back."""
 
 import io
 from typing import Any

@@ -1,4 +1,4 @@
-"""The table of the lecture names functions, tests and pictures that are there."""
+"""The table of the lecture names functions, tests and pictures that exist."""
 
 import re
 from functools import reduce

@@ -1,4 +1,4 @@
-"""Absurdly large or damaged input is refused early, with a sentence."""
+"""Too large or damaged input is refused early, with a clear message."""
 
 import io
 import time

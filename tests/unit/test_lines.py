@@ -1,4 +1,4 @@
-"""Edges along which numbers of 61 bits tell lines apart only if they are looked at twice."""
+"""Edges on different lines that are equal modulo a 61-bit prime."""
 
 import pytest
 
@@ -10,7 +10,7 @@ STEP = 1e-9
 
 
 def slanted_prism() -> b.Solid:
-    """Return a prism two of whose sides are the same line modulo 2^61 - 1."""
+    """Return a prism with two sides on lines that are equal modulo 2^61 - 1."""
     long, short = (2**31 * STEP, STEP), (STEP, 2**30 * STEP)
     corners = [(0.0, 0.0), long, (long[0] + short[0], long[1] + short[1]), short]
     return b.Region.polygon(corners).extrude(1)

@@ -1,4 +1,4 @@
-"""Markdown leads to what is there: links between files, and paths and names in code type."""
+"""Links between Markdown files, and paths and names in code type, lead to existing things."""
 
 import re
 import subprocess
@@ -33,7 +33,7 @@ def text_of(path: Path) -> str:
 
 
 def markdown() -> list[Path]:
-    """Return the Markdown files of the repository, without what is ignored."""
+    """Return the Markdown files of the repository that git does not ignore."""
     command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.md"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
     return [path for name in done.stdout.splitlines() if (path := ROOT / name).exists()]
@@ -60,7 +60,7 @@ def sources() -> tuple[Path, ...]:
 
 
 def resolved(path: str) -> list[Path]:
-    """Return the files and folders that a path may mean."""
+    """Return the files and folders that a path in a text may refer to."""
     found = [start / path for start in STARTS if (start / path).exists()]
     return found or [file for file in sources() if file.as_posix().endswith(f"/{path}")]
 

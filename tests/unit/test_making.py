@@ -1,4 +1,4 @@
-"""Boxes with round edges, surfaces below heights, patterns."""
+"""Rounded boxes, surfaces over heights, and patterns."""
 
 import math
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""docs/measured.md has the tables of the last release; a new one is made of records."""
+"""docs/measured.md has the tables of the last release; a new release is made from records."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Solids from solids: hulls, sums, cuts."""
+"""Solids made from solids: hulls, sums, cuts."""
 
 from collections.abc import Callable
 from fractions import Fraction
@@ -145,7 +145,7 @@ def test_sums_of_many_faces() -> None:
 
 
 def bodies(random: Random) -> list[b.Solid]:
-    """Return a block with boxes and tetrahedra added and cut off, and a disc with a small hole."""
+    """Return a block with random boxes and tetrahedra added and removed, and a disc with a hole."""
     block = b.cube(4)
     for size in (1.5, 2, 3):
         at = [random.randint(-1, 3) for _ in range(3)]
@@ -172,7 +172,7 @@ def on_lattice(solid: b.Solid, pitch: int) -> tuple[FloatArray, IndexArray]:
 
 
 def touched(corners: FloatArray, part: b.Solid, pitch: int) -> b.Solid:
-    """Return the union of the sums of a convex tool and each triangle."""
+    """Return the union of the sums of a convex tool with each of the triangles."""
     ends, _ = on_lattice(part, pitch)
     sums = (triangle[:, None] + ends for triangle in corners)
     return b.union(hull_of(np.round(each.reshape(-1, 3), -pitch), pitch) for each in sums)

@@ -1,4 +1,4 @@
-"""The distance of solids, against an exact look at all pairs of triangles."""
+"""The distance of solids, against an exact search over all pairs of triangles."""
 
 import math
 import time
@@ -14,7 +14,7 @@ from support.shapes import random_rotation, tetrahedron
 
 
 def segment_gap(p: np.ndarray, q: np.ndarray, x: np.ndarray, y: np.ndarray) -> float:
-    """Return the distance of two segments, by the ends' feet and the common perpendicular."""
+    """Return the distance of two segments."""
     ends = [point_gap(one, x, y) for one in (p, q)] + [point_gap(one, p, q) for one in (x, y)]
     u, v, r = q - p, y - x, x - p
     n = np.cross(u, v)
@@ -39,7 +39,7 @@ def face_gap(point: np.ndarray, corners: np.ndarray) -> float:
 
 
 def slow_gap(one: b.Solid, other: b.Solid) -> float:
-    """Return the least distance of all edges and corners of bodies that do not overlap."""
+    """Return the least distance of two solids that do not overlap, over all edges and corners."""
     first, second = (solid.vertices[solid.faces] for solid in (one, other))
     gaps = []
     for f in first:

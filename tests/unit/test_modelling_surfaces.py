@@ -1,4 +1,4 @@
-"""Surfaces made finer, moved by functions, and found where functions are positive."""
+"""Surfaces that are refined, warped, or level sets of functions."""
 
 from collections.abc import Callable
 from time import process_time

@@ -1,4 +1,4 @@
-"""Solids whose faces are thousands of needles: what they cost, and that they stay exact."""
+"""Solids with thousands of needle faces: their cost and their exactness."""
 
 from collections.abc import Callable
 
@@ -13,7 +13,7 @@ TURN = (30, 20, 10)
 
 
 def comb(teeth: int) -> b.Solid:
-    """Return a bar with teeth; the needles of its caps share two corners."""
+    """Return a bar with teeth; all needles of a cap share two corners."""
     x = 2.0 * np.arange(teeth)
     steps = [(x, 0 * x), (x + 1, 0 * x), (x + 1, 0 * x + 9), (x + 2, 0 * x + 9)]
     points = np.stack([np.column_stack(pair) for pair in steps], axis=1).reshape(-1, 2)
@@ -21,7 +21,7 @@ def comb(teeth: int) -> b.Solid:
 
 
 def cut_cylinder(sides: int, turn: tuple[int, int, int]) -> b.Mesh:
-    """Return the mesh of a turned cylinder of many sides with a notch."""
+    """Return the mesh of a rotated cylinder with a notch."""
     notch = b.cube(3).translate(8.5, -1.5, -1)
     return (b.cylinder(1, 10, segments=sides).rotate(turn) - notch.rotate(turn)).to_mesh()
 
@@ -30,7 +30,7 @@ SQUARE = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
 
 
 def turned_square(rows: int, turn: float, height: float) -> FloatArray:
-    """Return the corners of a square in each row, turned by so many degrees from row to row."""
+    """Return the corners of a square in each row, rotated by `turn` degrees per row."""
     turns = turn * np.radians(np.arange(rows))[:, None]
     x, y = SQUARE.T
     place = [x * np.cos(turns) + y * np.sin(turns), y * np.cos(turns) - x * np.sin(turns)]
@@ -39,7 +39,7 @@ def turned_square(rows: int, turn: float, height: float) -> FloatArray:
 
 
 def stack(rows: int, turn: float, height: float) -> tuple[FloatArray, IndexArray]:
-    """Return the mesh of a square that is turned on its way up."""
+    """Return the mesh of a square that twists while it rises."""
     first, following = np.arange(4), np.roll(np.arange(4), -1)
     wall = np.concatenate(
         [
@@ -53,7 +53,7 @@ def stack(rows: int, turn: float, height: float) -> tuple[FloatArray, IndexArray
 
 
 def beside(mesh: tuple[FloatArray, IndexArray], other: b.Mesh) -> tuple[FloatArray, IndexArray]:
-    """Return a mesh with another one in it."""
+    """Return a mesh that contains both meshes."""
     vertices, faces = mesh
     more = other.faces + len(vertices)
     return np.concatenate([vertices, other.vertices]), np.concatenate([faces, more])

@@ -1,4 +1,4 @@
-"""The views of a solid in notebooks."""
+"""Views of solids in notebooks."""
 
 import html
 import io
@@ -125,7 +125,7 @@ def test_traces_say_how_long_they_are() -> None:
 
 
 class Kernel:
-    """A notebook's shell as far as the views ask it."""
+    """A stand-in for a notebook's shell, with what the views use."""
 
     def __init__(self, named: bool) -> None:
         self.kernel = object()
@@ -135,7 +135,7 @@ class Kernel:
         self.shown: list[Any] = []
 
     def run(self, cell: str, *shown: b.Solid) -> list[str]:
-        """Return what solids are in a cell that runs now."""
+        """Return the views of solids in a cell that runs now."""
         self.runs += 1
         self.user_ns["In"].append(cell)
         return [str(one._repr_html_()) for one in shown]
@@ -162,7 +162,7 @@ SMALL, ROUND = b.cube(1), b.sphere(1, segments=120)
 
 
 def frame_of(shown: str) -> str:
-    """Return the page in the frame, after proving that it is small but for the mesh."""
+    """Return the page in a view's frame; assert that it is small apart from the mesh."""
     frame = re.search(r'<iframe srcdoc="([^"]*)"', shown)
     assert frame is not None
     page = html.unescape(frame[1])

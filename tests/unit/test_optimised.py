@@ -50,7 +50,7 @@ REFUSED: list[Callable[[], object]] = [
 
 
 def findings() -> Iterator[object]:
-    """Yield what some work of each layer comes to."""
+    """Yield the result or the error of some calls of each layer."""
     for call in REFUSED:
         try:
             yield call()

@@ -1,4 +1,4 @@
-"""The order of a mesh's vertices and triangles tells nothing of how the solid was evaluated."""
+"""The order of a mesh's vertices and triangles does not depend on how the solid was evaluated."""
 
 from collections.abc import Callable
 
@@ -17,7 +17,7 @@ QUESTIONS: list[Callable[[b.Solid], object]] = [
 
 
 def balls(seed: int, count: int) -> list[b.Solid]:
-    """Return solids in general position."""
+    """Return random solids in general position."""
     rng = np.random.default_rng(seed)
     made = [b.sphere(1, segments=9), b.torus(1, 0.4, segments=8), b.cube(1.5)]
     return [
@@ -27,7 +27,7 @@ def balls(seed: int, count: int) -> list[b.Solid]:
 
 
 def boxes(seed: int, count: int) -> list[b.Solid]:
-    """Return boxes on a grid, of which many touch."""
+    """Return random boxes on a grid, many of which touch."""
     rng = np.random.default_rng(seed)
     sizes, places = rng.integers(1, 4, (count, 3)), rng.integers(-2, 3, (count, 3))
     return [
@@ -41,7 +41,7 @@ def bytes_of(solid: b.Solid) -> tuple[bytes, ...]:
 
 
 def folded(operands: list[b.Solid], seed: int, ask: Callable[[b.Solid], object]) -> b.Solid:
-    """Combine operands one by one, and ask something of each result on the way."""
+    """Combine operands one by one, and evaluate each result with `ask`."""
     rng = np.random.default_rng(seed)
     result, *others = operands
     for operand in others:
@@ -52,7 +52,7 @@ def folded(operands: list[b.Solid], seed: int, ask: Callable[[b.Solid], object])
 
 
 def woven(operands: list[b.Solid], seed: int, ask: Callable[[b.Solid], object]) -> b.Solid:
-    """Combine operands, some of them again later, and ask something of each result."""
+    """Combine operands, some of them several times, and evaluate each result with `ask`."""
     rng = np.random.default_rng(seed)
     pool = list(operands)
     spare = len(pool)

@@ -10,7 +10,7 @@ from bspcsg._types import FloatArray
 
 
 def plate(rows: int, columns: int) -> b.Solid:
-    """Return a plate with square holes, triangulated by long needles among others."""
+    """Return a plate with square holes, whose triangles include long needles."""
     square = np.array([(0, 0), (0, 1), (1, 1), (1, 0)])
     holes = [square + (2 * x + 1, 2 * y + 1) for x in range(columns) for y in range(rows)]
     wide, high = 2 * columns + 1, 2 * rows + 1

@@ -1,4 +1,4 @@
-"""Outlines as triangles: of many corners, and of those that touch and cross."""
+"""Triangulation of outlines with many corners, and of outlines that touch or cross."""
 
 from collections import Counter
 from collections.abc import Callable
@@ -13,13 +13,13 @@ from support.timing import seconds
 
 
 def ring(count: int, radius: float, x: float = 0.0, y: float = 0.0) -> FloatArray:
-    """Return a circle, counterclockwise."""
+    """Return a regular polygon of `count` corners, counterclockwise."""
     angles = 2 * np.pi * np.arange(count) / count
     return np.column_stack([x + radius * np.cos(angles), y + radius * np.sin(angles)])
 
 
 def plate(side: int) -> list[FloatArray]:
-    """Return a square with rows of round holes."""
+    """Return the outlines of a square with rows of round holes."""
     size = 3.0 * side
     outer = np.array([(0, 0), (size, 0), (size, size), (0, size)])
     places = [(3 * i + 1.5, 3 * j + 1.5) for i in range(side) for j in range(side)]
@@ -27,7 +27,7 @@ def plate(side: int) -> list[FloatArray]:
 
 
 def comb(teeth: int) -> list[FloatArray]:
-    """Return a bar with teeth that point downwards."""
+    """Return the outline of a bar with teeth that point downwards."""
     x = 2.0 * np.arange(teeth)
     steps = [(x, 0 * x), (x + 1, 0 * x), (x + 1, 0 * x + 9), (x + 2, 0 * x + 9)]
     points = np.stack([np.column_stack(pair) for pair in steps], axis=1).reshape(-1, 2)
@@ -35,7 +35,7 @@ def comb(teeth: int) -> list[FloatArray]:
 
 
 def areas(contours: list[FloatArray], triangles: IndexArray) -> FloatArray:
-    """Return the areas of triangles, those that run clockwise negative."""
+    """Return the signed areas of triangles, negative for clockwise ones."""
     a, b, c = np.concatenate(contours)[triangles].transpose(1, 0, 2)
     u, v = b - a, c - a
     doubled: FloatArray = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
@@ -67,7 +67,7 @@ def test_outlines_of_many_corners_that_touch_or_cross_keep_their_edges() -> None
 
 
 def keeps_edges(contours: list[FloatArray], triangles: IndexArray) -> bool:
-    """Say whether the edges of triangles cancel but for those of the contours."""
+    """Return true if the triangles' edges cancel except for the edges of the contours."""
     corners = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).tolist()
     left = Counter(map(tuple, corners)) - Counter((b, a) for a, b in corners)
     return left == Counter(map(tuple, directed_edges(contours).tolist()))

@@ -1,4 +1,4 @@
-"""Parameters mean the same wherever they are taken."""
+"""Parameters mean the same in all functions."""
 
 import warnings
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Components with their cavities, and the two sides of a plane."""
+"""Connected components with their cavities, and the parts on both sides of a plane."""
 
 import pickle
 from fractions import Fraction
@@ -64,7 +64,7 @@ def test_nothing_has_no_parts() -> None:
 
 
 def grooved(depth: float, tags: Any = None) -> b.Solid:
-    """Return a block with a groove from below; one 4 deep touches its top from inside."""
+    """Return a block with a groove from below; a groove of depth 4 touches the top from inside."""
     groove = b.Region.polygon([(1, -1), (3, -1), (2, depth)]).extrude(6).rotate(90, "x")
     block = b.box(4, 4, 4)
     return (block if tags is None else block.tagged(**tags)) - groove.translate(0, 5, 0)
@@ -112,7 +112,7 @@ def test_a_ring_that_touches_both_faces_cuts_out_its_middle() -> None:
 
 
 def plate_with_grooves(count: int) -> b.Solid:
-    """Return a plate that grooves cut into pieces, each touching the next along an edge."""
+    """Return a plate that grooves divide into pieces, each touching the next along an edge."""
     groove = b.Region.polygon([(0.2, -1), (0.8, -1), (0.5, 4)]).extrude(20).rotate(90, "x")
     grooves = b.union(groove.translate(at, 15, 0) for at in range(count))
     return (b.box(count, 10, 4) - grooves).normalized()
@@ -144,7 +144,7 @@ def test_unbounded_solids_have_no_parts() -> None:
 
 
 def cone(sides: int) -> b.Solid:
-    """Return a cone whose apex and the middle of whose base are corners of all its faces."""
+    """Return a cone with apex and base centre as corners of all its faces."""
     turns = np.arange(sides) * 2 * np.pi / sides
     rim = np.stack([10 * np.cos(turns), 10 * np.sin(turns), 0 * turns], axis=1)
     near = np.arange(sides)

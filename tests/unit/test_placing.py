@@ -1,4 +1,4 @@
-"""Meshes that files place: what touched does not cross, and what is placed exactly stays."""
+"""Meshes that files transform: contacts do not become crossings, exact motions are exact."""
 
 import functools
 import operator
@@ -30,7 +30,7 @@ UNMOVED = np.eye(4)
 
 
 def chain() -> "b.Solid":
-    """Return boxes that touch along parts of edges and are one piece elsewhere."""
+    """Return boxes in a ring that touch along parts of edges or are joined."""
     ends = [
         ((0, 0, 0), (2, 2, 2)),
         ((2, 2, 0.5), (4, 4, 1.5)),
@@ -162,7 +162,7 @@ def test_what_touches_itself_does_not_cross_in_another_unit(units: tuple[float, 
 
 
 def with_t_junctions(mesh: "b.Mesh") -> RawMesh:
-    """Return a mesh of which every third face is divided in an edge, and the face beyond is not."""
+    """Return a mesh with every third face divided at an edge, but not the face beyond."""
     vertices, faces = mesh.vertices.tolist(), []
     for number, (a, c, d) in enumerate(mesh.faces.tolist()):
         if number % 3:

@@ -1,4 +1,4 @@
-"""Comparisons of solids, regions, intervals and trees: one meaning for all of them."""
+"""Comparisons of solids, regions, intervals and trees, with one meaning for all."""
 
 import operator
 import pickle
@@ -16,7 +16,7 @@ from bspcsg.solid.point_set import PointSet
 
 @dataclass(frozen=True)
 class Kind:
-    """The makers of a box from one number to another on all axes, and of half-spaces."""
+    """The functions that make boxes, half-spaces and empty sets of one class."""
 
     dimension: int
     box: Callable[[float, float], Any]

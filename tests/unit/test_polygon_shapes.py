@@ -1,4 +1,4 @@
-"""Shapes of shapely as regions and profiles: what they mean, and that many cost no more each."""
+"""Shapes of shapely as regions and profiles: their meaning, and time linear in their number."""
 
 import sys
 from collections.abc import Callable
@@ -16,7 +16,7 @@ shapely = pytest.importorskip("shapely")
 
 
 def squares(count: int, step: float = 2.0) -> list[Any]:
-    """Return unit squares in rows."""
+    """Return unit squares in rows, as shapely shapes."""
     side = int(np.ceil(np.sqrt(count)))
     corners = [(step * (k % side), step * (k // side)) for k in range(count)]
     return [shapely.box(x, y, x + 1, y + 1) for x, y in corners]
@@ -33,7 +33,7 @@ def with_holes(count: int) -> list[Any]:
 
 
 def calls_of(work: Callable[[], object]) -> int:
-    """Count the calls of functions, Python's and others', that the work makes."""
+    """Return the number of function calls that the work makes."""
     count = 0
 
     def note(frame: object, event: str, argument: object) -> None:

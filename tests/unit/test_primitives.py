@@ -1,4 +1,4 @@
-"""Primitives: sizes, places, topology, exactness, and what they refuse."""
+"""Primitives: sizes, positions, topology, exactness, and refusals."""
 
 import inspect
 import math
@@ -25,7 +25,7 @@ ARROW = [(0, 0), (4, 2), (0, 4), (1, 2)]
 
 
 def ngon(sides: int) -> float:
-    """Area of the regular polygon in the unit circle."""
+    """Return the area of the regular polygon in the unit circle."""
     return sides / 2 * math.sin(2 * math.pi / sides)
 
 

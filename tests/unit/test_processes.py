@@ -1,4 +1,4 @@
-"""Processes that divide after they have used the library; `support.processes` has the programs."""
+"""Processes that fork after they have used the library; `support.processes` has the programs."""
 
 import os
 import subprocess
@@ -14,7 +14,7 @@ linux = pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="there i
 
 
 def ran(name: str, folder: Path, patience: float = 100, **environment: str) -> tuple[str, str]:
-    """Run a program in a folder; return both streams. It must end, and end well."""
+    """Run a program in a folder, assert that it ends with 0, and return both streams."""
     path = os.pathsep.join([str(REPOSITORY), str(REPOSITORY / "tests")])
     ended = subprocess.run(
         [sys.executable, "-m", "support.processes", *name.split()],

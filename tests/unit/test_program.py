@@ -1,4 +1,4 @@
-"""Programs, carried out in any algebra."""
+"""Programs of set operations, evaluated in any algebra."""
 
 import operator
 from collections.abc import Callable, Sequence

@@ -1,4 +1,4 @@
-"""Long calls are watched, and stopped by what watches them."""
+"""Progress callbacks see long calls, and can stop them."""
 
 import io
 import itertools
@@ -16,17 +16,17 @@ from support.cli import Capture
 
 
 class StopError(Exception):
-    """The error that the caller raises."""
+    """The error that the callback raises."""
 
 
 def slow() -> b.Solid:
-    """Return an expression that takes far longer than a test waits."""
+    """Return an expression that takes far longer than a test."""
     ball = b.sphere(1, segments=400)
     return b.union(*[ball.rotate((k, 2 * k, 3 * k)).translate(k / 99, 0, 0) for k in range(1, 60)])
 
 
 def work_until(done: Callable[[], Any]) -> None:
-    """Unite balls, more of them each time, until something is true."""
+    """Unite balls, more of them each time, until `done` is true."""
     ball = b.sphere(1, segments=300)
     for count in itertools.count(2):
         b.union(*[ball.translate(k / 7, k / 9, 0) for k in range(count)]).to_mesh()
@@ -91,14 +91,14 @@ def test_what_watches_may_use_the_library() -> None:
 
 
 class Terminal(io.StringIO):
-    """Standard error of somebody who sits there."""
+    """A stand-in for standard error on a terminal."""
 
     def isatty(self) -> bool:
         return True
 
 
 def on_terminal(monkeypatch: pytest.MonkeyPatch) -> Terminal:
-    """Return what stands for standard error from now on, without patience."""
+    """Replace standard error by a terminal, without the delay of the progress bar; return it."""
     found = Terminal()
     monkeypatch.setattr(sys, "stderr", found)
     monkeypatch.setattr(watching, "_BAR_DELAY", 0.0)

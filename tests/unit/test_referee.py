@@ -1,4 +1,4 @@
-"""Exact counts of crossings, and the rulings that follow from them."""
+"""Exact counts of crossings, and the rulings based on them."""
 
 import numpy as np
 import pytest

@@ -1,6 +1,6 @@
-"""Each public function refuses values that make no sense: with an error that has a code, at once.
+"""Each public function refuses invalid arguments at once, with an error that has a code.
 
-Every parameter of every function is given every bad value, the others stay good. A new function
+Every parameter of every function gets every bad value, with all other arguments valid. A function
 that is missing here fails the test of completeness.
 """
 
@@ -29,12 +29,12 @@ SCRIPT = Path(__file__).parents[1] / "corpus" / "csg" / "pyramid.csg"
 
 
 def in_order(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function of names for one that takes any number of things."""
+    """Return a function of keyword arguments that passes their values in order."""
     return lambda **given: function(*given.values())
 
 
 def watched(tell: Any, every: Any, of: Any) -> None:
-    """Do nothing, and be told of it."""
+    """Enter and leave a `progress` context with these arguments."""
     with b.progress(tell, every=every, of=of):
         pass
 

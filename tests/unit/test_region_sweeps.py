@@ -1,4 +1,4 @@
-"""Regions without trees: what sweeps over boundaries, bounds and boxes answer."""
+"""Regions without trees: results of sweeps over boundaries, of bounds and of boxes."""
 
 from fractions import Fraction
 
@@ -15,7 +15,7 @@ RANDOM = np.random.default_rng(16)
 
 
 def tangle(corners: int = 40, size: int = 30) -> Region:
-    """Return a region whose outline crosses itself, so that most corners are constructed."""
+    """Return a region whose outline crosses itself, so that most corners are off the lattice."""
     return Region(RANDOM.integers(0, size, (corners, 2)).astype(float), winding="even-odd")
 
 

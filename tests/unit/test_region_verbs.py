@@ -1,4 +1,4 @@
-"""Offsets, hulls, fewer corners, warps and curves of the plane."""
+"""Offsets, hulls, simplification, warps and curves of regions."""
 
 import math
 from collections.abc import Callable
@@ -169,7 +169,7 @@ def test_sums_of_regions() -> None:
 
 
 def distance(points: np.ndarray, loops: list[np.ndarray]) -> float:
-    """Return how far the farthest of points is from outlines."""
+    """Return the largest distance of the points from the outlines."""
     start = np.concatenate(loops)
     along = np.concatenate([np.roll(loop, -1, axis=0) for loop in loops]) - start
     offset = points[:, None] - start

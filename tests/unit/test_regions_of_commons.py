@@ -1,4 +1,4 @@
-"""Cases of Apache Commons Geometry for sets of the plane, with what they expect.
+"""Cases of Apache Commons Geometry for sets of the plane, with their expected results.
 
 From RegionBSPTree2DTest.java of commons-geometry-euclidean. What differs there: trees can be
 changed, rectangles have two opposite corners, an unbounded size is infinite (here it is refused),

@@ -1,7 +1,7 @@
-"""Cases of other libraries for sets of the plane: GEOS, and what shapely's own tests add.
+"""Cases of GEOS for sets of the plane, and of shapely's own tests.
 
-Results with lower-dimensional parts (points and lines where operands touch) lose these here:
-regions are regularised sets. Everything else must be equal, exactly.
+Points and lines where operands touch are no part of our results, which are regularised sets. All
+else must be exactly equal.
 """
 
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Repairs: holes, orientation, duplicates, and what happens when pymeshlab is not well."""
+"""Repairs: holes, orientation, duplicates, and failures of pymeshlab."""
 
 import sys
 from pathlib import Path
@@ -70,7 +70,7 @@ def test_a_sphere_with_31_faces_missing_becomes_a_solid(draw: int) -> None:
 
 
 def strays(*meshes: Arrays) -> list[int]:
-    """Return the faces of stray fragments, of meshes whose equal corners are joined."""
+    """Return the faces of stray fragments, after joining equal vertices of the meshes."""
     vertices, faces = joined(*meshes)
     _, same = welded(vertices)
     return np.flatnonzero(stray_faces(same[faces])).tolist()

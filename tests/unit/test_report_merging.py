@@ -1,4 +1,4 @@
-"""Shards as one campaign."""
+"""Merging the results of parts of a campaign."""
 
 import json
 from itertools import permutations

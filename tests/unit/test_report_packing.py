@@ -1,4 +1,4 @@
-"""Models as the viewer in a page gets them, unpacked here as `unpacking.js` does."""
+"""Models packed for the viewer of a page, unpacked here as `unpacking.js` does."""
 
 import base64
 import gzip
@@ -13,7 +13,7 @@ from support.shapes import Arrays, cube, cuboid, icosphere, moved
 
 
 def unpacked(model: dict[str, Any]) -> list[Arrays]:
-    """Return the layers of a model, with the middle of its box at the origin of the coordinates."""
+    """Return the layers of a packed model as meshes, with the centre of its box at the origin."""
     data = np.frombuffer(gzip.decompress(base64.b64decode(model["data"])), dtype=np.uint8)
     found, at = [], 0
     for layer in model["layers"]:

@@ -1,4 +1,4 @@
-"""The page of a report, as text."""
+"""The HTML page of a report, as text."""
 
 import re
 from pathlib import Path

@@ -16,7 +16,7 @@ from support.cli import Capture
 
 @pytest.fixture
 def here(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let scripts run in this process, for a new one takes a third of a second."""
+    """Run scripts in this process, since a new process takes a third of a second."""
 
     def run_child(task: bytes, name: str, timeout: float | None) -> int:
         known = set(sys.modules)
@@ -198,7 +198,7 @@ def test_a_script_that_is_not_there(tmp_path: Path) -> None:
 
 @pytest.fixture
 def pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[Path]:
-    """Return the pages that a browser is asked to open, on a machine with a screen."""
+    """Return the list of pages that a browser is asked to open, as on a desktop."""
     asked: list[Path] = []
 
     def opening(address: str) -> bool:

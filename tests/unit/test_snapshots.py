@@ -1,4 +1,4 @@
-"""The content of pickles: bytes with a checksum, looked at in full before use."""
+"""The content of pickles: bytes with a checksum, checked completely before use."""
 
 import base64
 import pickle
@@ -20,7 +20,7 @@ def solid() -> b.Solid:
 
 
 def forged(data: bytes, rng: random.Random) -> bytes:
-    """Change some bytes of the payload, and make the checksum right for them."""
+    """Return a snapshot with some bytes of the payload changed, and a matching checksum."""
     payload = bytearray(data[:-CHECKSUM])
     for _ in range(rng.choice([1, 1, 2, 3])):
         place = rng.randrange(HEAD, len(payload))

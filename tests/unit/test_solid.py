@@ -541,7 +541,7 @@ def test_the_last_of_many_balls_is_not_lost() -> None:
 
 
 def bar_with_a_round_end(corners: int) -> tuple["b._types.FloatArray", "b._types.IndexArray"]:
-    """Return a turned bar in single precision whose caps are fans of needles from a corner."""
+    """Return a rotated bar in single precision with fans of needles as caps."""
     angles = np.linspace(-np.pi / 2, np.pi / 2, corners - 1)
     arc = np.column_stack([9 + np.cos(angles) / 2, np.sin(angles) / 2])
     outline = np.concatenate([[(0, -0.5)], arc, [(0, 0.5)]])

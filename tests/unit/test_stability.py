@@ -1,4 +1,4 @@
-"""The code has what the page on stability promises."""
+"""The code has everything that the page on stability promises."""
 
 import json
 import re
@@ -54,7 +54,7 @@ KEPT = ROOT / "tests/corpus/kept/1.0.0"
 
 
 def rows(heading: str) -> list[list[str]]:
-    """Return the cells of the tables below a heading."""
+    """Return the cells of the tables below a heading of the page."""
     part = PAGE.partition(f"\n## {heading}\n")[2].partition("\n## ")[0]
     lines = [line for line in part.splitlines() if line.startswith("|")]
     cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
@@ -94,7 +94,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def documents() -> dict[str, list[str]]:
-    """Return the schema and the fields of each kind of document."""
+    """Return the schema and the fields of each kind of JSON document."""
     found = [row for row in rows("Documents of `--json`")[1:] if len(row) == 3]
     return {name: row[1:] for row in found for name in row[0].replace("`", "").split(", ")}
 

@@ -1,4 +1,4 @@
-"""Standard parts have the sizes of their standards, are closed, and fit their mates."""
+"""Standard parts have the sizes of their standards, are closed, and fit their counterparts."""
 
 import math
 from collections.abc import Callable
@@ -33,20 +33,20 @@ SIZES = sorted(ROWS, key=lambda name: float(name[1:]))
 
 
 def box_of(part: b.Solid) -> np.ndarray[Any, Any]:
-    """Return the bounds of a part."""
+    """Return the minimum and the maximum corner of a part."""
     assert part.bounds is not None
     return part.bounds
 
 
 def is_sound(part: b.Solid, genus: int = 0) -> bool:
-    """Say whether a part is one closed body of so many ways through, without findings."""
+    """Return true if a part is one closed body of this genus, without findings."""
     mesh = part.to_mesh()
     whole = part.surface_count == 1 and part.genus == genus
     return whole and mesh.certificate.ok and not part.findings and part.volume > 0
 
 
 def across(part: b.Solid, z: float) -> float:
-    """Return the greatest distance from the axis of a section."""
+    """Return the greatest distance of a section's outline from the axis."""
     return max(float(np.hypot(*loop.T).max()) for loop in part.slice(z).to_polygons())
 
 

@@ -1,4 +1,4 @@
-"""SVG: path data and curves."""
+"""SVG files: path data and curves."""
 
 from pathlib import Path
 from typing import Any
@@ -57,7 +57,7 @@ blanks = st.sampled_from([" ", ",", " , ", "\n"])
 
 
 def joined(parts: list[st.SearchStrategy[str]]) -> st.SearchStrategy[str]:
-    """Return the arguments of a command, once or twice."""
+    """Return a strategy for the arguments of a command, once or twice."""
     once = st.tuples(blanks, *parts).map(lambda words: words[0].join(words[1:]))
     return st.lists(once, min_size=1, max_size=2).map(" ".join)
 

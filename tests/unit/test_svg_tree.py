@@ -1,4 +1,4 @@
-"""SVG: views in views, symbols and uses, and what shows nothing where it is declared."""
+"""SVG files: nested views, symbols and uses, and elements that are not drawn."""
 
 from pathlib import Path
 

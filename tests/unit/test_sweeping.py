@@ -1,4 +1,4 @@
-"""Sweeps, pipes, lofts and paths: known volumes, topology, and what is refused."""
+"""Sweeps, pipes, lofts and paths: known volumes, topology, and refusals."""
 
 import math
 from typing import Any, cast

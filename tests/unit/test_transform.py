@@ -1,4 +1,4 @@
-"""Factors, their common prefix, and what counts as an exact motion."""
+"""Factors of transforms, their common prefix, and exact lattice motions."""
 
 import math
 import pickle

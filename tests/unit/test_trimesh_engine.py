@@ -13,7 +13,7 @@ from bspcsg import trimesh_engine
 
 @pytest.fixture(autouse=True)
 def engines(monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[Any, Any]]:
-    """Give trimesh tables of engines that are thrown away after the test."""
+    """Replace trimesh's tables of engines by copies during the test."""
     monkeypatch.setattr(trimesh.boolean, "_engines", dict(trimesh.boolean._engines))
     monkeypatch.setattr(
         trimesh.boolean, "engines_available", set(trimesh.boolean.engines_available)

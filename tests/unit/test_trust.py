@@ -1,4 +1,4 @@
-"""The page on trust names commands that exist; our answers to its questions are right."""
+"""The page on trust names commands that exist, and our answers on it are correct."""
 
 import dataclasses
 import re

@@ -1,4 +1,4 @@
-"""What a killed process left of a file goes when another writes into the folder, no more."""
+"""An unfinished file of a killed process is removed by the next writer in its folder."""
 
 import os
 import signal
@@ -49,7 +49,7 @@ def started(program: str, folder: Path) -> "subprocess.Popen[str]":
 
 
 def begun(folder: Path) -> "subprocess.Popen[str]":
-    """Return a process that has begun a file in a folder."""
+    """Return a process that has started to write a file in a folder."""
     writer = started(WRITER, folder)
     assert writer.stdout is not None and writer.stdout.readline() == "begun\n"
     return writer

@@ -1,4 +1,4 @@
-"""One version: of the crate and its lock, the compiled core, the changelog and the pages."""
+"""One version number: of the crate and its lock, the compiled core, the changelog and the pages."""
 
 import re
 import tomllib
@@ -31,7 +31,7 @@ def test_packages_take_the_version_of_the_crate() -> None:
 
 
 def requirements(*extras: str) -> set[str]:
-    """Return what some extras bring, or the package itself where none is named."""
+    """Return the requirements of some extras, or of the package itself without extras."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     listed = [project["optional-dependencies"][extra] for extra in extras]
     return {each for names in listed or [project["dependencies"]] for each in names}

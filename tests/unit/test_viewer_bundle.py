@@ -1,4 +1,4 @@
-"""The viewer that pages carry is made of the sources beside it."""
+"""The viewer in pages is built from the sources beside it."""
 
 import hashlib
 from pathlib import Path

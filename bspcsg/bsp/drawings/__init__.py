@@ -1,1 +1,1 @@
-"""Regions of the plane as drawings: SVG and DXF."""
+"""Regions of the plane as drawings: reading and writing SVG and DXF files."""

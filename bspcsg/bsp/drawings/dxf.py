@@ -1,4 +1,4 @@
-"""Regions as DXF drawings: reads closed outlines, writes polylines."""
+"""Regions as DXF drawings: `load_dxf` reads closed outlines, `save_dxf` writes polylines."""
 
 import io
 import os
@@ -30,11 +30,11 @@ def load_dxf(
     winding: WindingRule = "even-odd",
     pitch: int | None = None,
 ) -> Region:
-    """Read the closed outlines in the model space of a DXF file as one region.
+    """Return the region that the closed outlines in the model space of a DXF file enclose.
 
     Lines, arcs, circles, ellipses, splines and polylines are read, also those of inserted blocks.
-    Pieces are joined if their ends lie within a millionth of the drawing's size. If the model space
-    is empty, the paper space is read.
+    Open curves are joined if their ends lie within a millionth of the drawing's extent. If the
+    model space is empty, the paper space is read.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def _names(layers: Any) -> set[str]:
 
 
 def _wanted(names: set[str], document: Any, file: str) -> set[str]:
-    """Return layer names in lower case, as DXF ignores case; raise `FormatError` for missing ones.
+    """Return layer names in lower case, since DXF ignores case, or raise an error for unknown ones.
 
     A layer need not be declared: an entity on it suffices.
     """
@@ -124,7 +124,7 @@ def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
 
 
 def dxf_data(region: Region) -> bytes:
-    """Return the content that `save_dxf` writes."""
+    """Return the bytes of the DXF file that `save_dxf` writes for a region."""
     ezdxf = module_of_ezdxf()
     outlines = of_kind(Region, region, "region").to_polygons()
     text = io.StringIO()
@@ -140,13 +140,16 @@ def dxf_data(region: Region) -> bytes:
     return data
 
 
-#: Held while options of ezdxf are others, for all threads have the same.
+#: Locked while the options of ezdxf, which all threads share, are changed.
 _ONE_AT_A_TIME = threading.Lock()
 
 
 @contextmanager
 def _without_time(options: Any) -> Iterator[None]:
-    """Make ezdxf write no time and no random number, so that output is reproducible."""
+    """Make ezdxf write no time and no random number within a ``with`` block.
+
+    So the output is reproducible.
+    """
     with _ONE_AT_A_TIME:
         before = options.write_fixed_meta_data_for_testing
         options.write_fixed_meta_data_for_testing = True
@@ -156,7 +159,7 @@ def _without_time(options: Any) -> Iterator[None]:
             options.write_fixed_meta_data_for_testing = before
 
 
-#: What binary files begin with.
+#: The first bytes of binary DXF files.
 _BINARY = b"AutoCAD Binary DXF"
 
 _TEXT_OF_BINARY = (
@@ -166,7 +169,7 @@ _TEXT_OF_BINARY = (
 
 
 def read_document(path: str | os.PathLike[str]) -> Any:
-    """Return the ezdxf document of a file; raise `FormatError` for other files."""
+    """Return the ezdxf document of a DXF file, or raise a `FormatError` if it cannot be read."""
     ezdxf = module_of_ezdxf()
     name = file_path(path)
     data = limited_content(name)
@@ -182,7 +185,7 @@ def read_document(path: str | os.PathLike[str]) -> Any:
 
 
 def _decoded(data: bytes) -> str:
-    """Decode a file by the code page that it names, by default as UTF-8."""
+    """Return the text of a DXF file, decoded by the code page that it names, by default UTF-8."""
     text = data.decode("utf-8", errors="surrogateescape")
     if "$DWGCODEPAGE" not in text:
         return text
@@ -193,7 +196,7 @@ def _decoded(data: bytes) -> str:
 
 
 def _closed(chains: list[FloatArray], name: str) -> list[FloatArray]:
-    """Return closed loops, after open chains are joined at their ends."""
+    """Return closed loops: the closed chains, and open chains joined at equal ends."""
     loops = [chain[:-1] for chain in chains if (chain[0] == chain[-1]).all()]
     rest = [chain for chain in chains if (chain[0] != chain[-1]).any()]
     if rest:
@@ -203,16 +206,19 @@ def _closed(chains: list[FloatArray], name: str) -> list[FloatArray]:
     return loops
 
 
-#: Ends that are a part of the drawing's size apart are joined, but not more.
+#: Ends of chains are joined up to this distance, as a fraction of the drawing's extent.
 _JOINED = 1e-6
 
 
 def _places(ends: FloatArray, size: float) -> Any:
-    """Return the number of the place of each end, (n, 2, 2), in a drawing of the given size."""
+    """Return a group number for each end of chains, (n, 2); ends with one number are joined.
+
+    `ends` is (n, 2, 2); `size` is the extent of the drawing.
+    """
     flat = ends.reshape(-1, 2) + 0.0
     _, places = np.unique(flat, axis=0, return_inverse=True)
     places = places.ravel()
-    # Only ends without an equal one are compared: pieces may be shorter than a step.
+    # Compare only ends without an equal one, since a chain may be shorter than a step.
     loose = np.flatnonzero(np.bincount(places)[places] == 1)
     step = max(size * _JOINED, np.finfo(np.float64).tiny)
     places[loose] = len(flat) + _near(flat[loose], step)
@@ -220,7 +226,7 @@ def _places(ends: FloatArray, size: float) -> Any:
 
 
 def _near(points: FloatArray, step: float) -> Any:
-    """Return numbers of points, equal for points at most a step apart."""
+    """Return a group number for each point; points at most `step` apart in x and y share it."""
     numbers = np.arange(len(points))
     # Two such points share a cell in at least one of these four grids.
     for shift in ((0, 0), (0, 1), (1, 0), (1, 1)):
@@ -231,7 +237,10 @@ def _near(points: FloatArray, step: float) -> Any:
 
 
 def _merged(first: Any, second: Any) -> Any:
-    """Return numbers that are equal wherever those of the first or second list are equal."""
+    """Return group numbers for points, equal if the points share a group in either list.
+
+    Groups are joined transitively.
+    """
     numbers = first
     while True:
         before = numbers
@@ -266,7 +275,10 @@ def _joined(chains: list[FloatArray], places: Any, name: str) -> list[FloatArray
 def _walk(
     chains: list[FloatArray], places: Any, at: dict[int, list[int]], left: set[int]
 ) -> FloatArray:
-    """Follow the chains from the first remaining one until it is reached again."""
+    """Return the loop that starts with the first chain in `left` and follows chains end to end.
+
+    Removes its chains from `left`.
+    """
     chain = min(left)
     start = place = int(places[chain][0])
     parts = []

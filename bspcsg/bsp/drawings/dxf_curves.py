@@ -1,7 +1,7 @@
-"""The outlines of DXF entities as chains of corners, on the plane of the drawing.
+"""Convert DXF entities to chains of corners in the plane of the drawing.
 
-ezdxf turns arcs into Bézier curves, which stay within three ten-thousandths of their radius only:
-arcs are cut into chords here.
+ezdxf turns arcs into Bézier curves, which are exact only to three ten-thousandths of the radius;
+here arcs are divided into chords.
 """
 
 import math
@@ -14,47 +14,47 @@ from ..._types import FloatArray
 from .dxf_layouts import ANY_LAYER, WINDOW
 from .left_out import LeftOut
 
-#: Entities that are outlines, and those that hold entities.
+#: The kinds of entities that are outlines, and the kind that inserts a block of entities.
 _CURVES = frozenset(["LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE", "LWPOLYLINE", "POLYLINE"])
 _BLOCK = "INSERT"
 
-#: The largest number of entities in all blocks, counted at each insertion. ezdxf places some ten
+#: The largest number of entities of blocks, counted at each insertion. ezdxf inserts about ten
 #: thousand in a second.
 MAX_BLOCK_ENTITIES = 1 << 17
 
-#: The largest number of blocks that may contain one another.
+#: The largest depth of blocks that are nested in each other.
 _MAX_BLOCK_DEPTH = 64
 
 #: The largest number of chords of one arc.
 _MAX_ARC_CHORDS = 1 << 20
 
-#: The corners of what is no outline.
+#: The empty chain, for entities that are no outlines.
 _NONE = np.zeros((0, 2))
 
-#: Vertices that only help to draw a curve: corners of the frame of a spline.
+#: The flag of vertices that are only control points of a spline, not corners.
 _FRAME = 16
 
 
 def chains_of(
     layout: Any, is_wanted: Callable[[str], bool], chord: float, lost: LeftOut
 ) -> Iterator[FloatArray]:
-    """Yield the corners of each outline, (n, 2); those of closed ones end as they begin.
+    """Yield the corners of each outline, (n, 2); a closed outline ends with its first corner.
 
     Parameters
     ----------
     layout : ezdxf layout
         Insertions of blocks are replaced by the blocks' entities.
     is_wanted : callable
-        Says whether a layer counts.
+        Returns whether to read the layer of this name.
     chord : float
-        Largest distance between a curve and its chords.
+        The largest distance between a curve and its chords.
     lost : LeftOut
         Collects entities that are no outlines.
 
     Raises
     ------
     ValueError
-        If blocks contain themselves or too much, or a curve would have too many chords.
+        If blocks contain themselves or too many entities, or a curve would have too many chords.
     """
     for entity, layer, is_placed in _entities(layout):
         if is_wanted(layer):
@@ -68,9 +68,9 @@ def chains_of(
 
 
 def _entities(layout: Any) -> Iterator[tuple[Any, str, bool]]:
-    """Yield the entities of a layout and of the blocks in it, but not those that insert blocks.
+    """Yield the entities of a layout and of its inserted blocks, except the insertions themselves.
 
-    Each comes with its layer, and with False if it could not be transformed.
+    Each entity comes with the name of its layer, and with False if it could not be transformed.
     """
     waiting: list[tuple[Iterator[tuple[Any, bool]], str]] = [
         (((entity, True) for entity in layout), ANY_LAYER)
@@ -96,9 +96,9 @@ def _entities(layout: Any) -> Iterator[tuple[Any, str, bool]]:
 
 
 def inserted(insert: Any, *, rows: bool = True) -> Iterator[tuple[Any, bool]]:
-    """Yield what one insertion of a block puts into the drawing, row by row.
+    """Yield the entities of one insertion of a block; an array of copies copy by copy.
 
-    Each comes with a flag whether it was transformed: ezdxf cannot transform all.
+    Each entity comes with True if it was transformed: ezdxf cannot transform all kinds.
     """
     if insert.block() is None:
         raise ValueError(f"an INSERT refers to the block “{insert.dxf.name}”, which is not defined")
@@ -143,7 +143,7 @@ def _is_full(ellipse: Any) -> bool:
 
 
 def _from_its_axis(ellipse: Any) -> Any:
-    """Return a full ellipse that starts on its axis; ezdxf treats others as points."""
+    """Return a full ellipse that starts on its axis; ezdxf treats one that does not as a point."""
     full = ellipse.copy()
     full.dxf.start_param, full.dxf.end_param = 0.0, math.tau
     return full
@@ -157,7 +157,8 @@ def _arc(entity: Any, chord: float) -> FloatArray:
     center, radius = entity.dxf.center, abs(entity.dxf.radius)
     count = _chords(radius, turn, chord)
     if turn == math.tau:
-        # With a corner at each end of both axes, a circle is as wide and as high as it should be.
+        # With corners at the ends of both axes, the polygon is exactly as wide and as high as the
+        # circle.
         count = -(-count // 4) * 4
     angles = start + turn * np.arange(count + 1) / count
     points = np.column_stack([np.cos(angles), np.sin(angles)]) * radius + (center.x, center.y)
@@ -165,7 +166,7 @@ def _arc(entity: Any, chord: float) -> FloatArray:
 
 
 def _chords(radius: float, turn: float, chord: float) -> int:
-    """Return the number of chords that stay within a distance of an arc, four or more a circle."""
+    """Return the number of chords of an arc within a distance `chord` of it, 4 or more a circle."""
     half = 2 * math.asin(math.sqrt(min(chord / (2 * radius), 1.0))) if radius else math.pi
     count = math.ceil(abs(turn) / min(2 * half, math.pi / 2))
     if count > _MAX_ARC_CHORDS:
@@ -177,7 +178,7 @@ def _chords(radius: float, turn: float, chord: float) -> int:
 
 
 def _polyline(entity: Any, rows: FloatArray, is_closed: bool, chord: float) -> FloatArray:
-    """Return the corners of a polyline of rows x, y, bulge."""
+    """Return the corners of a polyline, given rows (x, y, bulge) for its vertices."""
     points = rows.reshape(-1, 3)[:, 0] + 1j * rows.reshape(-1, 3)[:, 1]
     ends = np.roll(points, -1) if is_closed else points[1:]
     pieces = [
@@ -193,8 +194,7 @@ def _polyline(entity: Any, rows: FloatArray, is_closed: bool, chord: float) -> F
 def _bulged(start: complex, end: complex, bulge: float, chord: float) -> Any:
     """Return the corners of an arc without its end; the bulge is the tangent of angle / 4.
 
-    A point of the arc is given by half of its angle as seen from the start; this avoids
-    cancellation in nearly straight arcs.
+    Points are computed from half of their angle, which avoids cancellation in nearly straight arcs.
     """
     turn = 4 * math.atan(bulge)
     if turn == 0 or start == end:
@@ -222,7 +222,7 @@ def _old_polyline(entity: Any, chord: float) -> FloatArray:
 
 
 def _on_plane(entity: Any, points: FloatArray, elevation: float) -> FloatArray:
-    """Return points of an entity's plane in drawing coordinates, seen from above."""
+    """Return points in an entity's own plane as drawing coordinates, without z."""
     system = entity.ocs()
     if not system.transform:
         return points

@@ -1,21 +1,21 @@
-"""The choice of the space of a DXF drawing that is read."""
+"""The choice of the layout of a DXF drawing to read: its model space or a paper space."""
 
 from collections.abc import Callable
 from typing import Any
 
 from .left_out import LeftOut
 
-#: The layer of what names none; what a block has there lies on the layer of each insertion.
+#: The default layer of entities; entities of a block on it lie on the layer of the insertion.
 ANY_LAYER = "0"
 
-#: Windows of a paper space on the model.
+#: The kind of entities that are windows of a paper space on the model space.
 WINDOW = "VIEWPORT"
 
 
 def drawn_layout(document: Any, is_wanted: Callable[[str], bool], lost: LeftOut) -> Any:
     """Return the model space of a drawing or, if it is empty, the first nonempty paper space.
 
-    Entities of other spaces on wanted layers count as left out.
+    Wanted entities of the other spaces are counted in `lost`.
     """
     papers = [layout for layout in document.layouts if layout.is_any_paperspace]
     # The active layout comes first.

@@ -1,6 +1,6 @@
-"""Insertion of missing subclass markers into DXF entities, which simple programs omit.
+"""Insert subclass markers into DXF entities, which some programs omit.
 
-Without them, ezdxf refuses some kinds of entities, and with these the whole file.
+Without these markers ezdxf refuses some kinds of entities, and so the whole file.
 
 # Source
 DXF reference, "Subclass Markers": group 100 before the values of each class of an entity.
@@ -11,7 +11,7 @@ from typing import Any, TextIO
 
 from ...mesh.interop import optional
 
-#: Entities of which ezdxf looks for the values behind a second marker, whatever that is called.
+#: The kinds of entities whose values ezdxf expects after a second marker of any name.
 _MARKED = frozenset(
     [
         *("LWPOLYLINE", "SPLINE", "HELIX", "HATCH", "MPOLYGON", "MTEXT", "MESH", "LEADER"),
@@ -22,22 +22,23 @@ _MARKED = frozenset(
 
 _MARKER, _NAME, _VARIABLE = 100, 0, 9
 
-#: Groups before the first marker (handles, reactors and owners), and between the two.
+#: The group codes before the first marker (handles, reactors, owners) and between both markers.
 _FIRST = frozenset([5, 102, 330, 360])
 _COMMON = frozenset([6, 8, 48, 60, 62, 67, 284, 347, 348, 370, 380, 390, 410, 420, 430, 440])
 
-#: The last version without markers, which files without a version have; groups that others add.
+#: The last version of DXF without markers, assumed for files without a version; and the first group
+#: code of extended data.
 _PLAIN = "AC1009"
 _FIRST_OF_OTHERS = 1000
 
 
 def module_of_ezdxf(name: str = "ezdxf") -> Any:
-    """Import a module of ezdxf, an optional dependency."""
+    """Return a module of ezdxf, an optional dependency, or raise an error if it is missing."""
     return optional(name, '"bspcsg[dxf]"')
 
 
 def with_markers(stream: TextIO) -> Iterator[Any]:
-    """Yield the tags of a file for ezdxf, with the markers that entities lack."""
+    """Yield the tags of a DXF file for ezdxf, with missing subclass markers added."""
     types = module_of_ezdxf("ezdxf.lldxf.types")
     lines = module_of_ezdxf("ezdxf.lldxf.tagger").ascii_tags_loader(stream)
     version, variable = _PLAIN, ""
@@ -58,7 +59,7 @@ def with_markers(stream: TextIO) -> Iterator[Any]:
 
 
 def _marked(entity: list[Any], tag: Any, version: str) -> list[Any]:
-    """Return the tags of an entity with both markers; the first tag names the entity."""
+    """Return an entity's tags with both subclass markers; the first tag names the entity's kind."""
     has_markers = any(one.code == _MARKER for one in entity)
     if not entity or (has_markers and version != _PLAIN):
         return entity
@@ -67,7 +68,7 @@ def _marked(entity: list[Any], tag: Any, version: str) -> list[Any]:
     common = [one for one in entity[1:] if one.code in _COMMON]
     markers = tag(_MARKER, "AcDbEntity"), tag(_MARKER, f"AcDb{entity[0].value.title()}")
     if version == _PLAIN:
-        # There ezdxf expects points after the markers, and all other tags before them.
+        # In this version ezdxf expects points after the markers, all other tags before them.
         common += [one for one in own if one.code < _FIRST_OF_OTHERS]
         return [entity[0], *first, *common, *markers, *own]
     return [entity[0], *first, markers[0], *common, markers[1], *own]

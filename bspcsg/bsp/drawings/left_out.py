@@ -1,4 +1,4 @@
-"""The record of drawing content that a region lacks, reported once at the end."""
+"""`LeftOut`: counts of drawing content that was not read, reported by one warning."""
 
 import os
 import warnings
@@ -10,22 +10,22 @@ import numpy as np
 from ..._types import FloatArray
 from ..sets.region import Region
 
-#: The largest number of kinds that a message names, and of characters of each name.
+#: The largest number of kinds in a message, and of characters of each kind's name.
 _MAX_KINDS_NAMED, _MAX_KIND_CHARACTERS = 12, 40
 
 
 class DrawingWarning(UserWarning):
-    """Part of a drawing is not in its region, or the region is empty."""
+    """A warning that a part of a drawing is not in its region, or that the region is empty."""
 
 
 @dataclass
 class LeftOut:
-    """The content of one drawing that is left out.
+    """The counts of the content of one drawing that is not in the region.
 
     Parameters
     ----------
     counts : Counter
-        The number of things of each kind, by their names in the file.
+        The number of omitted elements of each kind, by the kind's name in the file.
     outlines : int
         The number of outlines that were read.
     """
@@ -34,19 +34,19 @@ class LeftOut:
     outlines: int = 0
 
     def add(self, kind: str, count: int = 1) -> None:
-        """Count omitted things."""
+        """Add a number of omitted elements of one kind."""
         if count:
             self.counts[kind] += count
 
     def surrounding(self, loops: list[FloatArray]) -> list[FloatArray]:
-        """Return the outlines with at least three corners; count the others as left out."""
+        """Return the loops with at least three different corners; count the others as omitted."""
         found = [loop for loop in loops if len(np.unique(loop, axis=0)) >= 3]
         self.add("line that encloses no area", len(loops) - len(found))
         self.outlines += len(found)
         return found
 
     def words(self, region: Region) -> str:
-        """Return sentences on missing content of the region; empty if nothing is missing."""
+        """Return the warning's text on omitted content and an empty region; "" for neither."""
         kinds = self._kinds()
         lacking = f"left out: {kinds}. " if kinds else ""
         if not region.is_empty:
@@ -59,14 +59,14 @@ class LeftOut:
         return f"{lacking}{'The' if kinds else 'the'} region is empty{reason}."
 
     def _kinds(self) -> str:
-        """Return the kinds with their counts, shortened, since files may contain any names."""
+        """Return the omitted kinds and their counts as text, shortened if there are many."""
         names = sorted(self.counts)
         kinds = [f"{_harmless(name)} ({self.counts[name]})" for name in names[:_MAX_KINDS_NAMED]]
         more = sum(self.counts[name] for name in names[_MAX_KINDS_NAMED:])
         return ", ".join([*kinds, *([f"others ({more})"] if more else [])])
 
     def tell(self, path: str | os.PathLike[str], region: Region) -> None:
-        """Issue the warning for a file that was read, if anything is missing."""
+        """Warn that content of a file is omitted or its region is empty, if this is so."""
         words = self.words(region)
         if words:
             warnings.warn(f"{os.fspath(path)}: {words}", DrawingWarning, stacklevel=3)

@@ -1,4 +1,4 @@
-"""Regions as SVG drawings: reads filled shapes, writes one path."""
+"""Regions as SVG drawings: `load_svg` reads filled shapes, `save_svg` writes one path."""
 
 import io
 import math
@@ -32,7 +32,7 @@ def load_svg(
     winding: WindingRule | None = None,
     pitch: int | None = None,
 ) -> Region:
-    """Read the filled shapes of an SVG file as one region, their union.
+    """Return the union of the filled shapes of an SVG file as a region.
 
     Parameters
     ----------
@@ -87,15 +87,15 @@ def load_svg(
 
 
 class Shape(NamedTuple):
-    """A shape of a drawing.
+    """A visible shape of an SVG drawing.
 
     Parameters
     ----------
     element : object
-        The svgelements shape, with its transform to user units not applied: svgelements skews arcs
-        wrongly.
+        The svgelements shape. Its transform to user units is not applied, because svgelements skews
+        arcs wrongly.
     path : Segments or None
-        The segments of a path's data if these are valid; then svgelements has not read them.
+        The segments of a path if its data are valid, read without svgelements; else None.
     """
 
     element: Any
@@ -105,15 +105,16 @@ class Shape(NamedTuple):
 def shown_shapes(
     path: str | os.PathLike[str], prepare: Callable[[ElementTree.Element], None], lost: LeftOut
 ) -> list[Shape]:
-    """Return the visible shapes of a file.
+    """Return the visible shapes of an SVG file, in drawing order.
 
     Parameters
     ----------
     path : path
     prepare : callable
-        Changes the outermost element before it is read, such as to remove its view box.
+        A function that changes the outermost element before it is read, for example to remove its
+        view box.
     lost : LeftOut
-        Collects visible content that is no shape.
+        Counts visible content that is no shape.
 
     Raises
     ------
@@ -133,7 +134,7 @@ def shown_shapes(
         # svgelements returns nothing for a drawing that is not displayed.
         found = [] if drawing is None else [one for one in drawing.elements() if _is_shown(one)]
         shapes = [
-            # Other elements inherit the data of an enclosing path.
+            # svgelements also gives shapes inside a path the path's data.
             Shape(
                 shape,
                 paths.get(shape.values.get("d")) if isinstance(shape, elements.Path) else None,
@@ -150,7 +151,9 @@ def shown_shapes(
 
 
 def _set_aside(root: ElementTree.Element) -> dict[str, Segments]:
-    """Replace the path data of a drawing by keys, and return the segments by key.
+    """Replace the data of valid paths by keys, and return the paths' segments by key.
+
+    svgelements takes ten times as long to read path data.
 
     svgelements takes ten times as long to read path data.
     """
@@ -164,7 +167,7 @@ def _set_aside(root: ElementTree.Element) -> dict[str, Segments]:
 
 
 def _no_shape(element: Any) -> tuple[str, int]:
-    """Return the name of an element without a shape, and 1 if it is visible."""
+    """Return an element's name, and 1 if it is visible content without a shape, else 0."""
     name = str(element.values.get("tag"))
     if name == "use":
         return "use of a missing element", int(not len(element))
@@ -174,19 +177,19 @@ def _no_shape(element: Any) -> tuple[str, int]:
 def save_svg(
     region: Region, path: str | os.PathLike[str], *, fill: str = "#9db8d9", margin: Scalar = 0.05
 ) -> None:
-    """Write a region as an SVG file with one path, y upwards on the page.
+    """Write a region as an SVG file with one path; y points up on the page.
 
-    Coordinates are written so that reading them gives the same doubles again.
+    Reading the file gives the same doubles as coordinates.
 
     Parameters
     ----------
     region : Region
-        Bounded.
+        A bounded region.
     path : path
     fill : str
-        Colour of the inside; the outline is black.
+        The colour of the inside; the outline is black.
     margin : float
-        Space around the region, as a part of its size; at least 0.
+        The empty margin around the region, as a fraction of its larger extent; at least 0.
 
     Raises
     ------
@@ -199,7 +202,7 @@ def save_svg(
 
 
 def svg_data(region: Region, *, fill: str = "#9db8d9", margin: Scalar = 0.05) -> bytes:
-    """Return the content that `save_svg` writes."""
+    """Return the bytes of the SVG file that `save_svg` writes for a region."""
     bounds = of_kind(Region, region, "region").bounds
     low, high = (np.zeros(2), np.ones(2)) if bounds is None else bounds
     space = float((high - low).max()) * not_negative(margin, "margin")
@@ -230,7 +233,7 @@ def _path_of(points: FloatArray) -> str:
 
 
 def _checked(path: str | os.PathLike[str]) -> bytes:
-    """Return the bytes of a file, checked to be XML without entities; ignore a document type."""
+    """Return the bytes of a file, or raise an error if it is not XML or declares entities."""
     name = file_path(path)
     data = limited_content(name)
     parser = expat.ParserCreate()
@@ -275,18 +278,18 @@ def _rule(shape: Any) -> WindingRule:
 
 
 def _keyword(shape: Any, name: str) -> str:
-    """Return a normalized CSS property, without blanks, case and "!important"."""
+    """Return a CSS property in lower case, without blanks and "!important"; "" if it is not set."""
     return str(shape.values.get(name) or "").partition("!")[0].strip().lower()
 
 
 def outlines_of(shapes: Sequence[Shape], steps: Steps) -> list[list[tuple[FloatArray, bool]]]:
-    """Return the subpaths of each shape: their corners, y upwards, and whether they are closed.
+    """Return for each shape its subpaths: the corners, (n, 2), y upwards, and whether it is closed.
 
     Parameters
     ----------
     shapes : sequence of Shape
     steps : callable
-        Says how many chords replace each of some curves.
+        A function that returns the number of chords of each curve.
     """
     segments = [shape.path or shape_segments(shape.element) for shape in shapes]
     return outlines(segments, _matrices(shapes), steps)
@@ -299,9 +302,9 @@ def _matrices(shapes: Sequence[Shape]) -> FloatArray:
 
 
 def _own_lengths(shapes: Sequence[Shape], length: float) -> FloatArray:
-    """Return the least length, in the coordinates of each shape, of a length in user units."""
+    """Return the least length, in each shape's own coordinates, of a length in user units."""
     a, b, c, d = _matrices(shapes)[:, :4].T
-    # Half the axes of the ellipse that the matrix makes of the unit circle, as sum and difference.
+    # The longer half axis of the ellipse to which the matrix maps the unit circle.
     with np.errstate(all="ignore"):
         stretch = (np.hypot(a + d, b - c) + np.hypot(a - d, b + c)) / 2
     return length / np.where(stretch > 0, stretch, 1.0)

@@ -1,4 +1,4 @@
-"""The corners of SVG shapes, computed for all curves of a drawing at once.
+"""Compute the corners of SVG shapes, for all curves of a drawing at once.
 
 # Source
 SVG 1.1, F.6 (elliptical arcs).
@@ -12,23 +12,23 @@ import numpy as np
 from ..._types import FloatArray, IndexArray
 from .svg_paths import Segments
 
-#: Points as complex numbers.
+#: An array of points as complex numbers x + iy.
 _Points: TypeAlias = np.ndarray[Any, Any]
 
 #: The largest number of chords of a curve.
 _MAX_CHORDS = 1 << 12
 
-#: The number of points that are computed together, which bounds the memory.
+#: The number of points in one array operation, which bounds the memory.
 _POINTS_PER_BATCH = 1 << 16
 
 
 class Cubics(NamedTuple):
-    """Cubic curves.
+    """The cubic Bézier curves of all shapes of a drawing.
 
     Parameters
     ----------
     owner, segment : (n,) int
-        The number of the shape, and of the segment among those of all shapes.
+        The index of each curve's shape, and of its segment among the segments of all shapes.
     corners : (n, 4) complex
     """
 
@@ -37,7 +37,7 @@ class Cubics(NamedTuple):
     corners: _Points
 
     def at(self, which: IndexArray, t: FloatArray) -> _Points:
-        """Return a row of points for each of some curves, by their parameters."""
+        """Return points of the curves `which`: row k at the parameters t, for curve which[k]."""
         a, b, c, d = (column[:, None] for column in self.corners[which].T)
         s = 1 - t
         points: _Points = (
@@ -47,16 +47,16 @@ class Cubics(NamedTuple):
 
 
 class Arcs(NamedTuple):
-    """Arcs of ellipses.
+    """The elliptic arcs of all shapes of a drawing.
 
     Parameters
     ----------
     owner, segment : (n,) int
-        The number of the shape, and of the segment among those of all shapes.
+        The index of each arc's shape, and of its segment among the segments of all shapes.
     center, wide, high : (n,) complex
-        The centre, and the halves of both axes.
+        The centre and the two half axes of each arc's ellipse, as complex numbers.
     begin, sweep : (n,) float64
-        The angle at which an arc begins, and how far it goes.
+        The angle at which each arc begins, and the signed angle that it covers, in radians.
     """
 
     owner: IndexArray
@@ -68,7 +68,7 @@ class Arcs(NamedTuple):
     sweep: FloatArray
 
     def at(self, which: IndexArray, t: FloatArray) -> _Points:
-        """Return a row of points for each of some curves, by their parameters."""
+        """Return points of the arcs `which`: row k at the parameters t, for arc which[k]."""
         center, wide, high, begin, sweep = (column[which, None] for column in self[2:])
         angles = begin + sweep * t
         return center + wide * np.cos(angles) + high * np.sin(angles)
@@ -76,20 +76,20 @@ class Arcs(NamedTuple):
 
 Curves: TypeAlias = Cubics | Arcs
 
-#: Says how many chords replace each of some curves.
+#: A function that returns the number of chords of each curve.
 Steps: TypeAlias = Callable[[Curves], IndexArray]
 
 
 def outlines(
     shapes: Sequence[Segments], matrices: FloatArray, steps: Steps
 ) -> list[list[tuple[FloatArray, bool]]]:
-    """Return the subpaths of each shape: their corners, y upwards, and whether they are closed.
+    """Return for each shape its subpaths: the corners, (n, 2), y upwards, and whether it is closed.
 
     Parameters
     ----------
     shapes : sequence of Segments
     matrices : (n, 6) float64
-        How each shape is placed, as SVG writes its matrices.
+        The transform of each shape, with its entries in SVG's order (a, b, c, d, e, f).
     steps : callable
     """
     ends = np.array([end for shape in shapes for end in shape.ends], dtype=np.complex128)
@@ -112,7 +112,10 @@ def outlines(
 
 
 def within(chords: FloatArray) -> Steps:
-    """Return how many chords stay within the distances of shapes, tried at points between."""
+    """Return a function that chooses numbers of chords, so that each curve is close to its chords.
+
+    `chords` has the largest distance for each shape; it is tested at points between the corners.
+    """
 
     def steps(curves: Curves) -> IndexArray:
         counts = np.full(len(curves.owner), 2)
@@ -135,13 +138,16 @@ def _shares(count: int) -> FloatArray:
 
 
 def _some(which: IndexArray, points: int) -> Iterator[IndexArray]:
-    """Yield as many of some curves as are looked at together, each with so many points."""
+    """Yield the curves `which` in batches that compute `points` points on each curve."""
     size = max(1, _POINTS_PER_BATCH // points)
     return (which[start : start + size] for start in range(0, len(which), size))
 
 
 def _distance(points: _Points) -> FloatArray:
-    """Return the largest distance of each row from its chords, of which each has three points."""
+    """Return for each curve the largest distance of its points from its chords.
+
+    A row of `points` has four points for each chord.
+    """
     start, end = points[:, :-4:4, None], points[:, 4::4, None]
     offset = points[:, :-1].reshape(len(points), -1, 4)[:, :, 1:] - start
     along = end - start
@@ -152,7 +158,7 @@ def _distance(points: _Points) -> FloatArray:
 
 
 def _curves(shapes: Sequence[Segments], before: IndexArray) -> Iterator[Curves]:
-    """Yield the curves of all shapes, kind by kind; a shape's segments stand `before` some."""
+    """Yield the curves of all shapes by kind; ``before[k]`` segments precede those of shape k."""
 
     def gathered(name: str) -> tuple[IndexArray, IndexArray, list[Any]]:
         rows = [getattr(shape, name) for shape in shapes]
@@ -180,13 +186,13 @@ def _around_centers(
     is_large: IndexArray,
     is_positive: IndexArray,
 ) -> tuple[_Points, _Points, _Points, FloatArray, FloatArray]:
-    """Return the arcs between ends by their centres, axes and angles."""
+    """Return arcs as centre, two half axes, first angle and angle covered, given their ends."""
     turned = np.exp(1j * np.radians(rotation))
     seen = (start - end) / 2 * np.conj(turned)
-    # Half the chord, where the ellipse is the unit circle.
+    # Half the chord, in coordinates in which the ellipse is the unit circle.
     half = seen.real / width + 1j * (seen.imag / height)
     length = np.abs(half)
-    # An ellipse that is too small for its chord grows.
+    # SVG enlarges an ellipse that is too small for its chord.
     grown = np.maximum(length, 1.0)
     half, length, width, height = half / grown, length / grown, width * grown, height * grown
     side = np.where(is_large == is_positive, 1j, -1j)
@@ -201,7 +207,10 @@ def _around_centers(
 def _filled(
     ends: _Points, families: Sequence[tuple[Curves, IndexArray]]
 ) -> tuple[_Points, IndexArray]:
-    """Return the points of all segments, and how many each has: its end after those between."""
+    """Return the points of all segments, and the number of points of each.
+
+    The last point of a segment is its end; the points of curves come before it.
+    """
     counts = np.ones(len(ends), dtype=np.int64)
     for curves, steps in families:
         counts[curves.segment] = steps
@@ -218,14 +227,14 @@ def _filled(
 
 
 def _placed(points: _Points, matrices: FloatArray) -> FloatArray:
-    """Return points by their own matrices, y upwards."""
+    """Return points transformed by one matrix each, (n, 2), y upwards."""
     a, b, c, d, e, f = matrices.T
     x, y = points.real, points.imag
     return np.stack([x * a + y * c + e, -(x * b + y * d + f)], axis=1) + 0.0
 
 
 def _without_repeats(corners: FloatArray, firsts: IndexArray) -> list[FloatArray]:
-    """Return the corners of each subpath, but for those that are where the one before is."""
+    """Return the corners of each subpath without corners that equal their predecessor."""
     previous = np.arange(len(corners)) - 1
     previous[firsts] = np.append(firsts[1:], len(corners)) - 1
     differs = np.any(corners != corners[previous], axis=1)

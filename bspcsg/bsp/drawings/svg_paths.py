@@ -1,4 +1,4 @@
-"""The segments of SVG's shapes, in the shapes' own coordinates.
+"""Read the segments of SVG's shapes, in the shapes' own coordinates.
 
 # Source
 SVG 1.1, 8.3 (path data).
@@ -18,35 +18,35 @@ _NUMBER = re.compile(_FLOAT)
 _COMMAND = re.compile("([MmZzLlHhVvCcSsQqTtAa])")
 _WORD = re.compile(f"{_COMMAND.pattern}|{_FLOAT}")
 
-#: An arc's numbers and flags; nothing has to stand around flags.
+#: The numbers and flags of an arc; flags need no separators.
 _ARC = re.compile(
     rf"[{_BLANKS}]*".join(["", *[f"({_FLOAT})"] * 3, *["([01])"] * 2, *[f"({_FLOAT})"] * 2, ""])
 )
 
-#: How many numbers each segment takes.
+#: The number of numbers that a segment of each command takes.
 _NUMBERS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7, "Z": 0}
 
 
 @dataclass
 class Segments:
-    """The segments of a shape; points are complex numbers, y downwards.
+    """The segments of a shape: lines, cubic curves and arcs; points are complex, y downwards.
 
     Parameters
     ----------
     ends : list of complex
-        The end of each segment; a subpath's first one is a move.
+        The end point of each segment; the first segment of a subpath is a move.
     firsts : list of int
-        The number of the first segment of each subpath.
+        The index of the first segment of each subpath.
     closed : list of bool
         Whether each subpath is closed.
     cubics : list of tuple
-        Cubic curves: the number of the segment, and four points.
+        Cubic curves: the index of the segment, and its four control points.
     chords : list of tuple
-        Arcs by their ends: the number of the segment, its start and end, radii, rotation in
-        degrees, and whether the arc is large and goes along positive angles.
+        Arcs by their ends: the index of the segment, start, end, two radii, rotation in degrees,
+        whether the arc is larger than a half, and whether its angle increases.
     turns : list of tuple
-        Arcs by their centres: the number of the segment, the centre, the halves of both axes, and
-        the angles at which the arc begins and by which it goes on.
+        Arcs by their centres: the index of the segment, the centre, the two half axes, the angle at
+        which the arc begins, and the signed angle that it covers, in radians.
     """
 
     ends: list[complex] = field(default_factory=list)
@@ -59,32 +59,32 @@ class Segments:
     turns: list[tuple[int, complex, complex, complex, float, float]] = field(default_factory=list)
 
     def move(self, to: complex) -> None:
-        """Begin a subpath."""
+        """Begin a subpath at a point."""
         self.firsts.append(len(self.ends))
         self.closed.append(False)
         self.ends.append(to)
 
     def line(self, to: complex) -> None:
-        """Go straight."""
+        """Add a straight segment to a point."""
         self.ends.append(to)
 
     def close(self) -> None:
-        """Go back to the beginning of the subpath."""
+        """Add a straight segment to the start of the subpath, which is then closed."""
         self.ends.append(self.ends[self.firsts[-1]])
         self.closed[-1] = True
 
     def cubic(self, a: complex, b: complex, c: complex, d: complex) -> None:
-        """Follow a cubic curve."""
+        """Add a cubic Bézier curve from a to d, with control points b and c."""
         self.cubics.append((len(self.ends), a, b, c, d))
         self.ends.append(d)
 
     def quadratic(self, a: complex, b: complex, c: complex) -> None:
-        """Follow a quadratic curve, converted to a cubic one."""
+        """Add a quadratic Bézier curve from a to c, with control point b, as a cubic one."""
         self.cubic(a, a + (b - a) * (2 / 3), c + (b - c) * (2 / 3), c)
 
 
 def path_segments(data: str) -> Segments | None:
-    """Return the segments of path data; None if the data are invalid."""
+    """Return the segments of the data of an SVG path, or None if the data are invalid."""
     if _WORD.sub("", data).strip(_BLANKS):
         return None
     before, *parts = _COMMAND.split(data)
@@ -100,7 +100,7 @@ def path_segments(data: str) -> Segments | None:
 
 
 def _numbers(command: str, text: str) -> list[float] | None:
-    """Return the numbers of a command, if their count is right and all are finite."""
+    """Return the numbers of a path command; None if their count is wrong or one is not finite."""
     if command == "Z":
         return None if text.strip(_BLANKS) else []
     if command == "A":
@@ -118,18 +118,18 @@ def _numbers(command: str, text: str) -> list[float] | None:
 
 
 class _Pen:
-    """Draws commands of path data."""
+    """Converts the commands of path data to segments, one after another."""
 
     def __init__(self) -> None:
         self.drawn = Segments()
         self._here = 0j
         self._begin = 0j
-        #: The last control point of a curve and the command whose next curve mirrors it.
+        #: The last control point of a curve, and the command ("S" or "T") that would mirror it.
         self._control = 0j
         self._smooth = ""
 
     def draw(self, command: str, numbers: list[float]) -> None:
-        """Draw the segments of a command."""
+        """Add the segments of a command with its numbers."""
         kind = command.upper()
         step = _NUMBERS[kind]
         for place in range(0, len(numbers) or 1, step or 1):
@@ -191,7 +191,7 @@ class _Pen:
 
 
 def shape_segments(shape: Any) -> Segments:
-    """Return the segments of a shape of svgelements."""
+    """Return the segments of a shape object of svgelements."""
     elements = optional("svgelements", "svgelements")
     if isinstance(shape, (elements.Circle, elements.Ellipse)):
         return _round_segments(shape)
@@ -220,7 +220,7 @@ def shape_segments(shape: Any) -> Segments:
 
 
 def _round_segments(shape: Any) -> Segments:
-    """Return four quarters of a circle or an ellipse; svgelements is slow at this."""
+    """Return a circle or an ellipse of svgelements as four arcs, faster than svgelements itself."""
     found = Segments()
     center, wide, high = complex(shape.cx, shape.cy), complex(shape.rx), complex(0, shape.ry)
     if wide and high:
@@ -234,7 +234,7 @@ def _round_segments(shape: Any) -> Segments:
 
 
 def _turn(found: Segments, arc: Any) -> None:
-    """Add an arc of svgelements; an arc without width or height is a line."""
+    """Add an arc of svgelements to `found`, unless its ellipse has no width or height."""
     start, center, across, along = _points(arc.start, arc.center, arc.prx, arc.pry)
     wide, height = across - center, abs(along - center)
     if wide and height:

@@ -1,7 +1,7 @@
-"""Reduction of an SVG drawing to visible elements inside plain groups.
+"""Reduce an SVG drawing to plain groups of visible elements before svgelements reads it.
 
 Nested views and symbols become groups with a transform, because svgelements does not fit them into
-their places, and draws symbols, masks and markers where they are declared.
+their viewports. It also draws symbols, masks and markers where they are declared.
 
 # Source
 SVG 2, sections 5 (structure), 7.11 (the initial view box) and 8.2 (fitting a view box).
@@ -13,51 +13,51 @@ from xml.etree.ElementTree import Element
 
 from ...mesh.interop import optional
 
-#: Elements that show nothing where they are declared; what they hold may be used from elsewhere.
+#: Elements that are not drawn where they are declared, but whose content may be used elsewhere.
 _DECLARED = frozenset({"symbol", "mask", "marker", "pattern", "clipPath"})
 
-#: Elements that show what is no shape; a `switch` is one as long as no child of it fits.
+#: Elements that draw something other than shapes; a `switch` is one if none of its children fits.
 NO_SHAPES = frozenset(
     {"text", "image", "foreignObject", "switch", "video", "audio", "canvas", "iframe"}
 )
 
-#: Elements with contents of other kinds that show nothing.
+#: Elements that draw nothing, although their content may look like shapes.
 _FOREIGN = frozenset({"metadata", "glyph", "missing-glyph"})
 
-#: Elements that a `switch` passes over.
+#: Elements that a `switch` ignores.
 _SILENT = frozenset({"title", "desc", "defs", "style", "script"})
 
-#: The language of a drawing that has a choice of them.
+#: The language that is chosen if a drawing has several.
 _LANGUAGE = "en"
 
-#: Sizes that must not be negative, by the elements that have them.
+#: The attributes that must not be negative, by the name of the element.
 _SIZES = {"rect": ("width", "height"), "circle": ("r",), "ellipse": ("rx", "ry")}
 
-#: The largest number of elements that uses show, counted at each use.
+#: The largest number of elements that ``use`` elements draw, counted at each use.
 _MAX_ELEMENTS_SHOWN = 1 << 17
 
-#: The largest number of uses that may contain one another.
+#: The largest depth of ``use`` elements that are nested in each other.
 _MAX_USE_DEPTH = 64
 
-#: Attributes that name what is used.
+#: The attributes that reference the used element.
 HREF = ("href", "{http://www.w3.org/1999/xlink}href")
 
-#: A size in user units, where it is known.
+#: A width and a height in user units, or None if they are not known.
 _Size = tuple[float, float] | None
 
 
 def name_of(element: Element) -> str:
-    """Return the name of an element without its namespace."""
+    """Return the name of an XML element without its namespace."""
     return str(element.tag).rpartition("}")[2]
 
 
 def make_plain(root: Element) -> None:
-    """Reduce a drawing to groups, shapes, texts and uses, in user units of the outermost element.
+    """Reduce a drawing to groups, shapes, texts and uses, in the outermost element's user units.
 
     Raises
     ------
     ValueError
-        If uses contain themselves, or show too much.
+        If ``use`` elements contain themselves, or draw too many elements.
     """
     _drop(root)
     size = _size_of_root(root)
@@ -69,13 +69,13 @@ def make_plain(root: Element) -> None:
     for name in ("x", "y", "preserveAspectRatio", "viewBox", "width", "height"):
         root.attrib.pop(name, None)
     if size is not None:
-        # Percentages refer to these.
+        # Percentages refer to the width and the height.
         width, height = (repr(value) for value in size)
         root.attrib |= {"width": width, "height": height, "viewBox": f"0 0 {width} {height}"}
 
 
 def _drop(root: Element) -> None:
-    """Remove elements that draw nothing, and shapes that lack necessary attributes."""
+    """Remove elements that draw nothing, and shapes without their necessary attributes."""
     for parent in list(root.iter()):
         foreign = name_of(parent) == "foreignObject"
         parent[:] = [child for child in parent if not foreign and _is_drawn(child)]
@@ -92,7 +92,7 @@ def _is_drawn(element: Element) -> bool:
 
 
 def _switch(element: Element) -> None:
-    """Replace a switch by a group with the first child that fits, if there is one."""
+    """Make a ``switch`` element a group with its first child that fits, if any child does."""
     shown = [child for child in element if name_of(child) not in _SILENT]
     first = next(filter(_fits, shown), None)
     element[:] = [child for child in element if child is first or child not in shown]
@@ -101,7 +101,7 @@ def _switch(element: Element) -> None:
 
 
 def _fits(element: Element) -> bool:
-    """Say whether a child of a switch can be drawn here."""
+    """Return true if a child of a ``switch`` needs no extension and has a suitable language."""
     if name_of(element) == "foreignObject" or element.get("requiredExtensions"):
         return False
     languages = element.get("systemLanguage")
@@ -112,7 +112,7 @@ def _fits(element: Element) -> bool:
 
 def _check_uses(root: Element) -> None:
     named = {element.attrib["id"]: element for element in root.iter() if element.get("id")}
-    #: Numbers of elements that targets show, and of uses in one another on the way.
+    #: For each used id: the number of elements that it draws, and the depth of nested uses in it.
     known: dict[str, tuple[int, int]] = {}
 
     def shown(element: Element, outer: int) -> tuple[int, int]:
@@ -135,13 +135,13 @@ def _check_uses(root: Element) -> None:
 
 
 def _target(use: Element) -> str:
-    """Return the id of the used element; nothing if it is in another file."""
+    """Return the id of the element that a ``use`` references; "" if it is in another file."""
     reference = next((use.get(key, "") for key in HREF if use.get(key)), "")
     return reference[1:] if reference[:1] == "#" else ""
 
 
 def _flatten(root: Element, size: _Size) -> None:
-    """Replace views, symbols and their uses by groups."""
+    """Replace nested views, symbols and uses of symbols by groups with transforms."""
     symbols = {
         element.get("id"): dict(element.attrib)
         for element in root.iter()
@@ -163,7 +163,7 @@ def _flatten(root: Element, size: _Size) -> None:
 
 
 def _declaration(element: Element) -> Element:
-    """Return definitions that contain an element, which becomes a group."""
+    """Return a ``defs`` element around an element, which becomes a group."""
     around = Element(_tag(element, "defs"))
     element.tag = _tag(element, "g")
     for name in ("viewBox", "preserveAspectRatio"):
@@ -173,7 +173,7 @@ def _declaration(element: Element) -> Element:
 
 
 def _of_symbol(use: Element, symbol: dict[str, str], outer: _Size) -> Element:
-    """Return a group that draws a symbol as a use does."""
+    """Return a group that draws a symbol as a ``use`` of it does."""
     around = Element(_tag(use, "g"), dict(use.attrib))
     view = symbol | {key: use.attrib[key] for key in ("width", "height") if key in use.attrib}
     _group(around, view | {key: use.get(key, "0") for key in ("x", "y")}, outer)
@@ -187,7 +187,7 @@ def _tag(like: Element, name: str) -> str:
 
 
 def _group(element: Element, view: dict[str, str], outer: _Size) -> _Size:
-    """Make an element a group with the transform of a view; return the view's own size."""
+    """Make an element a group with the transform of a view; return the view's own size or None."""
     wide, high = outer or (None, None)
     view = {key: value for key, value in view.items() if value.strip() != "auto"}
     x, y = (_length(view.get(key, "0"), whole) or 0.0 for key, whole in (("x", wide), ("y", high)))
@@ -215,7 +215,7 @@ def _group(element: Element, view: dict[str, str], outer: _Size) -> _Size:
 def _fitted(
     rule: str, scales: tuple[float, float], size: tuple[float, float]
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return offset and scales of a box for a rule such as ``xMidYMid meet``."""
+    """Return the offset and the scales (x, y) by ``preserveAspectRatio``, as ``xMidYMid meet``."""
     words = rule.split() or ["xMidYMid"]
     if words[0] == "none":
         return (0.0, 0.0), scales
@@ -236,7 +236,7 @@ def _size_of_root(root: Element) -> _Size:
 
 
 def _view_box(view: dict[str, str]) -> tuple[float, float, float, float] | None:
-    """Return left, top, width and height of a view box with a positive size."""
+    """Return left, top, width and height of a view box, or None if it is not valid."""
     words = [word for word in re.split(r"[\s,]+", view.get("viewBox", "")) if word]
     try:
         left, top, width, height = map(float, words)
@@ -249,7 +249,7 @@ def _view_box(view: dict[str, str]) -> tuple[float, float, float, float] | None:
 
 
 def _length(text: str, whole: float | None) -> float | None:
-    """Return a length in user units; None for no length, or one relative to an unknown size."""
+    """Return a length in user units; None if it is no length, or relative to an unknown `whole`."""
     if not text or ("%" in text and whole is None):
         return None
     elements = optional("svgelements", "svgelements")

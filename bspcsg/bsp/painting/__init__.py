@@ -1,1 +1,1 @@
-"""Pictures painted from back to front."""
+"""Pictures of facets by the painter's algorithm, which paints far polygons before near ones."""

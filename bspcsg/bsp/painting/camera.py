@@ -26,19 +26,20 @@ _DIRECTIONS: dict[str, tuple[int, int, int]] = {
     "bottom": (0, 0, 1),
 }
 
-#: Share of the picture's height and width that stays empty on each side of a fitted scene.
+#: The fraction of the picture's height and width that stays empty on each side of a fitted scene.
 MARGIN = 0.04
 
-#: Share of a scene's depth that lies between the eye of a fitted perspective and the scene.
+#: The least distance from the eye of a fitted perspective to the scene, as a fraction of the
+#: scene's depth.
 _CLEARANCE = 0.01
 
-#: Below this sine of their angle two directions count as parallel.
+#: Two directions count as parallel if the sine of the angle between them is below this.
 _PARALLEL = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """A perspective or parallel projection; make one with one of the class methods.
+    """A perspective or parallel projection of space to a picture; use a class method to make one.
 
     Parameters
     ----------
@@ -58,7 +59,7 @@ class Camera:
     is_perspective: bool
 
     def __post_init__(self) -> None:
-        """Store read-only copies."""
+        """Replace the arrays by read-only copies."""
         for name in ("axes", "origin"):
             own = np.array(getattr(self, name), dtype=np.float64)
             own.flags.writeable = False
@@ -68,7 +69,7 @@ class Camera:
     def perspective(
         cls, eye: Any, target: Any, up: Any = None, field_of_view: float = 35.0
     ) -> "Camera":
-        """Return a camera at an eye point.
+        """Return a perspective camera at an eye point.
 
         Parameters
         ----------
@@ -98,7 +99,7 @@ class Camera:
     def orthographic(
         cls, direction: Any, up: Any = None, scale: float = 1.0, target: Any = (0, 0, 0)
     ) -> "Camera":
-        """Return a camera infinitely far away.
+        """Return a camera with a parallel projection along a direction.
 
         Parameters
         ----------
@@ -129,20 +130,21 @@ class Camera:
         field_of_view: float | None = None,
         margin: float = MARGIN,
     ) -> "Camera":
-        """Return a camera that sees all points from one of the usual sides.
+        """Return a camera that sees all points from one of the named sides.
 
         Parameters
         ----------
         view : {"iso", "front", "back", "left", "right", "top", "bottom"}
         points : (n, 3) array_like
-            The points that must be in the picture; (2, 3) are the lowest and highest corner of a
-            box. Without points the unit cube around the origin is looked at.
+            The points that must be in the picture; two points are the minimum and maximum corner of
+            a box. Without points the camera sees the unit cube around the origin.
         aspect : float
             Width of the picture divided by its height.
         field_of_view : float, optional
-            Degrees, for a perspective; by default the projection is parallel.
+            The angle between the top and the bottom of a perspective picture, in degrees; by
+            default the projection is parallel.
         margin : float
-            Share of the picture that stays empty on each side.
+            The fraction of the picture that stays empty on each side.
         """
         camera = cls.orthographic(_DIRECTIONS[word(_DIRECTIONS, view, "view")])
         if field_of_view is not None:
@@ -150,10 +152,10 @@ class Camera:
         return camera.fitted(points, aspect, margin)
 
     def fitted(self, points: Any, aspect: float = 4 / 3, margin: float = MARGIN) -> "Camera":
-        """Return this camera moved so that all points are in the picture.
+        """Return a camera moved without turning so that all points are in the picture.
 
-        A parallel picture is scaled as well. The direction of view and the field of view stay;
-        parameters are those of `named`.
+        A parallel projection is also scaled. The direction of view and the field of view do not
+        change; parameters are those of `named`.
         """
         if not 0 <= number(margin, "margin") < 0.5:
             raise invalid_parameter(f"margin must be at least 0 and below 0.5, not {margin}.")
@@ -170,7 +172,11 @@ class Camera:
         return replace(self, origin=origin, half_height=half if half > 0 else 0.5)
 
     def _receded(self, middle: FloatArray, reach: FloatArray, depth: FloatArray) -> "Camera":
-        """Return this camera so far from the middle that no point reaches beyond the picture."""
+        """Return this camera moved back from `middle` until all points are within the picture.
+
+        `reach` (n, 2) are the points' offsets from the view axis, relative to the limits of the
+        picture; `depth` (n,) their distances behind `middle` along the view.
+        """
         distance = float((reach.max(axis=1) / self.half_height - depth).max())
         # Keep points on the view axis, or a single point, away from the eye and its plane.
         nearest = float(depth.min())
@@ -190,12 +196,12 @@ class Camera:
         return direction
 
     def place(self, points: FloatArray) -> FloatArray:
-        """Return (n, 3) coordinates to the right, upwards, and away from the viewer."""
+        """Return points in camera coordinates, (n, 3): right, up, and away from the viewer."""
         placed: FloatArray = (points - self.origin) @ self.axes.T
         return placed
 
     def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
-        """Return the positions of points in the picture.
+        """Return the 2D positions of points in the picture, and their depths.
 
         Parameters
         ----------
@@ -205,10 +211,11 @@ class Camera:
         Returns
         -------
         image : (n, 2) float64
-            To the right and upwards from the picture's middle, in halves of its height. NaN in a
+            Right and up from the picture's centre, in units of half its height. NaN in a
             perspective for points that are not in front of the eye.
         depth : (n,) float64
-            Along the direction of view: from the eye, or from the target of a parallel projection.
+            Distance along the direction of view, from the eye or from the target of a parallel
+            projection, in model units.
         """
         given = vector_rows(points, 3, "Points")
         if not np.isfinite(given).all():
@@ -220,7 +227,7 @@ class Camera:
         return self.flatten(placed), depth
 
     def flatten(self, placed: FloatArray) -> FloatArray:
-        """Return the (n, 2) image of points that `place` has placed."""
+        """Return the (n, 2) picture positions of points in camera coordinates (see `place`)."""
         if not self.is_perspective:
             return placed[:, :2] / self.half_height
         depth = np.where(placed[:, 2] > 0, placed[:, 2], np.nan)
@@ -228,7 +235,7 @@ class Camera:
         return image
 
     def facing(self, corners: FloatArray, normals: FloatArray) -> FloatArray:
-        """Return (n,) cosines between normals and the directions towards the viewer.
+        """Return the cosines between planes' normals and the directions to the viewer, (n,).
 
         Parameters
         ----------
@@ -247,7 +254,7 @@ class Camera:
         return cosines
 
     def __repr__(self) -> str:
-        """Show the position of the camera."""
+        """Return a text with the kind of projection, the origin and the direction of view."""
         kind = "perspective" if self.is_perspective else "orthographic"
         origin, direction = (", ".join(f"{x:.4g}" for x in v) for v in (self.origin, self.axes[2]))
         return f"Camera({kind}, origin=({origin}), direction=({direction}))"
@@ -299,7 +306,7 @@ def _tangent(field_of_view: float) -> float:
 
 
 def _spread(points: Any) -> FloatArray:
-    """Return points; the corners of a box for two points, and of the unit cube for none."""
+    """Return points to fit: box corners for two points, corners of the unit cube for none."""
     wanted = doubles(points, invalid_parameter("The points to fit must be an (n, 3) array."))
     if not wanted.size:
         wanted = np.array([[-0.5] * 3, [0.5] * 3])

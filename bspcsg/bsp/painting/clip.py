@@ -1,4 +1,4 @@
-"""Convex polygons as flat arrays, and their parts in a half-space."""
+"""Convex polygons as flat arrays, and clipping them with half-spaces."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from ..trees.fragments import ranges
 
 @dataclass(frozen=True, eq=False)
 class Polygons:
-    """Convex polygons one after another.
+    """Convex polygons of any dimension d, stored in flat arrays, with marks on edges.
 
     Parameters
     ----------
@@ -18,7 +18,7 @@ class Polygons:
     offsets : (k + 1,) int64
         Polygon i owns ``corners[offsets[i]:offsets[i + 1]]``.
     marked : (n,) bool
-        Marks of the edges from each corner to the next; edges added by clipping are unmarked.
+        True if the edge from this corner to the next is marked; clipping adds unmarked edges.
     """
 
     corners: FloatArray
@@ -34,7 +34,7 @@ class Polygons:
 
 
 def following(offsets: IndexArray) -> IndexArray:
-    """Return for each corner the index of the next one around its polygon."""
+    """Return for each corner of polygons the index of the next corner around its polygon, (n,)."""
     after = np.arange(1, offsets[-1] + 1)
     filled = offsets[1:] > offsets[:-1]
     after[offsets[1:][filled] - 1] = offsets[:-1][filled]
@@ -42,15 +42,15 @@ def following(offsets: IndexArray) -> IndexArray:
 
 
 def owners(offsets: IndexArray) -> IndexArray:
-    """Return for each corner the index of its polygon."""
+    """Return for each corner of polygons the index of its polygon, (n,)."""
     return np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
 
 
 def clip(polygons: Polygons, normal: FloatArray, least: float) -> tuple[Polygons, IndexArray]:
-    """Return the parts of polygons where normal·x is at least `least`, and their polygons.
+    """Return the parts of polygons with normal·x ≥ `least`, and the original index of each part.
 
-    Clips all polygons at once by the method of Sutherland and Hodgman 1974, "Reentrant polygon
-    clipping".
+    The method is that of Sutherland and Hodgman 1974, "Reentrant polygon clipping", for all
+    polygons at once.
     """
     distance = polygons.corners @ normal - least
     inside = distance >= 0
@@ -67,7 +67,7 @@ def clip(polygons: Polygons, normal: FloatArray, least: float) -> tuple[Polygons
 
     places = (firsts + inside)[crossing]
     corners[places] = _crossings(polygons.corners, distance, np.flatnonzero(crossing), after)
-    # Where the boundary re-enters, the rest of the old edge follows.
+    # An edge that enters the half-space continues as a part of the old edge, with its mark.
     marked[places] = (polygons.marked & ~inside)[crossing]
 
     offsets = np.concatenate([[0], np.cumsum(counts)])[polygons.offsets]

@@ -1,4 +1,4 @@
-"""Neighbours of facets, and the choice of edges for a picture."""
+"""Neighbours of facets across edges, and the choice of edges to draw in a picture."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,12 +12,13 @@ from .clip import following, owners
 
 @dataclass(frozen=True, eq=False)
 class Facets:
-    """Planar polygons that may share edges.
+    """Planar polygons in space that may share edges.
 
     Parameters
     ----------
     corners : (n, 3) float64
-        One polygon after another, counterclockwise seen from outside (the plus side).
+        The corners of all polygons, one after another, counterclockwise seen from outside (the plus
+        side).
     offsets : (k + 1,) int64
         Facet i owns ``corners[offsets[i]:offsets[i + 1]]``.
     """
@@ -37,13 +38,13 @@ class Facets:
 
     @cached_property
     def firsts(self) -> FloatArray:
-        """The first corner of each facet, (k, 3)."""
+        """The first corner of each facet, (k, 3) float64."""
         firsts: FloatArray = self.corners[self.offsets[:-1]]
         return firsts
 
     @cached_property
     def normals(self) -> FloatArray:
-        """Unit normals (k, 3) towards the plus side."""
+        """The unit normal of each facet towards its plus side, (k, 3); zero without area."""
         if not len(self):
             return np.zeros((0, 3))
         after, owner = following(self.offsets), owners(self.offsets)
@@ -56,7 +57,7 @@ class Facets:
 
     @cached_property
     def _keys(self) -> tuple[IndexArray, IndexArray]:
-        """Numbers of the directed edges, and of their opposites."""
+        """A number for each directed edge, and the number of the edge in opposite direction."""
         names = _names(self.corners)
         ends = names[following(self.offsets)]
         count = len(self.corners) + 1
@@ -64,7 +65,7 @@ class Facets:
 
     @cached_property
     def neighbours(self) -> IndexArray:
-        """For the edge from each corner, the facet on its other side, (n,); -1 if not just one."""
+        """The facet on the other side of each edge, (n,); -1 if there is none or more than one."""
         forth, back = self._keys
         order = np.argsort(forth, kind="stable")
         ordered = forth[order]
@@ -77,7 +78,7 @@ class Facets:
 
     @cached_property
     def is_closed(self) -> bool:
-        """True if the facets enclose a positive volume: every edge has equally many opposites."""
+        """True if each edge has as many opposite as equal edges, and the volume is positive."""
         forth, back = self._keys
         if not len(forth) or not np.array_equal(np.sort(forth), np.sort(back)):
             return False
@@ -90,30 +91,29 @@ class Facets:
         return float(np.einsum("ij,ij->", arms[self.offsets[:-1]][owner], cones))
 
     def features(self, facing: BoolArray, crease: float) -> BoolArray:
-        """Return the feature edges, (n,) bool.
+        """Return which edges are feature edges, (n,) bool.
 
-        Those without exactly one neighbour, those where the angle between the normals is above
-        `crease` degrees, and the contour, where a facet that faces the viewer meets one that does
-        not.
+        These are edges without exactly one neighbour, edges whose facets' normals differ by more
+        than `crease` degrees, and contours, where only one of the two facets faces the viewer.
         """
         owner, other = owners(self.offsets), self.neighbours
         cosines = np.einsum("ij,ij->i", self.normals[owner], self.normals[other])
         bent = cosines < np.cos(np.radians(crease))
         contour = facing[owner] != facing[other]
-        # Facets without area have no direction to compare.
+        # Facets without area have no normal to compare.
         wide: BoolArray = (self.normals != 0).any(axis=1)
         drawn: BoolArray = (other < 0) | ((bent | contour) & wide[owner] & wide[other])
         return drawn
 
     def drawn_edges(self, fragments: Fragments, drawn: BoolArray) -> BoolArray:
-        """Return which edges of fragments lie on drawn edges of these facets.
+        """Return which edges of fragments lie on drawn edges of these facets, (m,) bool.
 
         Parameters
         ----------
         fragments : Fragments
-            Parts of the facets, `source` naming them.
+            Parts of the facets; `source` has the facet of each.
         drawn : (n,) bool
-            Edges of the facets.
+            True for the edges of facets that are drawn.
         """
         if drawn.all():
             return fragments.original
@@ -127,7 +127,7 @@ class Facets:
         return result
 
     def _nearest_edges(self, points: FloatArray, facets: IndexArray) -> IndexArray:
-        """Return the edge of the given facet nearest to each point, by its first corner."""
+        """Return for each point the nearest edge of its given facet, as the edge's first corner."""
         after = following(self.offsets)
         starts, counts = self.offsets[:-1][facets], np.diff(self.offsets)[facets]
         best, least = starts.copy(), np.full(len(points), np.inf)
@@ -141,7 +141,7 @@ class Facets:
 
 
 def _distances(points: FloatArray, starts: FloatArray, ends: FloatArray) -> FloatArray:
-    """Return the squared distances of points from segments."""
+    """Return the squared distance of each point from its segment, (n,)."""
     along, arm = ends - starts, points - starts
     length = np.einsum("ij,ij->i", along, along)
     share = np.einsum("ij,ij->i", arm, along) / np.where(length > 0, length, 1)
@@ -151,7 +151,7 @@ def _distances(points: FloatArray, starts: FloatArray, ends: FloatArray) -> Floa
 
 
 def _names(corners: FloatArray) -> IndexArray:
-    """Return numbers from 0 on, equal just for equal points."""
+    """Return an integer from 0 on for each point; two are equal exactly if the points are equal."""
     order = np.lexsort(corners.T)
     ordered = corners[order]
     new = np.ones(len(corners), dtype=bool)

@@ -1,4 +1,4 @@
-"""Hidden-line removal: the parts of edges that no later polygon covers."""
+"""Hidden-line removal: find the parts of edges that no later polygon covers."""
 
 from typing import TypeAlias
 
@@ -8,40 +8,41 @@ from ..._types import FloatArray, IndexArray
 from ..trees.fragments import ranges
 from .clip import Polygons, following, owners
 
-#: A part of a segment, from 0 at its start to 1 at its end.
+#: A part of a segment as two parameters: 0 is the segment's start, 1 its end.
 Stretch: TypeAlias = tuple[float, float]
 
-#: Edges are looked at this many pixels to either side of them: one that borders on what is painted
-#: later is seen, one below the seam of two polygons is not.
+#: Visibility is tested this many pixels to both sides of an edge: an edge at the border of a
+#: polygon that is painted later is visible, an edge under the seam of two such polygons is hidden.
 _ASIDE = 0.02
 
-#: The shortest visible part of an edge, in pixels. Edges are looked at to either side, which
-#: makes shorter parts appear at the ends of hidden ones.
+#: The shortest visible part of an edge, in pixels. The test to both sides of an edge finds shorter,
+#: wrong parts at the ends of hidden edges.
 _MIN_VISIBLE_PIXELS = 0.2
 
-#: The largest number of pairs of an edge and a polygon near it: more would take seconds.
+#: The largest number of pairs of an edge and a nearby polygon: more would take seconds.
 _MAX_NEAR_PAIRS = 4_000_000
 
-#: Width of the squares, in pixels, by which pairs are found.
+#: The width, in pixels, of the grid squares that find pairs of an edge and a nearby polygon.
 _SQUARE = 12.0
 
 
 def visible(polygons: Polygons, ends: FloatArray, owner: IndexArray) -> FloatArray | None:
-    """Return the visible parts of segments.
+    """Return the parts of segments that no later polygon covers, in pixels.
 
     Parameters
     ----------
     polygons : Polygons
-        In pixels, in the order in which they are painted.
+        Polygons in pixels, in the order in which they are painted.
     ends : (m, 2, 2) float64
-        Segments.
+        The ends of the segments, in pixels.
     owner : (m,) int64
         The polygon of each segment; later polygons may hide the segment.
 
     Returns
     -------
     (p, 2, 2) float64, or None
-        None if there are too many pairs of a segment and a polygon near it.
+        The ends of the visible parts; None if there are too many pairs of a segment and a nearby
+        polygon.
     """
     pairs = _near_pairs(polygons, ends, owner)
     if pairs is None:
@@ -66,7 +67,7 @@ def visible(polygons: Polygons, ends: FloatArray, owner: IndexArray) -> FloatArr
 def _near_pairs(
     polygons: Polygons, ends: FloatArray, owner: IndexArray
 ) -> tuple[IndexArray, IndexArray] | None:
-    """Return segments and later polygons whose boxes meet."""
+    """Return pairs (segment, later polygon) whose boxes meet, or None if they are too many."""
     low = np.minimum.reduceat(polygons.corners, polygons.offsets[:-1]) - _ASIDE
     high = np.maximum.reduceat(polygons.corners, polygons.offsets[:-1]) + _ASIDE
     squares, members = _squares(low, high)
@@ -86,21 +87,21 @@ def _near_pairs(
 
 
 def _squares(low: FloatArray, high: FloatArray) -> tuple[IndexArray, IndexArray]:
-    """Return pairs of a grid square and a box that overlap."""
+    """Return all pairs (number of a grid square, index of a box) that overlap."""
     first = np.floor(low / _SQUARE).astype(np.int64)
     sides = np.floor(high / _SQUARE).astype(np.int64) - first + 1
     counts = sides[:, 0] * sides[:, 1]
     box = np.repeat(np.arange(len(low)), counts)
     place = ranges(np.zeros_like(counts), counts)
     column, row = np.divmod(place, sides[box, 1])
-    # Pictures have fewer squares than this in a row.
+    # A picture has fewer than 1 << 20 squares in a column.
     return (first[box, 0] + column) * (1 << 20) + first[box, 1] + row, box
 
 
 def _covered(
     polygons: Polygons, ends: FloatArray, segment: IndexArray, polygon: IndexArray
 ) -> dict[int, list[Stretch]]:
-    """Return the parts of segments inside convex polygons, by segment."""
+    """Return the parts of segments that convex polygons cover, by the segment's index."""
     low, high = _inside(polygons, ends, segment, polygon)
     some = high > low
     found: dict[int, list[Stretch]] = {}
@@ -113,7 +114,10 @@ def _covered(
 def _inside(
     polygons: Polygons, ends: FloatArray, segment: IndexArray, polygon: IndexArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return where segments enter and leave convex polygons (Cyrus, Beck 1978)."""
+    """Return where segments enter and leave convex polygons, from 0 to 1 (Cyrus, Beck 1978).
+
+    There is one value for each pair of `segment` and `polygon`; enter ≥ leave if they do not meet.
+    """
     starts, stops = polygons.offsets[:-1][polygon], polygons.offsets[1:][polygon]
     corner = ranges(starts, stops)
     pair = np.repeat(np.arange(len(polygon)), stops - starts)
@@ -121,7 +125,7 @@ def _inside(
     along = polygons.corners[after] - polygons.corners
     turn = np.sign(_areas(polygons))[polygon[pair]]
     tail, head = ends[segment[pair], 0], ends[segment[pair], 1]
-    # Distances to the left of each side, times its length; positive inside.
+    # Signed distance from each side of the polygon, times the side's length; positive inside.
     first = turn * _cross(along[corner], tail - polygons.corners[corner])
     second = turn * _cross(along[corner], head - polygons.corners[corner])
     slope = second - first
@@ -138,7 +142,7 @@ def _inside(
 
 
 def _areas(polygons: Polygons) -> FloatArray:
-    """Return twice the signed areas."""
+    """Return twice the signed area of each polygon, (k,)."""
     owner, after = owners(polygons.offsets), following(polygons.offsets)
     arms = polygons.corners - polygons.corners[polygons.offsets[:-1]][owner]
     sums: FloatArray = np.add.reduceat(_cross(arms, arms[after]), polygons.offsets[:-1])
@@ -153,7 +157,7 @@ def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
 def _united(parts: list[Stretch]) -> list[Stretch]:
     united: list[Stretch] = []
     for start, end in sorted(parts):
-        # Neighbours share a border, up to rounding.
+        # Adjacent parts share an end, up to rounding.
         if united and start <= united[-1][1] + 1e-9:
             united[-1] = (united[-1][0], max(end, united[-1][1]))
         else:
@@ -162,7 +166,7 @@ def _united(parts: list[Stretch]) -> list[Stretch]:
 
 
 def _common(first: list[Stretch], second: list[Stretch]) -> list[Stretch]:
-    """Return the intersection of two sorted lists of disjoint parts."""
+    """Return the intersection of two sorted lists of disjoint parts of a segment."""
     pairs = ((max(a, c), min(b, d)) for a, b in first for c, d in second)
     return [(start, end) for start, end in pairs if start < end]
 

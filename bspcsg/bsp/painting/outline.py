@@ -1,22 +1,22 @@
-"""Common outlines of several polygons: opposite edges cancel."""
+"""Merge polygons into common outlines, in which opposite edges cancel."""
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable
 
-#: A point on a grid.
+#: A point on a grid, as two integers.
 Spot = tuple[int, int]
 
-#: From one point to the next.
+#: A directed edge: its start and its end point.
 Step = tuple[Spot, Spot]
 
 
 def outlines(polygons: Iterable[list[Spot]]) -> list[list[Spot]]:
-    """Return closed outlines with the total winding numbers of the polygons.
+    """Return closed loops; their winding number at a point is the sum of the polygons'.
 
     Parameters
     ----------
     polygons : iterable of list of (int, int)
-        All with the same orientation.
+        Polygons that all have the same orientation.
     """
     return _chained(_uncancelled(polygons))
 
@@ -35,7 +35,10 @@ def _uncancelled(polygons: Iterable[list[Spot]]) -> "Counter[Step]":
 
 
 def _chained(counts: "Counter[Step]") -> list[list[Spot]]:
-    """Return loops over all edges; any choice of loops gives the same winding numbers."""
+    """Return closed loops that use each directed edge as often as `counts` says.
+
+    Any choice of loops gives the same winding numbers.
+    """
     onwards: defaultdict[Spot, list[Spot]] = defaultdict(list)
     for start, end in counts.elements():
         onwards[start].append(end)
@@ -55,7 +58,7 @@ def _loop(onwards: "defaultdict[Spot, list[Spot]]", start: Spot) -> list[Spot]:
 
 
 def straightened(loop: list[Spot]) -> list[Spot]:
-    """Return a loop without corners that lie straight between their neighbours."""
+    """Return a loop without the corners at which it goes straight on."""
     corners = []
     before = loop[-1]
     for spot, after in zip(loop, loop[1:] + loop[:1], strict=True):
@@ -67,13 +70,13 @@ def straightened(loop: list[Spot]) -> list[Spot]:
 
 
 def polylines(steps: Iterable[Step]) -> list[list[Spot]]:
-    """Return open or closed lines that cover each step once, in either direction."""
+    """Return open or closed polylines that cover each edge once, in either direction."""
     links: defaultdict[Spot, set[Spot]] = defaultdict(set)
     for start, end in steps:
         if start != end:
             links[start].add(end)
             links[end].add(start)
-    # First the lines from ends and forks; the remaining ones are closed.
+    # Start at ends and forks first; the edges that remain then form closed loops.
     forks = [spot for spot, ways in links.items() if len(ways) != 2]
     lines = []
     for start in forks + list(links):

@@ -1,4 +1,4 @@
-"""The content of a picture: polygons in pixels, in the order in which they are painted."""
+"""`Painting`: polygons in pixels in the order in which they are painted, made from a scene."""
 
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
@@ -14,40 +14,41 @@ from .colours import ColourArray, lit
 from .creases import Facets
 from .hidden import visible
 
-#: "shaded": light and edges; "hidden": white with black edges; "edges": edges alone, all of them.
+#: "shaded": lit facets with edges; "hidden": white facets with black edges that hide edges behind
+#: them; "edges": edges alone, hidden ones too.
 Style: TypeAlias = Literal["shaded", "hidden", "edges"]
 
-#: "feature": those that show the shape; "all": those of all facets.
+#: The edges to draw. "feature": contours, creases and borders; "all": those of all facets.
 Edges: TypeAlias = Literal["feature", "all", "none"]
 
-#: Nearest distance from the eye that is painted, as a share of the scene's largest distance.
+#: The least distance from the eye that is painted, as a fraction of the scene's largest distance.
 _NEAR = 1e-6
 
-#: Cosine between normal and view up to which a facet is seen edge-on: its sign is rounding.
+#: A facet is seen edge-on if the cosine between its normal and the view is at most this.
 EDGE_ON = 1e-9
 
-#: Pixels by which a picture is painted beyond its frame.
+#: The width in pixels of the margin outside its frame on which a picture is also painted.
 _BLEED = 8.0
 
 
 @dataclass(frozen=True, eq=False)
 class Painting:
-    """Polygons in pixels, the farthest first.
+    """The polygons and lines of a picture in pixels, the farthest polygon first.
 
     Parameters
     ----------
     size : (int, int)
         Width and height in pixels; x goes to the right, y downwards.
     polygons : Polygons
-        (n, 2) corners; marked edges are drawn with their polygon, cut lines never are.
+        Polygons with (n, 2) corners; their marked edges are drawn right after the polygon.
     lines : (m, 2, 2) float64
         The visible parts of edges that are drawn after all polygons.
     fills : (k, 3) uint8, or None
-        Their colours; None for edges alone.
+        The colours of the polygons; None if only edges are drawn.
     source : (k,) int64
-        The facet of which each polygon is a part.
+        The index of the facet of which each polygon is a part.
     group : (k,) int64
-        Equal for coplanar polygons that follow each other.
+        A number for each polygon, equal for consecutive polygons of one plane and one colour.
     """
 
     size: tuple[int, int]
@@ -60,14 +61,14 @@ class Painting:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Facets with their appearance.
+    """The facets of a picture, with their colours and the edges to draw.
 
     Parameters
     ----------
     facets : Facets
     colours : (k, 3) uint8
     drawn : (n,) bool
-        Edges that are drawn.
+        True for the edges of facets that are drawn.
     """
 
     facets: Facets
@@ -82,7 +83,7 @@ class Scene:
 
 
 def facing(facets: Facets, camera: Camera) -> BoolArray:
-    """Return which facets turn their plus side to the viewer, (k,); not those seen edge-on."""
+    """Return which facets turn their plus side to the viewer, (k,) bool; false if seen edge-on."""
     return camera.facing(facets.firsts, facets.normals) > EDGE_ON
 
 
@@ -94,12 +95,12 @@ def painted(
     style: Style,
     hidden: BoolArray | None = None,
 ) -> Painting:
-    """Return the picture of a tree whose facets are those of the scene.
+    """Return the painting of a scene, with its facets in the back-to-front order of a tree.
 
     Parameters
     ----------
     hidden : (k,) bool, optional
-        Facets that are left out.
+        True for facets that are left out.
     """
     viewpoint = {"eye": camera.eye} if camera.is_perspective else {"direction": camera.direction}
     fragments = tree.back_to_front(**viewpoint)
@@ -113,7 +114,10 @@ def painted(
 
 
 def _lined(polygons: Polygons, style: Style) -> tuple[Polygons, FloatArray]:
-    """Return polygons without marks and the edges to draw; with too many edges, marked polygons."""
+    """Return polygons without marks and the visible edges to draw as lines.
+
+    If there are too many edges, return the marked polygons and no lines.
+    """
     marked = np.flatnonzero(polygons.marked)
     ends = polygons.corners[np.stack([marked, following(polygons.offsets)[marked]], axis=1)]
     lines = ends if style == "edges" else visible(polygons, ends, owners(polygons.offsets)[marked])
@@ -139,7 +143,7 @@ def _in_pixels(
 def _framed(
     polygons: Polygons, camera: Camera, size: tuple[int, int]
 ) -> tuple[Polygons, IndexArray]:
-    """Return the parts in front of the eye and in the picture, and the polygon of each."""
+    """Return the parts of polygons in front of the eye and in the picture, and their indices."""
     kept = np.arange(len(polygons.offsets) - 1)
     for normal, least in _frame(polygons.corners, camera, size):
         polygons, left = clip(polygons, normal, least)
@@ -150,7 +154,7 @@ def _framed(
 def _frame(
     placed: FloatArray, camera: Camera, size: tuple[int, int]
 ) -> list[tuple[FloatArray, float]]:
-    """Return the half-spaces of the visible region, in camera coordinates."""
+    """Return the half-spaces (normal, least) of the visible region in camera coordinates."""
     width, height = size
     reaches = (np.array([width, height]) + 2 * _BLEED) / height * camera.half_height
     sides = [(axis, sign, reaches[axis]) for axis in (0, 1) for sign in (1.0, -1.0)]
@@ -170,7 +174,7 @@ def _fills(scene: Scene, camera: Camera, style: Style) -> ColourArray:
 
 
 def _runs(node: IndexArray, fills: ColourArray | None) -> IndexArray:
-    """Return numbers that change with the node or the colour."""
+    """Return an integer for each polygon that increases when the node or the colour changes."""
     keys = node[:, None] if fills is None else np.column_stack([node, fills])
     changes = (keys[1:] != keys[:-1]).any(axis=1)
     return np.concatenate([[0], np.cumsum(changes)])[: len(node)]

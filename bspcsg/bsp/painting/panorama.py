@@ -1,4 +1,4 @@
-"""`panorama`: the painter's picture of segments in the plane, below a map of them."""
+"""`panorama`: a map of segments in the plane, above the view that the painter's algorithm gives."""
 
 from typing import Any
 
@@ -17,13 +17,13 @@ from .picture import Picture, checked_size
 _PALETTE = ["#d1495b", "#edae49", "#00798c", "#7a9e4b", "#30638e", "#9c6b98", "#c9713b", "#5f6b73"]
 _INK = np.array([26, 28, 32], dtype=np.uint8)
 
-#: Empty space around the map and the strip, in pixels.
+#: The width of the empty margin around the map and around the strip, in pixels.
 _SPACE = 12.0
 
-#: Share of the height that the strip takes.
+#: The fraction of the picture's height that the strip takes.
 _STRIP = 0.16
 
-#: Half of the width of a segment on the map, in pixels.
+#: Half of the line width of segments on the map, in pixels.
 _HALF = 2.0
 
 
@@ -37,19 +37,20 @@ def panorama(
     background: Any = "white",
     samples: int = 3,
 ) -> Picture:
-    """Return a map of segments, and under it what a viewer in the plane sees.
+    """Return a map of segments, and below it a strip with the view of a viewer in the plane.
 
-    The strip is painted from the farthest to the nearest fragment. For an eye it shows the full
-    circle, with +y in the middle and clockwise to the right; for a direction it is a parallel view.
+    The strip is painted from the farthest to the nearest fragment. For an eye the strip shows the
+    full circle, with +y in the middle and clockwise to the right; for a direction it shows a
+    parallel view.
 
     Parameters
     ----------
     scene : PartitionTree or (n, 2, 2) array_like
         A tree of segments, or segments, from which a tree is built.
     eye : (2,) array_like, optional
-        The viewpoint; a dot on the map.
+        The viewpoint, drawn as a dot on the map.
     direction : (2,) array_like, optional
-        Instead of an eye: the direction of view, an arrow on the map.
+        Instead of an eye: the direction of view, drawn as an arrow on the map.
     size : (int, int)
         Width and height in pixels, at least 64 each.
     colors : optional
@@ -57,7 +58,7 @@ def panorama(
     background : optional
         A colour, or None for transparent.
     samples : int
-        A pixel of a PNG is the mean of this many squared.
+        Each pixel of a PNG is the mean of `samples` × `samples` samples.
 
     Returns
     -------
@@ -95,7 +96,7 @@ def panorama(
 
 
 def _fills(source: IndexArray, count: int, colors: Any) -> ColourArray:
-    """Return colours of polygons; polygons of no segment have the colour of ink."""
+    """Return the colour of each polygon; source -1, the eye or arrow, has the colour of ink."""
     if colors is None:
         colors = [_PALETTE[k % len(_PALETTE)] for k in range(count)]
     base = colours(colors, count, "colors") if count else np.zeros((0, 3), dtype=np.uint8)
@@ -109,7 +110,7 @@ def _joined(first: Polygons, second: Polygons) -> Polygons:
 
 
 def _quads(corners: FloatArray) -> Polygons:
-    """Return polygons from (k, m, 2) corners."""
+    """Return the polygons with the given (k, m, 2) corners."""
     count, sides, _ = corners.shape
     flat = corners.reshape(-1, 2)
     return Polygons(flat, sides * np.arange(count + 1), np.zeros(len(flat), dtype=bool))
@@ -132,7 +133,7 @@ def _strip(
 
 
 def _border(frame: tuple[int, int]) -> FloatArray:
-    """Return the four sides of the strip."""
+    """Return the four sides of the strip as segments in pixels, (4, 2, 2)."""
     left, right = _SPACE, frame[0] - _SPACE
     top, bottom = frame[1] * (1 - _STRIP), frame[1] - _SPACE
     around = np.array([(left, top), (right, top), (right, bottom), (left, bottom)])
@@ -140,7 +141,10 @@ def _border(frame: tuple[int, int]) -> FloatArray:
 
 
 def _across(ends: FloatArray, direction: FloatArray) -> tuple[FloatArray, IndexArray]:
-    """Return the ranges of the strip's width that segments cover, seen along a direction."""
+    """Return the interval of the strip's width, from 0 to 1, of each segment in a parallel view.
+
+    The second array has the index of the segment of each interval.
+    """
     scaled = direction / np.abs(direction).max()
     places = ends @ np.array([scaled[1], -scaled[0]])
     low, high = (places.min(), places.max()) if len(places) else (0.0, 1.0)
@@ -149,16 +153,17 @@ def _across(ends: FloatArray, direction: FloatArray) -> tuple[FloatArray, IndexA
 
 
 def _around(ends: FloatArray, eye: FloatArray) -> tuple[FloatArray, IndexArray]:
-    """Return ranges of the strip that segments cover, seen from an eye, and their segments.
+    """Return intervals of the strip's width, from 0 to 1, of segments seen from an eye.
 
-    Segments behind the viewer, who looks along +y, appear twice, at both ends of the strip.
+    The second array has the segment of each interval. Each interval is repeated one strip width to
+    the left and to the right, for segments behind the viewer, who looks along +y.
     """
     arms = ends - eye
     turns = np.arctan2(arms[..., 0], arms[..., 1]) / (2 * np.pi) + 0.5
     cross = arms[:, 0, 0] * arms[:, 1, 1] - arms[:, 0, 1] * arms[:, 1, 0]
     seen = np.flatnonzero(cross != 0)
     first, second = turns[seen].T
-    # Take the shorter way round.
+    # A segment spans less than half of the circle.
     gap = (second - first + 0.5) % 1.0 - 0.5
     spans = np.sort(np.stack([first, first + gap], axis=1), axis=1)
     twice = np.stack([spans - 1, spans, spans + 1], axis=1).reshape(-1, 2)

@@ -24,19 +24,18 @@ from .png import canvas_size, line_samples, png, png_of_samples
 from .raster import Triangles, in_front, raster
 from .svg import svg
 
-#: The tree of a picture of at most this many facets is built so that it cuts as few as it can,
-#: which takes long for more.
+#: A picture of at most this many facets uses the policy "least-splits", which is slow for more.
 _MAX_FACETS_LEAST_SPLITS = 3000
 
-#: The largest number of polygons of a picture that a notebook shows as SVG; it shows more as PNG.
+#: Notebooks show pictures of at most this many polygons as SVG, others as PNG.
 _MAX_SVG_POLYGONS = 5000
 
-#: The largest number of triangles that a tree orders for a PNG. For more a z-buffer finds what is
-#: seen. The tree takes 2.3 s of processor time for this many and the buffer 0.6 s; thirteen times
-#: as many take 47 s and 3.5 s.
+#: The largest number of triangles that a tree orders for a PNG; for more a z-buffer finds the
+#: visible triangles. The tree takes 2.3 s of processor time for this many and the z-buffer 0.6 s;
+#: thirteen times as many take 47 s and 3.5 s.
 _MAX_TRIANGLES_ORDERED = 100_000
 
-#: The largest coordinate. The coarsest lattice of a tree ends well below it.
+#: The largest coordinate of a scene. The coarsest lattice of a tree has a smaller range.
 _MAX_COORDINATE = 1e60
 
 #: The largest number of pixels along a side of a picture.
@@ -52,11 +51,11 @@ class Picture:
     painting : Painting
         Polygons in pixels, the farthest first.
     background : (3,) uint8 or None
-        None is transparent.
+        The colour of the background; None for transparent.
     line_width : float
-        Of drawn edges, in pixels.
+        The width of drawn edges, in pixels.
     samples : int
-        A pixel of a PNG is the mean of this many squared.
+        Each pixel of a PNG is the mean of `samples` × `samples` samples.
     """
 
     painting: Painting
@@ -66,12 +65,12 @@ class Picture:
 
     @cached_property
     def svg(self) -> str:
-        """The picture as SVG."""
+        """The picture as the text of an SVG file."""
         return svg(self.painting, self.background, self.line_width)
 
     @cached_property
     def png(self) -> bytes:
-        """The picture as a PNG file; needs Pillow."""
+        """The picture as the bytes of a PNG file; needs Pillow."""
         return png(self.painting, self.background, self.line_width, self.samples)
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -93,7 +92,7 @@ class Picture:
             raise FormatError(message, "unknown_format")
         write_file(path, [self.svg.encode() if ending == ".svg" else self.png])
 
-    # Notebooks request all forms at once; one is enough.
+    # Notebooks ask for all formats at once; only one returns something.
 
     def _repr_svg_(self) -> str | None:
         return None if self._is_large else self.svg
@@ -103,12 +102,12 @@ class Picture:
 
     @property
     def polygons(self) -> int:
-        """The number of polygons in it."""
+        """The number of polygons in the picture."""
         return len(self.painting.source)
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height in pixels."""
+        """The picture's width and height in pixels."""
         return self.painting.size
 
     @property
@@ -116,13 +115,13 @@ class Picture:
         return self.polygons > _MAX_SVG_POLYGONS
 
     def __repr__(self) -> str:
-        """Show the size of the picture."""
+        """Return a text with the width and height in pixels and the number of polygons."""
         width, height = self.size
         return f"Picture({width} x {height}, {self.polygons} polygons)"
 
 
 class _LargePicture(Picture):
-    """A picture of very many triangles, which a tree orders only for SVG.
+    """A picture of more than 100 000 triangles: a z-buffer makes the PNG, a tree only the SVG.
 
     Parameters
     ----------
@@ -140,13 +139,13 @@ class _LargePicture(Picture):
 
     @cached_property
     def painting(self) -> Painting:
-        """Polygons in pixels, the farthest first."""
+        """The polygons in pixels, the farthest first, ordered by a tree."""
         scene = self._scene
         return _ordered(_facets((scene.vertices, scene.faces)), None, scene.colours, self._settings)
 
     @cached_property
     def png(self) -> bytes:
-        """The picture as a PNG file; needs Pillow."""
+        """The picture as the bytes of a PNG file, by a z-buffer; needs Pillow."""
         settings = self._settings
         size = canvas_size(settings.frame, self.samples)
         line = line_samples(self.line_width, self.samples)
@@ -155,18 +154,18 @@ class _LargePicture(Picture):
 
     @property
     def polygons(self) -> int:
-        """The number of triangles."""
+        """The number of triangles of the scene."""
         return len(self._scene.faces)
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height in pixels."""
+        """The picture's width and height in pixels."""
         return self._settings.frame
 
 
 @dataclass(frozen=True)
 class _PictureSettings:
-    """The checked options of a picture."""
+    """The checked parameters of `picture`."""
 
     camera: Camera
     frame: tuple[int, int]
@@ -180,7 +179,7 @@ class _PictureSettings:
 
     @property
     def ways(self) -> dict[str, Any]:
-        """The options that select visible triangles and edges, by name."""
+        """The parameters that select visible triangles and edges, as arguments for `raster`."""
         return {name: getattr(self, name) for name in ("style", "edges", "crease", "cull")}
 
 
@@ -201,9 +200,9 @@ def picture(
 ) -> Picture:
     """Return a picture of facets in space by the painter's algorithm.
 
-    A later polygon is never behind one that it covers, even with cyclic overlaps and crossing
-    facets, since the tree cuts them. For a PNG of a mesh of more than 100 000 triangles, a z-buffer
-    finds the nearest triangle in each sample instead.
+    A polygon that is painted over another one is never behind it, even with cyclic overlaps and
+    crossing facets, since the tree cuts them. For a PNG of a mesh of more than 100 000 triangles, a
+    z-buffer finds the nearest triangle in each sample instead.
 
     Parameters
     ----------
@@ -213,17 +212,18 @@ def picture(
     view : str
         One of `View`; a parallel projection, scaled so that the whole scene is in the picture.
     camera : Camera, optional
-        Used instead of a view.
+        The camera to use instead of a named view.
     size : (int, int)
         Width and height in pixels.
     style : {"shaded", "hidden", "edges"}
-        Light on coloured facets and dark edges; white facets that hide black edges behind them; or
-        edges alone, hidden ones too.
+        "shaded": lit, coloured facets with dark edges. "hidden": white facets that hide the black
+        edges behind them. "edges": edges alone, hidden ones too.
     edges : {"feature", "all", "none"}
         The edges of facets to draw. "feature": edges of a single facet, edges bent by more than
         `crease`, and contours. Lines along which the tree cuts are never drawn.
     crease : float
-        Degrees between the normals of two facets.
+        The angle between the normals of two facets, in degrees, above which their edge is a
+        feature.
     colors : optional
         One colour, or one for each facet (for a mesh: face): "orange", "#ff8800", or red, green and
         blue as floats from 0 to 1 or whole numbers from 0 to 255, then of shape (3,) or (n, 3).
@@ -234,9 +234,9 @@ def picture(
         True to leave out facets that turn their minus side to the viewer. By default only for
         closed surfaces seen from outside their box, where these facets are hidden anyway.
     line_width : float
-        Of drawn edges, in pixels.
+        The width of drawn edges, in pixels.
     samples : int
-        A pixel of a PNG is the mean of this many squared.
+        Each pixel of a PNG is the mean of `samples` × `samples` samples.
 
     Returns
     -------
@@ -284,7 +284,7 @@ def picture(
 def _ordered(
     facets: Facets, tree: PartitionTree | None, base: ColourArray, settings: _PictureSettings
 ) -> Painting:
-    """Return the polygons of a scene from back to front."""
+    """Return the painting of facets, ordered from back to front by `tree` or by a new tree."""
     camera, style = settings.camera, settings.style
     front = facing(facets, camera)
     scene = Scene(facets, base, _drawn(facets, front, style, settings.edges, settings.crease))
@@ -308,9 +308,9 @@ def _camera(
 
 
 def _shapes_of(scene: Any) -> tuple[Facets, MeshArrays | None]:
-    """Return the facets of a scene; for a very large mesh, the mesh, too.
+    """Return the facets of a scene, and its mesh (vertices, faces) if it is very large, or None.
 
-    Such a mesh has no duplicate or unused vertices.
+    That mesh has no duplicate or unused vertices.
     """
     if isinstance(scene, PartitionTree):
         if scene.dimension != 3:
@@ -333,12 +333,12 @@ def _shapes_of(scene: Any) -> tuple[Facets, MeshArrays | None]:
 
 
 def _facets(mesh: MeshArrays) -> Facets:
-    """Return the triangles of a mesh."""
+    """Return the triangles of a mesh (vertices, faces) as `Facets`."""
     return Facets(mesh[0][mesh[1]].reshape(-1, 3), 3 * np.arange(len(mesh[1]) + 1))
 
 
 def _check_coordinates(triangles: FloatArray) -> None:
-    """Raise an error for coordinates whose products would overflow doubles."""
+    """Raise an error if a coordinate is not finite, or so large that products overflow doubles."""
     finite = np.isfinite(triangles).all(axis=(1, 2))
     if not finite.all():
         where = np.flatnonzero(~finite)[:10].tolist()
@@ -380,7 +380,7 @@ def _is_culled(facets: Facets, camera: Camera, style: Style) -> bool:
 
 
 def checked_size(size: Any) -> tuple[int, int]:
-    """Return width and height, or raise an error if they are no size of a picture."""
+    """Return a picture's width and height in pixels, or raise an error if they are out of range."""
     try:
         width, height = size
     except (TypeError, ValueError) as error:

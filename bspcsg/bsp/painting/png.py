@@ -1,4 +1,4 @@
-"""Paintings as PNG, painted with Pillow from back to front."""
+"""Write paintings as PNG, painted with Pillow from back to front."""
 
 import io
 from itertools import pairwise
@@ -15,25 +15,24 @@ from .painting import Painting
 if TYPE_CHECKING:
     from PIL import Image, ImageDraw
 
-#: The largest number of pixels of the canvas on which a picture is painted before samples are
-#: averaged: about a gigabyte.
+#: The largest number of samples of a picture, before they are averaged to pixels: about a gigabyte.
 _MAX_CANVAS_PIXELS = 300_000_000
 
 _INK = (26, 28, 32)
 
 
 def png(painting: Painting, background: ColourArray | None, line: float, samples: int) -> bytes:
-    """Return the bytes of a PNG file.
+    """Return a painting as the bytes of a PNG file.
 
     Parameters
     ----------
     painting : Painting
     background : (3,) uint8, optional
-        Transparent if left out.
+        The colour of the background; None for transparent.
     line : float
-        Width of edges in pixels.
+        The width of edges, in pixels.
     samples : int
-        Each pixel is the mean of this many squared.
+        Each pixel is the mean of `samples` × `samples` samples.
     """
     buffer = io.BytesIO()
     image(painting, background, line, samples).save(buffer, "PNG", optimize=True)
@@ -43,7 +42,7 @@ def png(painting: Painting, background: ColourArray | None, line: float, samples
 def image(
     painting: Painting, background: ColourArray | None, line: float, samples: int
 ) -> "Image.Image":
-    """Return the pixels; parameters are those of `png`."""
+    """Return a painting as a Pillow image; parameters are those of `png`."""
     pillow = _pillow()
     large = canvas_size(painting.size, samples)
     back = (0, 0, 0, 0) if background is None else tuple(background.tolist())
@@ -59,7 +58,7 @@ def png_of_samples(
     background: ColourArray | None,
     samples: int,
 ) -> bytes:
-    """Return the bytes of a PNG file, given the content of each sample (see `raster`)."""
+    """Return the bytes of a PNG file, given each sample's triangle and ink (see `raster`)."""
     pillow = _pillow()
     if background is None:
         cover = ((nearest >= 0) | ink).astype(np.uint8) * 255
@@ -75,7 +74,7 @@ def png_of_samples(
 
 
 def canvas_size(size: tuple[int, int], samples: int) -> tuple[int, int]:
-    """Return the number of samples across and down, checked against the limit."""
+    """Return the numbers of samples across and down, or raise an error if they are too many."""
     width, height = size
     if width * height * samples**2 > _MAX_CANVAS_PIXELS:
         message = (
@@ -88,14 +87,14 @@ def canvas_size(size: tuple[int, int], samples: int) -> tuple[int, int]:
 
 
 def line_samples(line: float, samples: int) -> int:
-    """Return the width of lines in samples."""
+    """Return the width of lines, given in pixels, as a number of samples."""
     return max(1, round(line * samples))
 
 
 def _reduced(canvas: "Image.Image", samples: int) -> "Image.Image":
-    """Return a picture whose pixels are the means of samples."""
+    """Return an image whose pixels are the means of `samples` × `samples` pixels of the canvas."""
     if canvas.mode == "RGBA":
-        # Premultiplied opacity gives correct means at the border of transparent areas.
+        # Means are correct at the border of transparent areas only with premultiplied opacity.
         return canvas.convert("RGBa").reduce(samples).convert("RGBA")
     return canvas.reduce(samples)
 
@@ -125,7 +124,7 @@ def _paint(draw: "ImageDraw.ImageDraw", painting: Painting, width: int, samples:
         if fills is not None:
             corners = flat[2 * start : 2 * end]
             draw.polygon(corners, fill=fills[index])
-            # Rounding separates a border from a neighbouring one with more corners.
+            # The outline closes the gaps that rounding leaves between neighbouring polygons.
             draw.line(corners + corners[:2], fill=fills[index])
         for ends in lines.get(index, ()):
             _line(draw, ends, width)
@@ -134,7 +133,7 @@ def _paint(draw: "ImageDraw.ImageDraw", painting: Painting, width: int, samples:
 
 
 def _line(draw: "ImageDraw.ImageDraw", ends: list[float], width: int) -> None:
-    """Draw a line with round ends, so that lines that meet leave no notch."""
+    """Draw a line with round ends, so that lines with a common end leave no notch."""
     draw.line(ends, fill=_INK, width=width)
     if width > 2:
         half = (width - 1) / 2

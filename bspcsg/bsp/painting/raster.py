@@ -1,8 +1,8 @@
-"""Pictures of very many triangles by a z-buffer: the nearest triangle at the centre of each sample.
+"""Pictures of more than 100 000 triangles by a z-buffer: the nearest triangle of each sample.
 
 A tree that cuts a million triangles takes most of a minute; a z-buffer needs no order of triangles.
-Borders are half-open, and both triangles of an edge use the same arithmetic for it, so that no
-sample between neighbours is lost or covered twice.
+Triangles are half-open, and both triangles of an edge use the same arithmetic for it, so that each
+sample near the edge belongs to exactly one of them.
 
 References
 ----------
@@ -20,14 +20,14 @@ from .camera import Camera
 from .colours import ColourArray, lit
 from .painting import EDGE_ON, Edges, Style
 
-#: The largest number of samples, or of rows of triangles, that are computed together: each array
-#: then takes some megabytes.
+#: The largest number of samples, or of rows of triangles, in one array, which then takes about ten
+#: megabytes.
 _MAX_SAMPLES_PER_BATCH = 1 << 20
 
 
 @dataclass(frozen=True, eq=False)
 class Triangles:
-    """Triangles with common vertices, and their appearance.
+    """Triangles with common vertices and one colour each.
 
     Parameters
     ----------
@@ -42,28 +42,29 @@ class Triangles:
 
     @cached_property
     def areas(self) -> FloatArray:
-        """Normals with length twice the area, (m, 3)."""
+        """The normal of each triangle with length twice its area, (m, 3) float64."""
         a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
         (px, py, pz), (qx, qy, qz) = (b - a).T, (c - a).T
         return np.stack([py * qz - pz * qy, pz * qx - px * qz, px * qy - py * qx], axis=1)
 
     @cached_property
     def normals(self) -> FloatArray:
-        """Unit normals, (m, 3); zero for triangles without area."""
+        """The unit normal of each triangle, (m, 3) float64; zero for triangles without area."""
         lengths = np.sqrt(np.einsum("ij,ij->i", self.areas, self.areas))
         normals: FloatArray = self.areas / np.where(lengths > 0, lengths, 1)[:, None]
         return normals
 
     def facing(self, camera: Camera) -> BoolArray:
-        """Return which triangles turn their plus side to the viewer, (m,)."""
+        """Return which triangles turn their plus side to the viewer, (m,) bool."""
         front: BoolArray = camera.facing(self.vertices[self.faces[:, 0]], self.normals) > EDGE_ON
         return front
 
     @cached_property
     def _joints(self) -> tuple[IndexArray, BoolArray]:
-        """The half-edges, sorted so that those of one edge are consecutive.
+        """The half-edges, sorted so that the half-edges of one edge are consecutive.
 
-        Also returns which half-edges are the first of exactly two opposite ones.
+        The second array is true for a half-edge that is the first of exactly two, opposite ones of
+        an edge.
         """
         start, end = self.faces.ravel(), self.faces[:, [1, 2, 0]].ravel()
         keys = np.minimum(start, end) * len(self.vertices) + np.maximum(start, end)
@@ -75,7 +76,7 @@ class Triangles:
 
     @property
     def is_closed(self) -> bool:
-        """True if all edges belong to two triangles, and the volume is positive."""
+        """True if each edge belongs to exactly two triangles, and the volume is positive."""
         _, is_first = self._joints
         if 2 * np.count_nonzero(is_first) != self.faces.size:
             return False
@@ -83,7 +84,7 @@ class Triangles:
         return float(np.einsum("ij,ij->", firsts, self.areas)) > 0
 
     def edges(self, front: BoolArray, edges: Edges, crease: float) -> IndexArray:
-        """Return the edges to draw as pairs of vertices, (k, 2), like `Facets.features`.
+        """Return the edges to draw as pairs of vertices, (k, 2) int64, by the rules of `picture`.
 
         Parameters
         ----------
@@ -111,26 +112,26 @@ class Triangles:
 
 
 class Buffer:
-    """The z-buffer: the nearest triangle of each sample.
+    """A z-buffer: the depth and the index of the nearest triangle in each sample.
 
     Parameters
     ----------
     camera : Camera
     size : (int, int)
-        Samples across and down.
+        The numbers of samples across and down.
     """
 
     def __init__(self, camera: Camera, size: tuple[int, int]) -> None:
         self._camera = camera
         self.width, self.height = size
         self._depths = np.full(self.width * self.height, np.inf)
-        #: The triangle that is nearest in each sample, -1 for none.
+        #: The index of the nearest triangle in each sample, -1 for none.
         self.nearest = np.full(self.width * self.height, -1, dtype=np.int64)
 
     def placed(self, vertices: FloatArray) -> FloatArray:
-        """Return columns, rows and depths of points, (n, 3); integers are centres of samples.
+        """Return the column, row and depth of each point, (n, 3); integers are centres of samples.
 
-        Depths grow away from the viewer, and are linear on planes in picture coordinates.
+        Depths grow away from the viewer, and depend linearly on column and row within a plane.
         """
         placed = self._camera.place(vertices)
         image = self._camera.flatten(placed) * (self.height / 2)
@@ -139,25 +140,25 @@ class Buffer:
         return np.column_stack([across, self.height / 2 - image[:, 1] - 0.5, depth])
 
     def fill(self, placed: FloatArray, faces: IndexArray, chosen: IndexArray) -> None:
-        """Draw the chosen triangles where nothing is nearer."""
+        """Draw the chosen triangles in the samples in which no nearer triangle is drawn."""
         for some in _shares(self._rows(placed, faces[chosen]), _MAX_SAMPLES_PER_BATCH):
             self._fill(placed, faces, chosen[some])
 
     def _rows(self, placed: FloatArray, faces: IndexArray) -> IndexArray:
-        """Return the number of rows of samples that each triangle meets."""
+        """Return the number of rows of samples that each triangle covers."""
         down = placed[:, 1][faces]
         first, last = self._span(down.min(axis=1), down.max(axis=1), self.height)
         return last - first
 
     @staticmethod
     def _span(low: FloatArray, high: FloatArray, end: int) -> tuple[IndexArray, IndexArray]:
-        """Return the integers in half-open intervals, clipped to the range from 0 to an end."""
+        """Return the first integer and the end of half-open intervals, clipped to 0 … `end`."""
         first, last = (np.ceil(np.clip(x, 0, end)).astype(np.int64) for x in (low, high))
         return first, np.maximum(first, last)
 
     def _fill(self, placed: FloatArray, faces: IndexArray, chosen: IndexArray) -> None:
         corners = placed[faces[chosen]]
-        # The lowest corner first, so that an edge runs the same way for both of its triangles.
+        # Sort corners by row, so that both triangles of an edge compute it from the same end.
         order = np.argsort(corners[:, :, 1], axis=1, kind="stable")
         (x0, y0, z0), (x1, y1, z1), (x2, y2, z2) = (
             np.take_along_axis(corners, order[:, k, None, None], axis=1)[:, 0].T for k in range(3)
@@ -196,12 +197,12 @@ class Buffer:
         self.nearest[samples[is_nearest]] = triangles[is_nearest]
 
     def lines(self, ends: FloatArray) -> BoolArray:
-        """Return the samples in which lines are visible, (height, width).
+        """Return the samples in which lines are visible, (height, width) bool.
 
         Parameters
         ----------
         ends : (k, 2, 3) float64
-            As `placed` returns them.
+            The ends of the lines as column, row and depth, as from `placed`.
         """
         marked = np.zeros(self.width * self.height, dtype=bool)
         behind = self._farthest_around()
@@ -220,7 +221,7 @@ class Buffer:
         return marked.reshape(self.height, self.width)
 
     def _framed(self, ends: FloatArray) -> FloatArray:
-        """Return the parts of lines that are in the picture."""
+        """Return the parts of lines that are in the picture, (k, 2, 3)."""
         start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
         first, last = np.zeros(len(ends)), np.ones(len(ends))
         for axis, extent in ((0, self.width), (1, self.height)):
@@ -235,7 +236,7 @@ class Buffer:
         return framed
 
     def _farthest_around(self) -> FloatArray:
-        """Return for each sample the greatest depth of it and its neighbours."""
+        """Return for each sample the greatest depth among it and its eight neighbours."""
         depths = self._depths.reshape(self.height, self.width)
         padded = np.pad(depths, 1, mode="edge")
         wide = np.maximum(np.maximum(padded[:, :-2], padded[:, 1:-1]), padded[:, 2:])
@@ -254,27 +255,27 @@ def raster(
     cull: bool | None,
     line: int,
 ) -> tuple[IndexArray, ColourArray, BoolArray]:
-    """Return the content of each sample.
+    """Return the visible triangle and the edges at each sample of a picture.
 
     Parameters
     ----------
     scene : Triangles
     camera : Camera
     size : (int, int)
-        Samples across and down.
+        The numbers of samples across and down.
     style, edges, crease, cull
         As for `picture`.
     line : int
-        Width of edges in samples.
+        The width of edges, in samples.
 
     Returns
     -------
     nearest : (height, width) int64
-        The visible triangle, -1 for none.
+        The index of the visible triangle, -1 for none.
     fills : (m, 3) uint8
-        The shaded colours of triangles.
+        The shaded colour of each triangle.
     ink : (height, width) bool
-        True where edges are.
+        True for samples on drawn edges.
     """
     buffer = Buffer(camera, size)
     placed = buffer.placed(scene.vertices)
@@ -293,7 +294,7 @@ def raster(
 
 
 def in_front(points: FloatArray, camera: Camera) -> bool:
-    """Say whether all points are in front of the eye, so that no clipping is needed."""
+    """Return true if all points are in front of the eye, or the projection is parallel."""
     return not camera.is_perspective or bool((camera.place(points)[:, 2] > 0).all())
 
 
@@ -307,7 +308,7 @@ def _hides_its_back(scene: Triangles, camera: Camera) -> bool:
 
 
 def _thickened(marked: BoolArray, width: int) -> BoolArray:
-    """Return marks thickened to discs of a width."""
+    """Return the marked samples, each thickened to a disc `width` samples wide."""
     reach = (width - 1) / 2
     thick = marked.copy()
     far = int(np.ceil(reach))
@@ -320,7 +321,7 @@ def _thickened(marked: BoolArray, width: int) -> BoolArray:
 
 
 def _shifted(down: int, across: int) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
-    """Return the target and source slices for shifting an array."""
+    """Return the target and the source slices that shift an array by rows and columns."""
     steps = down, across
     to = tuple(slice(max(step, 0), min(step, 0) or None) for step in steps)
     of = tuple(slice(max(-step, 0), min(-step, 0) or None) for step in steps)
@@ -328,21 +329,21 @@ def _shifted(down: int, across: int) -> tuple[tuple[slice, ...], tuple[slice, ..
 
 
 def _slopes(rise: FloatArray, run: FloatArray) -> FloatArray:
-    """Return quotients, and 0 for division by zero, where no sample needs it."""
+    """Return rise / run, or 0 where the quotient is not finite; such values are never used."""
     with np.errstate(all="ignore"):
         slopes = rise / run
     return np.where(np.isfinite(slopes), slopes, 0.0)
 
 
 def _expanded(counts: IndexArray) -> tuple[IndexArray, IndexArray]:
-    """Return the row of each item, and its number in the row, given the counts of rows."""
+    """Return for each item the index of its row and its number in the row, given row lengths."""
     owner = np.repeat(np.arange(len(counts)), counts)
     starts = np.cumsum(counts) - counts
     return owner, np.arange(len(owner)) - starts[owner]
 
 
 def _shares(counts: IndexArray, most: int) -> Iterator[slice]:
-    """Yield consecutive ranges of rows whose counts add up to about `most`."""
+    """Yield consecutive slices of rows whose counts add up to at most `most`, or single rows."""
     ends = np.cumsum(counts)
     start = 0
     while start < len(counts):

@@ -1,4 +1,4 @@
-"""Paintings as SVG: one path for each coplanar set, without the lines of the cuts."""
+"""Write paintings as SVG: one path for each coplanar set, without the lines of the tree's cuts."""
 
 from itertools import groupby, pairwise
 
@@ -11,25 +11,25 @@ from .colours import ColourArray
 from .outline import Spot, Step, outlines, polylines, straightened
 from .painting import Painting
 
-#: Grid points in a pixel: coordinates are whole numbers in the file.
+#: The number of grid points in a pixel: coordinates in the file are integers of this grid.
 _GRID = 50
 
-#: Fills reach half of this many pixels over their border, which hides the seams of the cuts.
+#: The line width, in pixels, with which polygons are stroked in their own colour, to hide seams.
 _SEAM = 0.7
 
 _INK = "#1a1c20"
 
 
 def svg(painting: Painting, background: ColourArray | None, line: float) -> str:
-    """Return the text of an SVG file.
+    """Return a painting as the text of an SVG file.
 
     Parameters
     ----------
     painting : Painting
     background : (3,) uint8, optional
-        Transparent if left out.
+        The colour of the background; None for transparent.
     line : float
-        Width of edges in pixels.
+        The width of edges, in pixels.
     """
     width, height = painting.size
     head = (
@@ -72,7 +72,7 @@ def _spots(points: FloatArray) -> list[Spot]:
 
 
 def _turned(polygon: list[Spot]) -> list[Spot]:
-    """Return a polygon, reversed if its area is negative."""
+    """Return the polygon with positive area: itself or reversed."""
     pairs = zip(polygon, polygon[1:] + polygon[:1], strict=True)
     area = sum(ax * by - ay * bx for (ax, ay), (bx, by) in pairs)
     return polygon if area >= 0 else polygon[::-1]
@@ -90,7 +90,7 @@ def _drawn(steps: list[Step]) -> list[str]:
 
 
 def _relative(spots: list[Spot]) -> str:
-    """Return the path commands to the first spot and relatively from each spot to the next."""
+    """Return the path commands that go to the first point and then relatively to each next."""
     (x, y), *_ = spots
     steps = [(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(spots)]
     return f"M{x},{y}l" + " ".join(f"{dx},{dy}" for dx, dy in steps)

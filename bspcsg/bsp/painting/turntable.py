@@ -1,4 +1,4 @@
-"""Sequences of pictures as an animated GIF."""
+"""Write a sequence of pictures as an animated GIF."""
 
 import io
 from collections.abc import Iterable
@@ -6,19 +6,19 @@ from collections.abc import Iterable
 from .picture import Picture
 from .png import image
 
-#: The shortest time for which browsers show a picture, in milliseconds.
+#: The shortest time for which browsers show a frame, in milliseconds.
 _MIN_FRAME_MILLISECONDS = 20
 
 
 def gif(pictures: Iterable[Picture], seconds: float) -> bytes:
-    """Return the bytes of a GIF file that repeats endlessly.
+    """Return the pictures as the bytes of an animated GIF file that repeats endlessly.
 
     Parameters
     ----------
     pictures : iterable of Picture
-        Of one size.
+        Pictures of equal width and height.
     seconds : float
-        Total duration.
+        The duration of one round of all pictures.
 
     Raises
     ------
@@ -29,7 +29,7 @@ def gif(pictures: Iterable[Picture], seconds: float) -> bytes:
     from PIL import Image
 
     palette = frames[0].convert("RGB").quantize(255)
-    # Use one common palette: with one for each picture, the GIF is larger and flickers.
+    # With a palette for each picture, the GIF would be larger and flicker.
     flat = [
         frame.convert("RGB").quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames
     ]

@@ -1,1 +1,1 @@
-"""Rays: exact hits, and trees that adapt to the queries."""
+"""Ray casting: exact hits of rays with facets, and trees that adapt to the rays."""

@@ -1,4 +1,4 @@
-"""Trees of supporting hyperplanes for ray casting: self-organising ones, and static ones."""
+"""Trees over facets for ray casting: `AdaptiveTree` grows with the rays, `StaticTree` does not."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -21,17 +21,19 @@ from .trace import LeafDivision, StabNodes, StabTrace, stab_nodes, stab_step
 
 @dataclass(frozen=True, eq=False)
 class Tests:
-    """First hits of rays, and the cost of each ray.
+    """The first hits of rays, and the numbers of nodes and facets that each ray visited.
 
     Parameters
     ----------
     hits : Hits
     nodes : (n,) int64
-        Nodes that the ray visited, leaves among them: the cost C(T) of the lecture notes.
+        The number of inner nodes and leaves that the ray visited: the cost C(T) of the lecture
+        notes.
     leaves : (n,) int64
-        Leaves among them: the stabbed leaves.
+        The number of leaves that the ray visited (stabbed).
     tests : (n,) int64
-        Facets against which the ray was tested; in long lists only those whose boxes it meets.
+        The number of facets against which the ray was tested; in lists of more than 4096 facets
+        only those whose boxes it meets.
     """
 
     __test__ = False  # not a test class
@@ -44,20 +46,21 @@ class Tests:
 
 @dataclass(frozen=True)
 class StabStats:
-    """The size of a tree and its counters.
+    """The numbers of nodes and fragments of a tree, and its counters of rays and visits.
 
     Parameters
     ----------
     nodes, leaves, depth : int
-        Inner nodes and leaves; leaves; the most cuts above a leaf.
+        The number of inner nodes and leaves together; the number of leaves; the largest number of
+        cuts on the path to a leaf.
     fragments : int
-        Facets and parts of facets in the tree, in leaves and in cuts.
+        The number of facets and parts of facets in leaves and in cuts.
     subdivisions : int
-        Leaves divided so far.
+        The number of leaves that have been divided.
     rays : int
-        Rays tested so far.
+        The number of rays that have been tested.
     visits : int
-        Sum of the visit counters T(v) of all nodes.
+        The sum of the visit counters T(v) of all nodes.
     """
 
     nodes: int
@@ -70,55 +73,55 @@ class StabStats:
 
 
 class StabTree:
-    """The base class of both kinds of trees; make an `AdaptiveTree` or a `StaticTree`."""
+    """The base class of `AdaptiveTree` and `StaticTree`, which are the ones to construct."""
 
     _facets: RayTargets
     _tree: RayTree
     _threshold: int | None = None
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        """Pickle facets, cuts and all counters; copies use this, too, and grow independently."""
+        """Return facets, cuts and counters for pickling and copying; copies grow independently."""
         with core_errors():
             grown = self._tree.dump()
         return _regrown, (type(self), self._facets, self.pitch, self._threshold, grown)
 
     @property
     def dimension(self) -> int:
-        """1, 2 or 3."""
+        """The dimension of the facets: 1, 2 or 3."""
         return self._facets.dimension
 
     @property
     def pitch(self) -> int:
-        """The lattice step is ``10**pitch`` units."""
+        """The exponent of the lattice step, which is ``10**pitch`` model units."""
         return self._tree.pitch
 
     def __len__(self) -> int:
-        """Return the number of nodes."""
+        """Return the number of inner nodes and leaves."""
         return self.stats().nodes
 
     def __repr__(self) -> str:
-        """Show the size of the tree."""
+        """Return a text with the numbers of nodes and fragments."""
         stats = self.stats()
         return f"{type(self).__name__}({stats.nodes} nodes, {stats.fragments} fragments)"
 
     def stats(self) -> StabStats:
-        """Return the size of the tree and its counters."""
+        """Return the numbers of nodes and fragments, and the counters of rays and visits."""
         return StabStats(**self._tree.stats())
 
     @property
     def nodes(self) -> StabNodes:
-        """The nodes as they are now: T(v), L(v) and T(p), S(v), hyperplanes, children."""
+        """A snapshot of the nodes: counters T(v) and T(p), lists L(v) and S(v), cuts, children."""
         with core_errors():
             return stab_nodes(self._tree.nodes())
 
     def trace(self) -> tuple[LeafDivision, ...]:
-        """Return the divisions that made the tree, in order."""
+        """Return the divisions of leaves that made the tree, in order."""
         return self.nodes.divisions
 
     def trace_ray(self, origin: Any, direction: Any) -> StabTrace:
         """Test one ray like `test_ray`, and return each step of its path.
 
-        Like every ray, it counts and may make the tree grow.
+        The ray increments the counters, and may make an `AdaptiveTree` grow.
 
         Parameters
         ----------
@@ -137,7 +140,7 @@ class StabTree:
         return StabTrace(hits_of(self._facets, columns), nodes, leaves, tests, steps)
 
     def region(self, node: int, margin: float | None = None) -> RegionShape:
-        """Return R(v) within the box of the facets, grown by a margin.
+        """Return the region R(v) of a node, clipped to the facets' box enlarged by a margin.
 
         Parameters
         ----------
@@ -148,7 +151,8 @@ class StabTree:
         Returns
         -------
         (2,) float64, (k, 2) float64 or list of (k, 3) float64
-            As of `PartitionTree.region`, the corners rounded from exact ones.
+            Ends, corners or faces as from `PartitionTree.region`; exact corners, rounded to
+            doubles.
         """
         reach = self._margin() if margin is None else not_negative(margin, "margin")
         return region_of(self.nodes, node, self._facets.corners, self.pitch, reach)
@@ -165,7 +169,7 @@ class StabTree:
         Raises
         ------
         InvalidParameterError
-            If a leaf holds several facets; let more rays divide it, or make a `StaticTree`.
+            If a leaf stores several facets; cast more rays to divide it, or make a `StaticTree`.
         """
         tree = PartitionTree(
             self._facets.corners.reshape(-1) if self.dimension == 1 else self._facets.corners,
@@ -179,8 +183,8 @@ class StabTree:
     def test_ray(self, origins: Any, directions: Any) -> Tests:
         """Return the first hit and the cost of each ray, in the given order.
 
-        Answers equal those of `RayCaster.first_hit` on the same lattice. All rays are checked
-        before the first is tested.
+        Hits equal those of `RayCaster.first_hit` on the same lattice. All rays are checked before
+        the first is tested.
 
         Parameters
         ----------
@@ -200,18 +204,18 @@ class StabTree:
 
 
 class AdaptiveTree(StabTree):
-    """The augmented, self-organising BSP tree.
+    """A BSP tree over facets that divides its leaves where rays visit them often.
 
     It starts as one preliminary leaf v with all facets in its list L(v). Each ray increments the
     visits T(v) of nodes and, in the leaves it visits, the hits T(p) of facets. A leaf visited more
     than `threshold` times is divided by the hyperplane of the facet with most hits (L(v) is a heap;
-    ties go to the first of the input). The other facets are split exactly, and the parts of a split
-    facet inherit its counter. So facets that are hit often move to the top.
+    ties go to the first of the input). The other facets of the leaf are split exactly, and the
+    parts of a split facet inherit its counter. So facets that are hit often are near the root.
 
     Threads can share an object and cast rays concurrently; they wait for each other only to count
-    hits and to divide a leaf. The growth of the tree depends on the order of rays, the answers do
-    not. In lists of more than 4096 facets, only those whose boxes a ray meets are tested. Pickles
-    and copies keep the tree with its counters, and continue to grow from there.
+    hits and to divide a leaf. The growth of the tree depends on the order of rays; hits do not. In
+    lists of more than 4096 facets, only those whose boxes a ray meets are tested. Pickles and
+    copies keep the tree with its counters, and continue to grow from there.
 
     Parameters
     ----------
@@ -255,10 +259,10 @@ class AdaptiveTree(StabTree):
 
 
 class StaticTree(StabTree):
-    """An autopartition made at once and never changed by rays.
+    """An autopartition that is built completely at once and that rays do not change.
 
-    Every leaf keeps at most one facet (several only in the coplanar set of a cut), and each cut is
-    the hyperplane of the first facet of the order that is left in its region.
+    Every leaf stores at most one facet; only the coplanar set of a cut may have several. Each cut
+    is the hyperplane of the facet in its region that comes first in the order.
 
     Parameters
     ----------
@@ -271,7 +275,7 @@ class StaticTree(StabTree):
     pitch : int, optional
         As for `AdaptiveTree`.
     max_nodes : int
-        The construction stops with an error beyond this.
+        The largest number of nodes; the construction raises an error if the tree needs more.
 
     Raises
     ------
@@ -306,12 +310,15 @@ class StaticTree(StabTree):
             )
 
 
-#: No limit on nodes: memory does not hold as many.
+#: A number of nodes that does not fit in memory, for no limit.
 _UNLIMITED = 2**62
 
 
 def _pivots(nodes: StabNodes) -> Iterator[int]:
-    """Yield the facet of each cut in preorder, one for each region that has facets."""
+    """Yield the facet of each cut of the equal `PartitionTree`, in preorder.
+
+    A leaf's only facet is such a cut, too; a leaf with several facets is an error.
+    """
     pending = [0]
     while pending:
         node = pending.pop()

@@ -1,4 +1,4 @@
-"""Exact ray casting at points, segments and triangles."""
+"""Exact casting of rays at points, segments and triangles."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
@@ -20,24 +20,28 @@ MISS, INTERIOR, EDGE, VERTEX = -1, 0, 1, 2
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """The hits of rays, one row for each ray (or for each hit of `RayCaster.all_hits`).
+    """The hits of rays with facets: one row for each ray, or for each hit of `RayCaster.all_hits`.
 
     Parameters
     ----------
     facet : (n,) int64
-        Index of the facet, -1 where the ray meets none.
+        The index of the facet that the ray meets, -1 if it meets none.
     t : (n,) float64
-        The point is ``origin + t * direction``; the exact number rounded correctly; inf for none.
+        The hit point is ``origin + t * direction``; the exact t rounded correctly; inf without a
+        hit.
     kind : (n,) int8
-        0 in the facet's interior, 1 on an edge, 2 in a vertex (in 2D an end), -1 for none. Exact.
+        0 for a hit in the facet's interior, 1 on an edge, 2 in a vertex (in 2D an end), -1 without
+        a hit. Exact.
     weights : (n, d) float64
-        Barycentric coordinates in the facet, rounded correctly, 0.0 exactly where they are zero.
+        The hit point's barycentric coordinates in the facet, rounded correctly; exact zeros are
+        0.0.
     point : (n, d) float64
-        The point, from the weights: within a few units in the last place of the facet's corners.
+        The hit point in model units, from the weights: within a few units in the last place of the
+        facet's corners.
     normal : (n, d) float64
         The facet's unit normal: by the right-hand rule in 3D, to the right of a segment in 2D.
     source : (n, 2) int64 or None
-        Input mesh and face, if the caster was made from a `Solid`.
+        The input mesh and face of the facet, if the caster was made from a `Solid`.
     """
 
     facet: IndexArray
@@ -54,11 +58,11 @@ class Hits:
 
     @property
     def hit(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        """True where a ray meets a facet, (n,) bool."""
+        """Whether each ray meets a facet, (n,) bool."""
         return self.facet >= 0
 
     def __getitem__(self, rows: Any) -> "Hits":
-        """Return some of the rows, by a slice, a mask or an index array."""
+        """Return the rows that a slice, a mask or an index array selects."""
         columns = {field.name: getattr(self, field.name) for field in fields(self)}
         taken: dict[str, Any] = {
             name: None if c is None else c[rows] for name, c in columns.items()
@@ -68,7 +72,7 @@ class Hits:
 
 @dataclass(frozen=True, eq=False)
 class HitLists:
-    """All hits of each ray in order.
+    """All hits of each ray, ordered by t.
 
     Parameters
     ----------
@@ -90,24 +94,24 @@ class HitLists:
         return self.hits[self.offsets[start] : self.offsets[start + 1]]
 
     def __iter__(self) -> Iterator[Hits]:
-        """Yield the hits of each ray."""
+        """Yield the hits of each ray in turn."""
         return (self[i] for i in range(len(self)))
 
 
 @dataclass(frozen=True, eq=False)
 class InsideSpans:
-    """The stretches of rays inside a closed boundary.
+    """The intervals of rays that lie inside a closed boundary.
 
     Parameters
     ----------
     offsets : (n + 1,) int64
-        The stretches of ray i are rows ``offsets[i]`` to ``offsets[i + 1]``.
+        The intervals of ray i are the rows ``offsets[i]:offsets[i + 1]``.
     t : (k, 2) float64
-        Start and end of each, rounded correctly; 0 where the ray starts inside, infinite
-        where it stays there.
+        The start and end t of each interval, rounded correctly; the start is 0 if the ray starts
+        inside, the end is inf if it stays inside.
     facets : (k, 2) int64
-        The facets there, the first of the input if there are several; -1 where the ray starts
-        inside or stays there.
+        The facets at the start and end, the first of the input if there are several; -1 if the ray
+        starts inside or stays inside.
     """
 
     offsets: IndexArray
@@ -119,16 +123,16 @@ class InsideSpans:
         return len(self.offsets) - 1
 
     def __getitem__(self, ray: int) -> FloatArray:
-        """Return the stretches of one ray, (k, 2)."""
+        """Return the intervals of one ray as rows (start t, end t), (k, 2) float64."""
         start = range(len(self))[ray]
         return self.t[self.offsets[start] : self.offsets[start + 1]]
 
     def __iter__(self) -> Iterator[FloatArray]:
-        """Yield the stretches of each ray."""
+        """Yield the intervals of each ray in turn, (k, 2) float64."""
         return (self[i] for i in range(len(self)))
 
     def lengths(self) -> FloatArray:
-        """Return the total length inside for each ray, in lengths of its direction, (n,)."""
+        """Return the total length of each ray inside, in lengths of its direction vector, (n,)."""
         rays = np.repeat(np.arange(len(self)), np.diff(self.offsets))
         lengths = np.zeros(len(self))
         np.add.at(lengths, rays, self.t[:, 1] - self.t[:, 0])
@@ -137,20 +141,21 @@ class InsideSpans:
 
 @dataclass(frozen=True, eq=False)
 class CasterNodes:
-    """The nodes of a `RayCaster` that rays have reached; deferred nodes are not divided yet.
+    """The nodes of a `RayCaster`'s hierarchy of boxes that rays have reached.
 
     Parameters
     ----------
     low, high : (n, d) float64
-        The box of each node, in model units. Boxes of neighbours may overlap.
+        The minimum and maximum corner of each node's box, in model units. Boxes of neighbours may
+        overlap.
     parent : (n,) int64
-        The node above, -1 for the root; a node has up to eight below it.
+        The parent node, -1 for the root; a node has up to eight children.
     deferred : (n,) bool
-        True if the boxes below have not been divided yet.
+        True if the node is to be divided when a ray reaches it.
     offsets : (n + 1,) int64
         Leaf v lists ``facets[offsets[v]:offsets[v + 1]]``.
     facets : (k,) int64
-        Each facet is in the list of one leaf, whose box is around it.
+        The facets of all leaves; each facet is listed in one leaf, whose box contains it.
     """
 
     low: FloatArray
@@ -165,36 +170,38 @@ class CasterNodes:
         return len(self.parent)
 
     def held(self, node: int) -> IndexArray:
-        """Return the facets that a leaf lists."""
+        """Return the facets that a leaf lists; empty for an inner node."""
         at = range(len(self))[node]
         return self.facets[self.offsets[at] : self.offsets[at + 1]]
 
 
 class RayCaster:
-    """Facets that rays can be cast at, in one, two or three dimensions.
+    """A set of points, segments or triangles at which rays can be cast, with exact hits.
 
-    Facets are snapped to a lattice, as those of a solid are; facets without extent there are never
-    hit. A ray's origin is snapped to the same lattice; its direction is taken as it is, bit by bit
-    (but components more than 2**60 times smaller than the largest are rounded to 2**-113 of it).
-    After that every answer is exact: facets are closed sets, a ray never slips through an edge or a
-    vertex of a closed mesh, and of several facets at one point the first of the input is reported.
-    A ray in the plane of a facet hits it at their first common point.
+    Facets are snapped to a lattice, as those of a solid are; facets without extent on the lattice
+    are never hit. A ray's origin is snapped to the same lattice; its direction is taken as it is,
+    bit by bit (but components more than 2**60 times smaller than the largest are rounded to 2**-113
+    of it). After that every hit is exact: facets are closed sets, a ray never slips through an edge
+    or a vertex of a closed mesh, and of several facets at one point the first of the input is
+    reported. A ray in the plane of a facet hits it at their first common point.
 
     The hierarchy of boxes over the facets grows where rays go. Neither its shape nor the order of
-    rays affects an answer. Similar rays are traced in bundles that share their path down the
-    hierarchy. Threads can share an object, and answers are bitwise equal for any number of threads.
+    rays affects a hit. Similar rays are traced in bundles that share their path down the hierarchy.
+    Threads can share an object, and hits are bitwise equal for any number of threads.
 
     Parameters
     ----------
     facets : array_like, Solid, or mesh
         ``(n,)`` for points of the line, ``(n, 2, 2)`` for segments of the plane, ``(n, 3, 3)`` for
-        triangles; a `Solid` (its reduced boundary, which must be finite; that of the complement of
-        a bounded solid is); a *tuple* ``(vertices, faces)``; or what `Solid.from_mesh` takes. A
-        mesh need not be closed, but for `intervals`.
+        triangles; a `Solid` (its reduced boundary, which must be finite, as it is for a bounded
+        solid and for its complement); a *tuple* ``(vertices, faces)``; or what `Solid.from_mesh`
+        takes. Only `intervals` needs a closed mesh.
     pitch : int, optional
-        The lattice step is ``10**pitch`` units; by default the solid's, or one that suits the size.
+        The lattice step is ``10**pitch`` units; by default the solid's, or one that suits the
+        coordinates.
     deferred : bool
-        True to divide boxes when rays first reach them, rather than all at once now.
+        True to divide a box when a ray first reaches it, False to divide all boxes in the
+        constructor.
 
     Raises
     ------
@@ -236,11 +243,11 @@ class RayCaster:
                 self._scene.complete()
 
     def refitted(self, facets: Any) -> Self:
-        """Return a caster of the facets after they have moved.
+        """Return a caster over the same facets after they have moved.
 
-        It has the same lattice and the same hierarchy with refitted boxes, which is much faster
-        than growing a new one. Answers equal those of a new caster, but get slower the farther
-        neighbours have moved apart. This caster does not change.
+        The new caster has the same lattice and the same hierarchy with refitted boxes, which is
+        much faster than a new hierarchy. Hits equal those of `RayCaster(facets)`, but take longer
+        the farther neighbours have moved apart. This caster does not change.
 
         Parameters
         ----------
@@ -267,7 +274,7 @@ class RayCaster:
 
     @property
     def nodes(self) -> CasterNodes:
-        """The nodes of the tree that rays have reached so far, in preorder."""
+        """The nodes of the hierarchy of boxes that rays have reached, in preorder."""
         with core_errors():
             arrays = self._scene.nodes()
         shape = (-1, self._facets.dimension)
@@ -282,25 +289,25 @@ class RayCaster:
         )
 
     def __copy__(self) -> Self:
-        """Return the caster itself, whose answers never change."""
+        """Return the caster itself, whose hits never change."""
         return self
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
-        """Return the caster itself, whose answers never change."""
+        """Return the caster itself, whose hits never change."""
         return self
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        """Pickle facets and lattice; the tree grows again, which does not affect answers."""
+        """Return facets and lattice for pickling; the hierarchy of boxes grows again in a copy."""
         return _restored, (type(self), self._facets, self.pitch)
 
     @property
     def dimension(self) -> int:
-        """1, 2 or 3."""
+        """The dimension of the facets: 1, 2 or 3."""
         return self._facets.dimension
 
     @property
     def pitch(self) -> int:
-        """The lattice step is ``10**pitch`` units."""
+        """The exponent of the lattice step, which is ``10**pitch`` model units."""
         return self._scene.pitch
 
     def __len__(self) -> int:
@@ -308,17 +315,18 @@ class RayCaster:
         return len(self._facets.corners)
 
     def __repr__(self) -> str:
-        """Show the content of the scene."""
+        """Return a text with the number and the kind of the facets."""
         name = ("points", "segments", "triangles")[self.dimension - 1]
         return f"RayCaster({len(self)} {name})"
 
     def first_hit(self, origins: Any, directions: Any, *, threads: int = 0) -> Hits:
-        """Return the first point of each ray (t ≥ 0) on a facet.
+        """Return the hit of each ray (t ≥ 0) with the facet that it meets first.
 
         Parameters
         ----------
         origins, directions : (n, d) or (d,) array_like of float
-            In model units; either may be a single one for all rays. Directions may have any length.
+            In model units; a single origin or direction serves all rays. Directions may have any
+            length.
         threads : int
             The number of threads; 0 for the number of processors.
 
@@ -327,7 +335,7 @@ class RayCaster:
         InvalidMeshError
             For a direction of length zero, or numbers that are not finite (`where` lists the ray).
         LimitError
-            For an origin beyond 2**53 steps of the lattice.
+            If a coordinate of an origin is more than 2**53 lattice steps.
         """
         first, second = ray_arrays(origins, directions, self.dimension)
         with core_errors():
@@ -335,7 +343,9 @@ class RayCaster:
         return self._hits(*columns)
 
     def first_facet(self, origins: Any, directions: Any, *, threads: int = 0) -> IndexArray:
-        """Return the facet that each ray meets first, -1 for none: `first_hit` without the points.
+        """Return the index of the facet that each ray meets first, (n,) int64, -1 for none.
+
+        This is `first_hit` without the hit points.
 
         Parameters
         ----------
@@ -349,17 +359,17 @@ class RayCaster:
     def all_hits(
         self, origins: Any, directions: Any, *, merge: bool = False, threads: int = 0
     ) -> HitLists:
-        """Return every facet on each ray, by its first point, nearest first.
+        """Return all facets that each ray meets, each at its first point on the ray, nearest first.
 
         Parameters
         ----------
         origins, directions, threads
             As for `first_hit`, as are the errors.
         merge : bool
-            Whether to merge hits of several facets at one point, as on a common edge. By default
-            the point appears once for each facet, in input order; with ``merge=True`` once, with
-            the first facet of the input, as for `first_hit`. Points are compared exactly. Points
-            where a ray only touches a boundary are included; `intervals` returns crossings.
+            True to merge hits of several facets at one point, as on a common edge, into one hit
+            with the first facet of the input. By default there is a hit for each facet, in input
+            order. Points are compared exactly. Points where a ray only touches a boundary are
+            included; `intervals` returns crossings.
         """
         first, second = ray_arrays(origins, directions, self.dimension)
         count, merges = thread_count(threads), truth_value(merge, "merge")
@@ -376,22 +386,22 @@ class RayCaster:
         winding: WindingRule = "positive",
         threads: int = 0,
     ) -> InsideSpans:
-        """Return the stretches of each ray (t ≥ 0) inside the boundary that the facets make.
+        """Return the intervals of each ray (t ≥ 0) inside the boundary that the facets make.
 
         The facets must be a closed mesh, closed outlines with their inside to the left, or an even
         number of points, between which inside and outside alternate. This is checked exactly, on
         the lattice, in the first call. Winding numbers are counted from the far end of the ray,
         where they are 0, or 1 for a solid whose complement is bounded. Every ray is shifted by an
-        infinitesimal vector (ε, ε², ε³), so edges and vertices are no special cases; a ray within a
-        facet is inside there if the points beside it in that direction are. Stretches of length
-        zero are omitted, and stretches that touch are joined.
+        infinitesimal vector (ε, ε², ε³), so that it meets no edge or vertex; a ray within a facet
+        is inside if the shifted ray is. Intervals of length zero are omitted, and intervals that
+        touch are joined.
 
         Parameters
         ----------
         origins, directions, threads
             As for `first_hit`, as are the errors.
         winding : {"positive", "nonzero", "even-odd"}
-            The rule for winding numbers that are inside; points on the line always use even-odd.
+            The rule that says which winding numbers are inside; 1D casters always use even-odd.
 
         Raises
         ------
@@ -431,15 +441,15 @@ class RayCaster:
         directions : (n, d) or (d,) array_like of float
             Instead of targets.
         max_t : float or (n,) array_like of float
-            Only with directions: hits with ``0 < t < max_t`` count, with `t` rounded as in
+            Only with directions: facets with ``0 < t < max_t`` count, with `t` rounded as in
             `first_hit`.
         threads : int
 
         Raises
         ------
         InvalidMeshError
-            As for `first_hit`; also if a target is its origin, not exactly one of targets and
-            directions is given, or `max_t` with targets.
+            As for `first_hit`; also if a target equals its origin, if not exactly one of targets
+            and directions is given, or if `max_t` is given with targets.
         """
         if (targets is None) == (directions is None):
             raise invalid_parameter("Give exactly one of targets and directions.")
@@ -462,7 +472,7 @@ class RayCaster:
         return self._facets.normals()
 
     def _hits(self, *columns: Any) -> Hits:
-        # For a few hits, do not compute the normals of all facets.
+        # For fewer hits than facets, compute only the normals of the facets hit.
         many = len(columns[0]) >= len(self._facets.corners)
         return hits_of(self._facets, columns, self._normals if many else None)
 
@@ -474,7 +484,7 @@ def _restored(kind: type[RayCaster], facets: RayTargets, pitch: int) -> RayCaste
 
 
 def hits_of(facets: RayTargets, columns: Any, normals: FloatArray | None = None) -> Hits:
-    """Return the core's columns as hits of these facets (for the modules of this package)."""
+    """Return the core's columns of hits as `Hits` of facets (for the modules of this package)."""
     facet, t, kind, weights, point = columns
     d, missed = facets.dimension, facet < 0
     if normals is None:
@@ -490,7 +500,7 @@ def hits_of(facets: RayTargets, columns: Any, normals: FloatArray | None = None)
 
 
 def _taken(rows: Any, index: IndexArray) -> Any:
-    """Return the rows at indices, arbitrary ones for -1."""
+    """Return the rows at the indices; index -1 gives an arbitrary row."""
     return rows[index] if len(rows) else np.zeros((len(index), *rows.shape[1:]), rows.dtype)
 
 

@@ -1,4 +1,4 @@
-"""Trees for a given distribution of rays, with the facets most likely hit at the top.
+"""Trees for a given distribution of rays, with the facets that are most likely hit at the top.
 
 The score of a facet p for rays l with the density ω is ``score(p) = ∫ ω(l) · |n · l_d| · area(p) /
 area(S) dl``; the integral is computed as a sum over a sample (lecture notes, "Distribution
@@ -17,10 +17,10 @@ from ...parameters import function_of
 from .adaptive import StaticTree
 from .targets import RayTargets, facets_from, ray_arrays
 
-#: The number of rays whose scores are added up together.
+#: The number of rays whose scores are computed in one array operation.
 _RAYS_PER_BATCH = 256
 
-#: A density of rays: ω(origins, directions) of (n, d) arrays gives n weights.
+#: A density of rays: a function ω(origins, directions) of (n, d) arrays that returns n weights.
 Density = Callable[[FloatArray, FloatArray], Any]
 
 
@@ -32,7 +32,9 @@ def scores(
     weights: Any = None,
     density: Density | None = None,
 ) -> FloatArray:
-    """Return score(p) of each facet, (n,) float64.
+    """Return the score of each facet for a sample of rays, (n,) float64.
+
+    The score of a facet estimates how likely a ray of the distribution hits it.
 
     Parameters
     ----------
@@ -70,7 +72,7 @@ def optimised_tree(
     pitch: int | None = None,
     max_nodes: int = 4_000_000,
 ) -> StaticTree:
-    """Return the autopartition that takes facets of high score first.
+    """Return the autopartition that uses facets of high score (see `scores`) as cuts first.
 
     Parameters are those of `scores` and `StaticTree`; facets of equal score keep their order.
     """

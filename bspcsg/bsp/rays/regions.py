@@ -1,4 +1,4 @@
-"""The regions of nodes of adaptive and static trees."""
+"""The convex regions of nodes of adaptive and static trees."""
 
 import numpy as np
 
@@ -13,14 +13,14 @@ from .trace import StabNodes
 def region_of(
     nodes: StabNodes, node: int, corners: FloatArray, pitch: int, margin: float
 ) -> RegionShape:
-    """Return R(v) inside the box of the facets, enlarged by a margin in model units.
+    """Return the region R(v) of a node, clipped to the facets' box enlarged by a margin.
 
-    Without facets the box is the origin.
+    The margin is in model units. Without facets the box is that of the origin alone.
 
     Raises
     ------
     InvalidParameterError
-        If there is no such node.
+        If the tree has no node with this index.
     """
     step = 10.0**pitch
     points = corners.reshape(-1, corners.shape[-1])
@@ -38,7 +38,7 @@ def region_of(
 
 
 def _way(nodes: StabNodes, node: int) -> list[tuple[int, int]]:
-    """Return the ancestors, from the root down, each with the side that leads to the node."""
+    """Return a node's ancestors, root first, each with the side (-1, 1) that leads to the node."""
     if at_least(0, node, "node") >= len(nodes):
         raise invalid_parameter(
             f"There is no node {shown(node)}; the tree has nodes 0 to {len(nodes) - 1}."

@@ -1,4 +1,4 @@
-"""The targets of rays: points, segments or triangles from any object that holds them."""
+"""Read the facets at which rays are cast: points, segments or triangles of any object."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -15,18 +15,18 @@ from ...solid.solid import Solid
 
 @dataclass(frozen=True, eq=False)
 class RayTargets:
-    """Facets of one dimension.
+    """The facets at which rays are cast, all of one dimension.
 
     Parameters
     ----------
     corners : (n, d, d) float64
-        The corners of each: one in 1D, two in 2D, three in 3D.
+        The corners of each facet: one in 1D, two in 2D, three in 3D.
     source : (n, 2) int64 or None
-        Input mesh and face of each triangle, if they are those of a solid.
+        The input mesh and face of each triangle, if the facets are those of a solid.
     pitch : int or None
-        The solid's lattice, if they are a solid's.
+        The pitch of the solid's lattice, if the facets are those of a solid.
     unbounded : bool
-        True if they bound a set that is unbounded on all sides.
+        True if the facets bound a set whose complement is bounded.
     """
 
     corners: FloatArray
@@ -36,11 +36,11 @@ class RayTargets:
 
     @property
     def dimension(self) -> int:
-        """1, 2 or 3."""
+        """The dimension of the facets: 1, 2 or 3."""
         return int(self.corners.shape[2])
 
     def normals(self, facets: Any = slice(None)) -> FloatArray:
-        """Return unit normals (n, d): +1, the right of a segment, or by the right-hand rule.
+        """Return unit normals, (n, d): +1 in 1D, to the right in 2D, by the right-hand rule in 3D.
 
         Parameters
         ----------
@@ -60,7 +60,7 @@ class RayTargets:
         return np.asarray(normals / np.where(lengths > 0, lengths, 1))
 
     def sizes(self) -> FloatArray:
-        """Return areas of triangles, lengths of segments, 1 for points, (n,)."""
+        """Return the area of each triangle, the length of each segment, or 1 for points, (n,)."""
         edges = self.corners[:, 1:] - self.corners[:, :1]
         if self.dimension == 1:
             return np.ones(len(edges))
@@ -70,7 +70,7 @@ class RayTargets:
 
 
 def facets_from(given: Any) -> RayTargets:
-    """Return the facets of an array, a solid, or any object that holds a mesh.
+    """Return the facets of an array, a solid, or any mesh object.
 
     Parameters
     ----------
@@ -82,9 +82,9 @@ def facets_from(given: Any) -> RayTargets:
     Raises
     ------
     InvalidMeshError
-        If the object has no such facets, or an index is out of range.
+        If the object has no facets of these shapes, or an index of a vertex is out of range.
     UnboundedError
-        If a solid and its complement are both unbounded, so that the boundary is, too.
+        If a solid and its complement are both unbounded, so that its boundary is unbounded.
     """
     if isinstance(given, Solid):
         return _boundary_of(given)
@@ -100,7 +100,7 @@ def facets_from(given: Any) -> RayTargets:
 
 @uncounted
 def _boundary_of(solid: Solid) -> RayTargets:
-    """Return the boundary of a bounded solid, or the reversed one of a bounded complement."""
+    """Return the boundary of a bounded solid, or of the complement of a bounded one, reversed."""
     reduced = solid.normalized()
     outside = reduced if reduced.is_bounded else (~solid).normalized()
     unbounded = outside is not reduced and outside.is_bounded
@@ -122,12 +122,12 @@ def _corner_array(given: Any) -> FloatArray:
 
 
 def vectors(given: Any, dimension: int, name: str) -> FloatArray:
-    """Return points or directions as (n, d) float64; a single one becomes one row.
+    """Return points or directions as (n, d) float64; a single vector becomes one row.
 
     Raises
     ------
     InvalidMeshError
-        If the shape is another.
+        If the shape is neither (n, d) nor (d,).
     """
     array = doubles(given, InvalidMeshError(f"{name} must be an array of numbers.", "shape"))
     if dimension == 1 and array.ndim == 1:
@@ -143,7 +143,9 @@ def vectors(given: Any, dimension: int, name: str) -> FloatArray:
 def ray_arrays(
     origins: Any, heads: Any, dimension: int, names: tuple[str, str] = ("Origins", "Directions")
 ) -> tuple[FloatArray, FloatArray]:
-    """Return origins and directions (or targets) of as many rays, (n, d) each, in C order.
+    """Return origins and directions (or targets) as two (n, d) arrays in C order.
+
+    A single origin or direction is repeated for all rays.
 
     Raises
     ------

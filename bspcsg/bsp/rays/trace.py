@@ -1,4 +1,4 @@
-"""Step-by-step traces of rays on counting trees, and snapshots of the trees."""
+"""Step-by-step traces of rays in adaptive and static trees, and snapshots of their nodes."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class StabStep:
-    """A step of a ray through a counting tree.
+    """A step of a ray through an `AdaptiveTree` or a `StaticTree`.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ class StabStep:
         An inner node or a leaf is visited; a facet is tested; a hit in a leaf is counted; a leaf is
         divided, after the ray.
     node : int
-        The node.
+        The index of the inner node or leaf.
     facet : int or None
         The facet that is tested or hit, or whose hyperplane divides the leaf.
     count : int
@@ -63,13 +63,13 @@ class StabTrace:
     steps: tuple[StabStep, ...]
 
     def __repr__(self) -> str:
-        """Show the hit and the cost of the ray; `steps` has the path."""
+        """Return a text with the hit and the numbers of nodes, leaves, tests and steps."""
         counts = f"{self.nodes} nodes, {self.leaves} leaves, {self.tests} tests"
         return f"StabTrace({self.hits!r}, {counts}, {len(self.steps)} steps)"
 
 
 def stab_step(row: "_StabRow") -> StabStep:
-    """Return the step of a row of the core."""
+    """Return the `StabStep` for one row of a trace of the core."""
     kind, node, facet, count, lists = row
     parts = [tuple(part) for part in lists or ((), (), ())]
     return StabStep(kind, node, None if facet < 0 else facet, count, *parts)
@@ -77,16 +77,16 @@ def stab_step(row: "_StabRow") -> StabStep:
 
 @dataclass(frozen=True)
 class LeafDivision:
-    """The division of a leaf.
+    """The division of a leaf of an adaptive or static tree into two leaves.
 
     Parameters
     ----------
     node : int
-        The leaf, which is an inner node since then.
+        The index of the divided leaf, which became an inner node.
     facet : int
         The facet whose hyperplane is the cut.
     minus, plus : int
-        The new nodes.
+        The indices of the new leaves on the minus and the plus side.
     """
 
     node: int
@@ -102,20 +102,20 @@ class StabNodes:
     Parameters
     ----------
     visits : (n,) int64
-        T(v).
+        The counter T(v): how many rays visited the node.
     depth : (n,) int64
-        Cuts above.
+        The number of cuts on the path from the root to the node.
     minus, plus : (n,) int64
-        The children, -1 for a leaf.
+        The children on the minus and plus side, -1 for a leaf.
     offsets : (n + 1,) int64
-        Node v holds ``facets[offsets[v]:offsets[v + 1]]``.
+        Node v stores ``facets[offsets[v]:offsets[v + 1]]``.
     facets : (k,) int64
         L(v) of a leaf, as a heap by T(p); S(v) of an inner node, with the facet of the cut first.
     hits : (k,) int64
-        T(p) in the leaf; 0 in cuts.
+        The counter T(p): how often rays hit the facet in its leaf; 0 for facets in cuts.
     coefficients : tuple of tuple of int
-        H(v) as whole numbers n, c with n·x = c, x in lattice steps, the minus side where the
-        product is smaller; () for a leaf.
+        The hyperplane H(v) as integers (*n, c) with n·x = c, x in lattice steps, and the minus side
+        n·x < c; () for a leaf.
     """
 
     visits: IndexArray
@@ -136,20 +136,20 @@ class StabNodes:
         return bool(self.minus[self._checked(node)] < 0)
 
     def held(self, node: int) -> IndexArray:
-        """Return L(v) of a leaf, S(v) of an inner node."""
+        """Return a node's facets: the list L(v) of a leaf, or the set S(v) of an inner node."""
         return self.facets[self._range(node)]
 
     def counts(self, node: int) -> IndexArray:
-        """Return T(p) of the facets of `held`."""
+        """Return the hit counter T(p) of each facet that `held` returns for a node."""
         return self.hits[self._range(node)]
 
     def facet_hits(self, count: int) -> IndexArray:
-        """Return T(p) of the facets 0 to `count`, added up over the leaves."""
+        """Return the hits T(p) of facets 0 to `count` - 1, each summed over all leaves."""
         return np.bincount(self.facets, weights=self.hits, minlength=count).astype(np.int64)
 
     @property
     def divisions(self) -> tuple[LeafDivision, ...]:
-        """The divisions so far, in order."""
+        """The divisions of leaves, in the order in which they happened."""
         inner = np.flatnonzero(self.minus >= 0)
         order = inner[np.argsort(self.minus[inner], kind="stable")]
         return tuple(
@@ -170,7 +170,7 @@ class StabNodes:
 
 
 def stab_nodes(arrays: "StabArrays") -> StabNodes:
-    """Return the nodes of columns of the core."""
+    """Return the `StabNodes` for the core's arrays of nodes."""
     return StabNodes(
         visits=arrays["visits"],
         depth=arrays["depth"],

@@ -1,4 +1,4 @@
-"""Closed boundaries in one, two and three dimensions, as rows for the core."""
+"""Read the closed boundary of a set in one, two or three dimensions as rows for the core."""
 
 from typing import Any
 
@@ -10,7 +10,9 @@ from ...geometry.arrays import doubles
 
 
 def boundary_arrays(facets: Any) -> tuple[int, FloatArray, IndexArray | None]:
-    """Return the dimension, the rows that the core takes, and the triangles in space.
+    """Return a boundary's dimension, its rows for the core, and its triangles or None.
+
+    In 1D and 2D a row is an end or a segment, in 3D a vertex; the triangles index the vertices.
 
     Raises
     ------
@@ -34,18 +36,18 @@ def boundary_arrays(facets: Any) -> tuple[int, FloatArray, IndexArray | None]:
 
 
 def interval_rows(ends: FloatArray) -> FloatArray:
-    """Return rows (x, side): side +1 where an interval begins, -1 where it ends."""
+    """Return a row (x, side) for each end of intervals: side +1 at lower, -1 at upper ends."""
     sides = np.tile([1.0, -1.0], len(ends))
     return np.column_stack([ends.reshape(-1), sides])
 
 
 def segment_rows(segments: FloatArray) -> FloatArray:
-    """Return rows (x, y, x', y') of segments that close.
+    """Return rows (x, y, x', y') of segments, after a check that the segments form closed outlines.
 
     Raises
     ------
     InvalidMeshError
-        If more segments begin than end in some point; `where` lists segments.
+        If the numbers of segments that begin and end at a point differ; `where` lists segments.
     """
     _check_closed(segments)
     return np.ascontiguousarray(segments.reshape(-1, 4))

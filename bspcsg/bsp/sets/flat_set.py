@@ -1,4 +1,4 @@
-"""`FlatSet`: a set of points of the line or the plane that has a partition tree."""
+"""`FlatSet`: the base class of sets on the line and in the plane that have a partition tree."""
 
 from typing import Any, Self
 
@@ -8,14 +8,14 @@ from ...errors import core_errors
 from .objects import ObjectTree, merge
 from .tree_set import TreeSet, set_of
 
-#: A result is built anew if its tree has more nodes than this multiple of its operands' nodes and
-#: so many more.
+#: A result's tree is rebuilt if it has more nodes than _MAX_GROWTH times its larger operand, plus
+#: _FREE_NODES.
 _MAX_GROWTH = 4
 _FREE_NODES = 64
 
 
 class FlatSet(TreeSet):
-    """A set of points of the line or of the plane; an immutable value that has a tree."""
+    """A set of points of the line or of the plane with a partition tree; an immutable value."""
 
     __slots__ = ("_built_size",)
 
@@ -33,17 +33,17 @@ class FlatSet(TreeSet):
 
     @property
     def tree(self) -> ObjectTree:
-        """The partition tree, with its nodes, cells and pieces of boundary."""
+        """The set's partition tree, with its nodes, cells and pieces of boundary."""
         return ObjectTree._of(self._tree)
 
     # Set operations
 
     def __invert__(self) -> Self:
-        """Complement, which shares all nodes."""
+        """Return the complement; its tree shares all nodes."""
         return self._of((~self.tree)._tree)
 
     def _merged(self, other: TreeSet, op: SetOp) -> Self:
-        """Return the result of an operation; rebuild its tree if merging made it too large.
+        """Return the result of a set operation, with a rebuilt tree if merging made it too large.
 
         The cost of rebuilding is amortised, so a chain of n operations stays near-linear in its
         output.
@@ -57,7 +57,7 @@ class FlatSet(TreeSet):
         return made
 
     def equals(self, other: "TreeSet") -> bool:
-        """Say whether both are the same set of points, exactly; same as ``==``.
+        """Return true if both sets contain exactly the same points, as ``==`` does.
 
         Raises
         ------
@@ -77,7 +77,7 @@ class FlatSet(TreeSet):
     # Questions
 
     def nearest(self, points: Any) -> tuple[FloatArray, FloatArray]:
-        """Return the nearest boundary point of each point, and its distance.
+        """Return the nearest boundary point of each point, (k, d), and its distance, (k,).
 
         See `ObjectTree.nearest`.
         """
@@ -86,17 +86,17 @@ class FlatSet(TreeSet):
     # As a value
 
     def _moved(self, axes: list[int], shift: list[int]) -> Self:
-        """Return the set moved by whole lattice steps."""
+        """Return the set moved by a lattice motion: signed axes, then a shift in lattice steps."""
         with core_errors():
             return self._of(self._tree.moved(axes, shift))
 
     def __reduce__(self) -> tuple[Any, tuple[type["FlatSet"], bytes]]:
-        """Pickle the nodes, exactly."""
+        """Return the nodes of the tree, exactly, for pickling."""
         return _restored, (type(self), self._tree.dump())
 
 
 def _built_nodes(operand: TreeSet) -> int:
-    """Return the number of nodes of a tree when it was last built from a boundary."""
+    """Return the number of nodes that a set's tree had when it was last built from a boundary."""
     known = operand._built_size if isinstance(operand, FlatSet) else 0
     return known or operand.tree.stats()["nodes"]
 

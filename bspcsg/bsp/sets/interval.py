@@ -30,8 +30,8 @@ class Intervals(FlatSet):
     Parameters
     ----------
     pairs : (n, 2) array_like of float
-        Lower and upper ends of intervals in any order, which may overlap or be infinite. Without
-        intervals the set is empty.
+        The lower and upper ends of intervals. Intervals may overlap, in any order, and ends may be
+        infinite. Without intervals the set is empty.
     pitch : int, optional
 
     Raises
@@ -77,7 +77,7 @@ class Intervals(FlatSet):
 
     @property
     def pairs(self) -> FloatArray:
-        """Lower and upper ends of the intervals, (n, 2) float64 in order; infinite if unbounded."""
+        """The lower and upper ends of the intervals in order, (n, 2) float64; may be infinite."""
         if self.is_empty or self.is_full:
             return np.array([[-np.inf, np.inf]]) if self.is_full else np.zeros((0, 2))
         ends = np.sort(self.tree.boundary().vertices[:, 0])
@@ -88,7 +88,7 @@ class Intervals(FlatSet):
         return ends.reshape(-1, 2)
 
     def _holds_lowest(self) -> bool:
-        """Say whether the set is unbounded below."""
+        """Return true if the set is unbounded below."""
         nodes = self.tree.nodes
         at = 0
         while at >= 0:
@@ -98,7 +98,7 @@ class Intervals(FlatSet):
 
     @property
     def length(self) -> float:
-        """Total length, rounded once; `measure` is exact.
+        """The total length of the intervals in model units, rounded once; `measure` is exact.
 
         Raises
         ------
@@ -109,29 +109,29 @@ class Intervals(FlatSet):
 
     @property
     def centroid(self) -> float:
-        """Centre of mass; NaN for the empty set."""
+        """The centre of mass, the mean of all points of the set; NaN for the empty set."""
         if self.measure == 0:
             return float("nan")
         step = Fraction(10) ** self.pitch
         ends = [[round(Fraction(end) / step) for end in pair] for pair in self.pairs.tolist()]
         total = sum(b - a for a, b in ends)
-        # Beyond 2^52 steps doubles cannot distinguish all ends.
+        # Above 2^52 steps two different ends may be equal as doubles.
         middle = Fraction(sum(b * b - a * a for a, b in ends), 2 * total) if total else ends[0][0]
         return float(middle * step)
 
     @property
     def bounds(self) -> tuple[float, float] | None:
-        """Lowest and highest point, or None for the empty set."""
+        """The least and the greatest coordinate of the set, or None for the empty set."""
         pairs = self.pairs
         return None if self.is_empty else (float(pairs[0, 0]), float(pairs[-1, 1]))
 
     @property
     def components(self) -> tuple["Intervals", ...]:
-        """The intervals one by one, in order."""
+        """The intervals of the set in order, each as a set of its own."""
         return tuple(type(self)([pair], pitch=self.pitch) for pair in self.pairs)
 
     def translate(self, offset: Scalar) -> "Intervals":
-        """Return the set moved; exact if the offset is a whole number of lattice steps."""
+        """Return the set moved by an offset; exact for a whole number of lattice steps."""
         shift = number(offset, "offset")
         steps = whole_steps(shift, self.pitch)
         if steps is None:
@@ -147,7 +147,7 @@ class Intervals(FlatSet):
             return self._placed(np.sort(self.pairs * by, axis=1))
 
     def _placed(self, pairs: FloatArray) -> "Intervals":
-        """Return moved intervals, on this set's lattice, or another one that suits them."""
+        """Return the set with moved ends, on this set's lattice or on another one that fits."""
         if np.isinf(pairs).sum() > np.isinf(self.pairs).sum():
             raise LimitError(
                 "The moved or scaled intervals have an end that is too large for doubles; move or"
@@ -155,14 +155,14 @@ class Intervals(FlatSet):
                 "too_large",
             )
         suited = chosen_pitch(None, pairs[np.isfinite(pairs)][:, None])
-        # Far from 0, two ends may round to one double: the interval vanishes.
+        # Far from 0, both ends of an interval may round to one double; it is left out.
         there = pairs[pairs[:, 0] < pairs[:, 1]]
         with suppress(LimitError):
             return type(self)(there, pitch=min(self.pitch, suited))
         return type(self)(there, pitch=suited)
 
     def __repr__(self) -> str:
-        """Show the intervals, unless there are many."""
+        """Return a text with the intervals, at most the first six."""
         pairs = self.pairs.tolist()
         shown = [f"({low:.12g}, {high:.12g})" for low, high in pairs[:6]]
         if len(pairs) > 6:

@@ -1,4 +1,4 @@
-"""Closed outlines in the plane: input, nesting, transforms."""
+"""Closed outlines in the plane: reading them in any form, and their area, length and motion."""
 
 import math
 from dataclasses import dataclass
@@ -14,15 +14,15 @@ from ...geometry.arrays import axes_of, doubles
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """A simple closed loop of a region's boundary, the region on its left.
+    """A simple closed loop of a region's boundary, with the region on its left.
 
     Parameters
     ----------
     points : (n, 2) float64
-        The corners, starting with the one smallest in x, then y; read-only.
+        The corners, starting with the corner of least x, then least y; read-only.
     parent : int
-        The number of the enclosing outline: that of the region for a hole, that of the hole for an
-        island; -1 if there is none.
+        The index of the outline that directly encloses this one: of an outer outline for a hole, of
+        a hole for an island in it; -1 for none.
     """
 
     points: FloatArray
@@ -30,31 +30,31 @@ class Outline:
 
     @property
     def is_hole(self) -> bool:
-        """True if the loop runs clockwise."""
+        """True if the loop runs clockwise, so that it bounds a hole."""
         before, at, after = self.points[-1], self.points[0], self.points[1]
-        # The first corner is convex, so its turn gives the orientation of the loop.
+        # The loop is convex at its first corner, whose turn therefore gives its orientation.
         (ax, ay), (bx, by) = at - before, after - at
         return bool(ax * by - ay * bx < 0)
 
     @property
     def area(self) -> float:
-        """Area inside, in square model units; negative for a hole."""
+        """The area that the loop encloses, in square model units; negative for a hole."""
         return polygon.signed_area(self.points)
 
     @property
     def length(self) -> float:
-        """Length in model units."""
+        """The length of the loop, in model units."""
         steps = np.roll(self.points, -1, axis=0) - self.points
         return math.fsum(np.hypot(steps[:, 0], steps[:, 1]).tolist())
 
 
 def closed_loops(outlines: Any) -> list[FloatArray]:
-    """Return the outlines as (n, 2) float64 arrays, in the given order and orientation.
+    """Return outlines in any form as (n, 2) float64 arrays, in the given order and orientation.
 
     Raises
     ------
     InvalidMeshError
-        If one has fewer than three points or another shape, or a coordinate is not finite.
+        If an outline has fewer than three points or another shape, or a coordinate is not finite.
     """
     shapes = polygon.shape_contours(outlines)
     if shapes is not None:
@@ -80,7 +80,7 @@ def loop_segments(loops: list[FloatArray]) -> FloatArray:
 
 
 def moved_points(factor: transform.Factor, points: FloatArray) -> FloatArray:
-    """Return (n, 2) points moved by an affine map, in reverse order if it mirrors."""
+    """Return the (n, 2) image of a loop under an affine map; a mirror map reverses the order."""
     space = np.column_stack([points, np.zeros(len(points))])
     moved = transform.apply(factor.matrix, space)[:, :2]
     return moved[::-1] if transform.determinant_sign(factor.matrix) < 0 else moved

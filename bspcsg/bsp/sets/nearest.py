@@ -1,19 +1,51 @@
-"""The nearest points of segments and polygons, in doubles."""
+"""The nearest points of boundaries, segments and polygons to given points, in doubles."""
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..._types import FloatArray
+from ...errors import InvalidMeshError, core_errors, invalid_parameter
 from ...mesh.distance import nearest_on_triangles
 from .pieces import Pieces
+from .rows import point_rows
 
-#: The number of pairs of a point and a piece that are computed together, which bounds the memory.
+if TYPE_CHECKING:
+    from .objects import ObjectTree
+
+#: The number of pairs of a point and a piece in one array operation, which bounds the memory.
 _PAIRS_PER_BATCH = 1 << 20
 
 
-def nearest_on_segments(points: FloatArray, segments: FloatArray) -> FloatArray:
-    """Return the nearest point on (n, 2, d) segments for each of (k, d) points."""
+def nearest_on_boundary(tree: "ObjectTree", points: Any) -> tuple[FloatArray, FloatArray]:
+    """Return the nearest boundary points, and the distances (see `ObjectTree.nearest`)."""
+    array = point_rows(points, tree.dimension)
+    if not np.isfinite(array).all():
+        raise InvalidMeshError(
+            "The points have coordinates that are not finite numbers; remove these points.",
+            "non_finite",
+        )
+    if tree.is_empty or tree.is_full:
+        raise invalid_parameter(
+            "The set is empty or all of space, so it has no boundary and no nearest boundary point."
+        )
+    nearest = _nearest_of(tree, array)
+    return nearest, np.sqrt(((nearest - array) ** 2).sum(axis=1))
+
+
+def _nearest_of(tree: "ObjectTree", points: FloatArray) -> FloatArray:
+    if tree.dimension == 3:
+        return _nearest_on_polygons(points, tree.boundary())
+    if tree.dimension == 1:
+        ends = tree.boundary().vertices
+        return _nearest_on_segments(points, np.stack([ends, ends], axis=1))
+    with core_errors():
+        return tree._tree.nearest(points)
+
+
+def _nearest_on_segments(points: FloatArray, segments: FloatArray) -> FloatArray:
+    """Return for each of (k, d) points the nearest point on any of (n, 2, d) segments, (k, d)."""
     start = segments[:, 0]
     along = segments[:, 1] - start
     squared = (along**2).sum(axis=1)
@@ -26,8 +58,8 @@ def nearest_on_segments(points: FloatArray, segments: FloatArray) -> FloatArray:
     return _nearest(points, len(segments), candidates)
 
 
-def nearest_on_polygons(points: FloatArray, polygons: Pieces) -> FloatArray:
-    """Return the nearest point on convex polygons in space for each of (k, 3) points."""
+def _nearest_on_polygons(points: FloatArray, polygons: Pieces) -> FloatArray:
+    """Return for each of (k, 3) points the nearest point on any of the convex polygons, (k, 3)."""
     triangles = np.concatenate([_fan(polygons[k]) for k in range(len(polygons))])
 
     def candidates(block: FloatArray) -> FloatArray:
@@ -46,7 +78,11 @@ def _fan(corners: FloatArray) -> FloatArray:
 def _nearest(
     points: FloatArray, pieces: int, candidates: Callable[[FloatArray], FloatArray]
 ) -> FloatArray:
-    """Return the nearest of each point's candidates, block by block."""
+    """Return for each point its nearest candidate, computed in blocks of points.
+
+    ``candidates(block)`` returns one candidate for each pair of a point and a piece, (b, pieces,
+    d).
+    """
     nearest = np.empty_like(points)
     step = max(_PAIRS_PER_BATCH // pieces, 1)
     for start in range(0, len(points), step):

@@ -1,8 +1,8 @@
-"""`ObjectTree`: a set of points as a partition tree with in and out leaves, in any dimension.
+"""`ObjectTree`: a set of points of any dimension as a partition tree with in and out leaves.
 
-Trees represent sets on the line, in the plane and in space alike: inner nodes divide a convex
-region by a hyperplane, leaves are in or out. Set operations merge two trees; nothing is rounded
-after the coordinates are snapped to the lattice of step ``10**pitch``.
+On the line, in the plane and in space, inner nodes divide a convex region by a hyperplane, and
+leaves are inside or outside the set. Set operations merge two trees; nothing is rounded after the
+coordinates are snapped to the lattice of step ``10**pitch``.
 
 Sources: Thibault, Naylor 1987; Naylor, Amanatides, Thibault 1990.
 """
@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import Any, Self, TypeVar, get_args
 
 from ..._core import ObjectTree as CoreTree
-from ..._types import Scalar, SetOp, WindingRule
+from ..._types import FloatArray, Scalar, SetOp, WindingRule
 from ...errors import LimitError, core_errors, invalid_parameter
 from ...mesh import interop
 from ...owned import owning
@@ -28,18 +28,18 @@ from ...parameters import (
 from ..trees.asking import pairs_of
 from ..trees.facets import chosen_pitch
 from .boundary import boundary_arrays
-from .pieces import BuildPolicy, NormalAndOffset, SplitCase
+from .nearest import nearest_on_boundary
+from .pieces import BuildPolicy, NodeTable, NormalAndOffset, Pieces, SplitCase
 from .rows import hyperplane, hyperplane_row, hyperplane_rows
 from .trace import MergeTrace, merge_trace
-from .tree_queries import TreeQueries
 from .tree_set import TreeSet, set_of
 
 Set = TypeVar("Set", bound=TreeSet)
 
 
 @owning
-class ObjectTree(TreeQueries):
-    """A set of points as a partition tree; an immutable value.
+class ObjectTree(TreeSet):
+    """A set of points on the line, in the plane or in space as a partition tree; immutable.
 
     ``==``, ``<=``, ``<``, ``in`` and the like compare sets of points exactly, like those of
     Python's sets: two trees are equal if they represent the same set, however they divide it.
@@ -52,15 +52,15 @@ class ObjectTree(TreeQueries):
         overlap and repeat: a point is inside if its winding number satisfies the rule.
     winding : {"positive", "nonzero", "even-odd"}
     pitch : int, optional
-        The lattice step is ``10**pitch`` units; by default -9, or another if the size requires it.
+        The lattice step is ``10**pitch`` units; by default -9, or another if the coordinates
+        require it.
     policy : {"balanced", "random", "first", "fewest-splits"}
-        The rule that divides the tree. Only "balanced" keeps convex outlines from becoming chains;
-        the others are autopartitions.
+        The rule that chooses the cuts. "balanced" adds axis-parallel cuts, without which the tree
+        of a convex outline is a chain; the other rules cut along facets only (autopartitions).
     seed : int
-        For the random order.
+        The seed of random orders.
     cuts : sequence of (normal, offset)
-        Hyperplanes to cut along first, in this order and regardless of facets: a partition above
-        that of the boundary.
+        Hyperplanes to cut along first, in this order, before the cuts of the boundary.
 
     Raises
     ------
@@ -114,14 +114,14 @@ class ObjectTree(TreeQueries):
 
     @property
     def tree(self) -> "ObjectTree":
-        """The tree itself."""
+        """The object itself, which is its own partition tree."""
         return self
 
     # Making
 
     @classmethod
     def from_mesh(cls, mesh: Any, **options: Any) -> Self:
-        """Return the set inside a closed mesh, given in any form (see `Solid.from_mesh`).
+        """Return the set inside a closed mesh in any form that `Solid.from_mesh` takes.
 
         Meant for small meshes: an autopartition in space grows with the square of the number of
         faces.
@@ -139,14 +139,14 @@ class ObjectTree(TreeQueries):
         """Return the minus side of a hyperplane: all points x with ``normal . x <= offset``.
 
         The numbers count as the decimals they are written as. A hyperplane that contains lattice
-        points is exact; others are moved, by at most half a step, to the nearest parallel one that
-        does. The same holds for all hyperplanes given to trees. (Normals of more than 62 bits in
-        the plane, or 106 in space, are rounded to 61.)
+        points is exact; another is moved, by at most half a step, to the nearest parallel one that
+        contains some. This applies to all hyperplanes given to trees. (Normals of more than 62 bits
+        in the plane, or 106 in space, are rounded to 61.)
 
         Parameters
         ----------
         normal : (1,), (2,) or (3,) float, or one number
-            As many as the set has dimensions.
+            One number for each dimension.
         offset : float
         pitch : int, optional
             By default -9, or down to -12 if the hyperplane needs it.
@@ -158,7 +158,7 @@ class ObjectTree(TreeQueries):
 
     @classmethod
     def uniform(cls, dimension: int, *, full: bool, pitch: int = -9) -> Self:
-        """Return the empty set or the whole space, in 1, 2 or 3 dimensions."""
+        """Return the empty set (``full=False``) or the whole space, in 1, 2 or 3 dimensions."""
         count, step = dimension_number(dimension), pitch_exponent(pitch)
         with core_errors():
             return cls._of(CoreTree.uniform(count, truth_value(full, "full"), step))
@@ -166,7 +166,7 @@ class ObjectTree(TreeQueries):
     # Set operations
 
     def __invert__(self) -> Self:
-        """Complement, which shares all nodes."""
+        """Return the complement; its tree shares all nodes."""
         return self._of(self._tree.complement())
 
     def _merged(self, other: TreeSet, op: SetOp) -> Self:
@@ -175,7 +175,7 @@ class ObjectTree(TreeQueries):
             return self._of(a.merge(b, op))
 
     def _aligned(self, other: TreeSet) -> tuple[CoreTree, CoreTree]:
-        """Return both trees on the finer lattice."""
+        """Return the core trees of both sets on the finer of their two lattices."""
         if self.dimension != other.dimension:
             raise invalid_parameter(
                 f"A set of dimension {self.dimension} cannot be combined with a set of"
@@ -193,19 +193,19 @@ class ObjectTree(TreeQueries):
             return self._tree.refined(pitch)
 
     def trace_merge(self, other: TreeSet, op: SetOp) -> MergeTrace:
-        """Return the trace of a set operation: pairs of nodes, cases, shared and dropped nodes.
+        """Return the step-by-step trace of a set operation that merges two trees.
 
         Parameters
         ----------
         other : ObjectTree, Region or Intervals
-            Of the same dimension.
+            A set of the same dimension.
         op : {"union", "intersection", "difference", "xor"}
 
         Notes
         -----
-        The nodes of the trace are those of ``trace.first`` and ``trace.second``, which are the
-        operands on one lattice. Results of set operations on regions have a tree of their boundary;
-        ``trace.result`` is the merged tree itself.
+        The indices of nodes refer to ``trace.first`` and ``trace.second``, which are the operands
+        on one lattice. ``trace.result`` is the merged tree itself; the operators of regions may
+        return another tree of the same set.
         """
         word(SET_OPS, op, "op")
         a, b = self._aligned(set_of(other))
@@ -214,7 +214,7 @@ class ObjectTree(TreeQueries):
         return merge_trace(self._of(a), self._of(b), self._of(result), op, rows)
 
     def equals(self, other: TreeSet) -> bool:
-        """Say whether both are the same set of points, exactly; same as ``==``.
+        """Return true if both sets contain exactly the same points, as ``==`` does.
 
         Raises
         ------
@@ -225,7 +225,7 @@ class ObjectTree(TreeQueries):
         try:
             a, b = self._aligned(tree)
         except LimitError:
-            # Sizes are exact on any lattice.
+            # Measures are exact on any lattice, so different ones prove different sets.
             if self._size_key() == tree._size_key():
                 raise
             return False
@@ -236,24 +236,76 @@ class ObjectTree(TreeQueries):
         if self.is_bounded:
             return self.dimension, self.measure
         outside = ~self
-        # If both are unbounded, no cheap test can distinguish sets.
+        # If set and complement are unbounded, only the dimension is cheap to compare.
         return self.dimension, -outside.measure - 1 if outside.is_bounded else None
+
+    # Queries
+
+    def nearest(self, points: Any) -> tuple[FloatArray, FloatArray]:
+        """Return the nearest boundary point of each point, and its distance.
+
+        Parameters
+        ----------
+        points : (k, d) array_like of float
+            In model units; on the line (k,) will do.
+
+        Returns
+        -------
+        nearest : (k, d) float64
+            Rounded; of several, the one on the first piece of the boundary.
+        distance : (k,) float64
+
+        Raises
+        ------
+        InvalidMeshError
+            If the set has no boundary, or a point is not finite.
+        """
+        return nearest_on_boundary(self, points)
+
+    def boundary(self) -> Pieces:
+        """Return the boundary in convex pieces, with the nodes in whose cuts they lie.
+
+        The pieces of an unbounded set end at the border of the lattice.
+        """
+        with core_errors():
+            return Pieces(*self._tree.boundary())
+
+    def cells(self) -> Pieces:
+        """Return the faces of the leaves that are inside: a decomposition into convex cells.
+
+        Raises
+        ------
+        UnboundedError
+            If the set reaches to infinity.
+        """
+        with core_errors():
+            return Pieces(*self._tree.cells())
+
+    @property
+    def nodes(self) -> NodeTable:
+        """The inner nodes as arrays; none if the tree is a leaf."""
+        with core_errors():
+            return NodeTable(*self._tree.nodes, tuple(map(tuple, self._tree.hyperplanes())))
+
+    def stats(self) -> dict[str, int]:
+        """Return the numbers of inner nodes, leaves and coplanar fragments, and the depth."""
+        return self._tree.stats()
 
     # Division by a hyperplane
 
     def partitioned(self, normal: Any, offset: Scalar = 0.0) -> Self:
-        """Return the same set as a tree with this hyperplane as the root's cut.
+        """Return the same set as a tree whose root is cut by the given hyperplane.
 
-        A leaf stays a leaf, since its halves would be equal.
+        A tree of one leaf stays a leaf, since its halves would be equal.
         """
         row = self._row(normal, offset)
         with core_errors():
             return self._of(self._tree.partitioned(row))
 
     def split(self, normal: Any, offset: Scalar = 0.0) -> tuple[Self, Self]:
-        """Return the parts on the minus and on the plus side of a hyperplane, as sets.
+        """Return the parts of the set on the minus and on the plus side of a hyperplane.
 
-        A bounded set lies on one side of a hyperplane beyond the lattice.
+        A hyperplane outside the range of the lattice has a bounded set on one side.
         """
         is_above = hyperplane(normal, offset, self.dimension).is_above_lattice(self.pitch)
         if is_above is not None and self.is_bounded:
@@ -265,16 +317,16 @@ class ObjectTree(TreeQueries):
         return self._of(minus), self._of(plus)
 
     def split_case(self, normal: Any, offset: Scalar = 0.0) -> SplitCase:
-        """Return the relative position of the root's cut and a splitting hyperplane.
+        """Return how the root's cut and a splitting hyperplane lie to each other.
 
         Returns
         -------
         str
-            "leaf": the root is a leaf. "same", "opposite": the hyperplane is the root's own, with
-            equal or exchanged sides. "crossing": each cuts the other. Otherwise two sides: the side
-            of the root's cut on which the hyperplane's part lies, then the side of the hyperplane
-            on which the root's sub-hyperplane lies: "minus-minus", "minus-plus", "plus-minus" or
-            "plus-plus".
+            "leaf": the root is a leaf. "same", "opposite": the hyperplane coincides with the root's
+            cut, with equal or exchanged sides. "crossing": each cuts the other. Otherwise
+            "minus-minus", "minus-plus", "plus-minus" or "plus-plus": first the side of the root's
+            cut on which the hyperplane lies, then the side of the hyperplane on which the root's
+            cut lies, both within the root's region.
 
         Notes
         -----
@@ -288,10 +340,9 @@ class ObjectTree(TreeQueries):
         return hyperplane_row(normal, offset, self.dimension, self.pitch)
 
     def condensed(self) -> Self:
-        """Return the same set as a balanced tree of its own boundary (1D and 2D).
+        """Return the same set as a balanced tree built from its own boundary (1D and 2D).
 
-        After merging, a tree has cuts that the result does not need. In space the tree itself is
-        returned.
+        This removes cuts that a merged tree does not need. In 3D it returns the tree itself.
         """
         with core_errors():
             return self._of(self._tree.condensed())
@@ -299,7 +350,7 @@ class ObjectTree(TreeQueries):
     # As a value
 
     def __repr__(self) -> str:
-        """Show the kind of tree."""
+        """Return a text with the dimension, the number of nodes and the depth."""
         if self.is_empty or self.is_full:
             what = "empty" if self.is_empty else "full"
         else:
@@ -308,12 +359,12 @@ class ObjectTree(TreeQueries):
         return f"{type(self).__name__}({self.dimension}D, {what})"
 
     def __reduce__(self) -> tuple[Any, tuple[type["ObjectTree"], bytes]]:
-        """Pickle the nodes exactly, without the input facets that lie in them."""
+        """Return the nodes exactly, without the input facets in them, for pickling."""
         return _restored, (type(self), self._tree.dump())
 
 
 def merge(a: Set, b: TreeSet, op: SetOp) -> Set:
-    """Return the set operation on two trees of one dimension, by merging them.
+    """Return the result of a set operation on two sets of one dimension, by merging their trees.
 
     Parameters
     ----------
@@ -322,9 +373,9 @@ def merge(a: Set, b: TreeSet, op: SetOp) -> Set:
 
     Notes
     -----
-    Naylor, Amanatides, Thibault 1990, section 3. Nodes of `a` come before those of `b`. Regions are
-    combined by their operators, which may sweep over boundaries instead; use ``merge(a.tree,
-    b.tree, op)`` to merge their trees.
+    Naylor, Amanatides, Thibault 1990, section 3. The result has the nodes of `a` above those of
+    `b`. For regions this calls their operators, which may sweep over boundaries instead;
+    ``merge(a.tree, b.tree, op)`` always merges trees.
     """
     word(SET_OPS, op, "op")
     set_of(a, "a")
@@ -332,15 +383,17 @@ def merge(a: Set, b: TreeSet, op: SetOp) -> Set:
 
 
 def partition_tree(tree: ObjectTree, hyperplane: NormalAndOffset) -> ObjectTree:
-    """Return the same set with this hyperplane in the root (see `ObjectTree.partitioned`)."""
+    """Return the same set as a tree with `hyperplane` as root cut (`ObjectTree.partitioned`)."""
     return of_kind(ObjectTree, tree, "tree").partitioned(*pairs_of([hyperplane])[0])
 
 
 def split_tree(tree: Set, hyperplane: NormalAndOffset) -> tuple[Set, Set]:
-    """Return a tree's parts on the minus and the plus side (see `ObjectTree.split`).
+    """Return a tree's parts on the minus and on the plus side of a hyperplane.
 
-    The paper's third argument, the part of the hyperplane inside the root's region, follows from
-    the other two and is computed.
+    See `ObjectTree.split`.
+
+    The third argument in the paper by Naylor et al., the part of the hyperplane inside the root's
+    region, is computed from the other two.
     """
     set_of(tree, "tree")
     return tree.split(*pairs_of([hyperplane])[0])

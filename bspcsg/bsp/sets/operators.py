@@ -1,4 +1,4 @@
-"""`SetOperators`: operators of set operations, for sets that wrap another set."""
+"""`SetOperators`: the operators ``| & - ^`` for classes that wrap a set."""
 
 import operator
 from abc import ABC, abstractmethod
@@ -7,26 +7,26 @@ from typing import Any, Self
 
 
 class SetOperators(ABC):
-    """A set with the operations of the set that it wraps."""
+    """The base class of sets that wrap another set and use its operators."""
 
     __slots__ = ()
 
     @abstractmethod
     def _combined(self, other: object, operation: Callable[[Any, Any], Any]) -> Self:
-        """Return an operation on this set and another one, or NotImplemented."""
+        """Return the result of an operator on this set and another, or NotImplemented."""
 
     def __or__(self, other: object) -> Self:
-        """Union."""
+        """Return the union of both sets."""
         return self._combined(other, operator.or_)
 
     def __and__(self, other: object) -> Self:
-        """Intersection."""
+        """Return the intersection of both sets."""
         return self._combined(other, operator.and_)
 
     def __sub__(self, other: object) -> Self:
-        """Difference."""
+        """Return the difference: this set without the other one."""
         return self._combined(other, operator.sub)
 
     def __xor__(self, other: object) -> Self:
-        """Symmetric difference."""
+        """Return the symmetric difference of both sets."""
         return self._combined(other, operator.xor)

@@ -1,4 +1,4 @@
-"""Connected paths that bound a region of the plane, possibly from and to infinity."""
+"""Connected paths that bound a region of the plane, closed or from infinity to infinity."""
 
 import math
 from dataclasses import dataclass
@@ -10,27 +10,27 @@ from ..._types import FloatArray
 from ...parameters import of_kind
 from .region import Region
 
-#: A corner, exactly.
+#: A corner in exact coordinates.
 _Point = tuple[Fraction, Fraction]
 
-#: Half the side of the square in lattice steps. The double that is nearest to it still lies on the
-#: lattice after it is snapped.
+#: Half the side, in lattice steps, of the square that stands for infinity. As a double it still
+#: fits on the lattice.
 _HALF_SIDE_STEPS = 2**53 - 2
 
 
 @dataclass(frozen=True, eq=False)
 class BoundaryPath:
-    """A connected path along a region's boundary, the region on its left.
+    """A connected path along a region's boundary, with the region on its left.
 
     Parameters
     ----------
     points : (n, 2) float64
-        The corners in order, rounded. A straight line has no corners: its single point is the one
+        The corners in order, rounded. A straight line has no corners; `points` then has its point
         nearest to the origin.
     start : (2,) float64 or None
-        The direction of length 1 in which the path comes from infinity; None if it is closed.
+        The unit vector along which the path comes from infinity; None if the path is closed.
     end : (2,) float64 or None
-        The direction of length 1 in which it goes to infinity; None if it is closed.
+        The unit vector along which the path goes to infinity; None if the path is closed.
     """
 
     points: FloatArray
@@ -39,12 +39,12 @@ class BoundaryPath:
 
     @property
     def is_closed(self) -> bool:
-        """True for a loop; other paths begin and end at infinity."""
+        """True for a closed loop, false for a path from infinity to infinity."""
         return self.start is None
 
     @property
     def length(self) -> float:
-        """Length in model units; infinite for a path that is not closed."""
+        """The length in model units; infinite for a path that is not closed."""
         if not self.is_closed:
             return math.inf
         steps = np.roll(self.points, -1, axis=0) - self.points
@@ -52,7 +52,7 @@ class BoundaryPath:
 
 
 def boundary_paths(region: Region) -> tuple[BoundaryPath, ...]:
-    """Return the connected paths that bound a region of the plane, also an unbounded one.
+    """Return the connected paths that bound a region of the plane, bounded or not.
 
     Parameters
     ----------
@@ -61,8 +61,9 @@ def boundary_paths(region: Region) -> tuple[BoundaryPath, ...]:
     Returns
     -------
     tuple of BoundaryPath
-        No paths for the empty set and the plane. Closed paths are the region's outlines. Paths
-        touch each other and themselves only in corners.
+        The closed paths, which are outlines of the region, and the paths from infinity to infinity;
+        none for the empty set and the whole plane. Paths touch each other and themselves only in
+        corners.
 
     Notes
     -----
@@ -88,7 +89,7 @@ def boundary_paths(region: Region) -> tuple[BoundaryPath, ...]:
 
 
 def _without_border(loop: list[_Point], border: Fraction) -> list[BoundaryPath]:
-    """Return the paths that remain of a loop without its edges along the border of a square."""
+    """Return the paths that are left of a loop after removing its edges along a square's border."""
     ends = [_along(a, b, border) for a, b in zip(loop, [*loop[1:], loop[0]], strict=True)]
     if not any(ends):
         return [BoundaryPath(_rounded(loop))]
@@ -106,12 +107,12 @@ def _without_border(loop: list[_Point], border: Fraction) -> list[BoundaryPath]:
 
 
 def _along(a: _Point, b: _Point, border: Fraction) -> bool:
-    """Say whether an edge lies in the border of a square."""
+    """Return true if an edge lies on the border of the square with half side `border`."""
     return any(abs(p) == border and p == q for p, q in zip(a, b, strict=True))
 
 
 def _endless(corners: list[_Point]) -> BoundaryPath:
-    """Return the path whose first and last corner lie at infinity."""
+    """Return the path from infinity to infinity along corners; the two ends stand for infinity."""
     start, end = _direction(*corners[:2]), _direction(*corners[-2:])
     inner = corners[1:-1] or [_foot(*corners)]
     return BoundaryPath(_rounded(inner), start, end)
@@ -127,7 +128,7 @@ def _direction(a: _Point, b: _Point) -> FloatArray:
 
 
 def _foot(a: _Point, b: _Point) -> _Point:
-    """Return the point of a line that is nearest to the origin."""
+    """Return the point nearest to the origin on the line through two points."""
     (x, y), (u, v) = a, (b[0] - a[0], b[1] - a[1])
     t = (x * u + y * v) / (u * u + v * v)
     return x - t * u, y - t * v

@@ -1,15 +1,16 @@
-"""The public parts of a partition tree: pieces, nodes, and the names of cases."""
+"""Types of `ObjectTree`: convex pieces, the table of nodes, build policies and split cases."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal, TypeAlias
 
 from ..._types import FloatArray, IndexArray, Scalar
 
-#: The division of a tree: axis-parallel cuts above the facets in random order, or the hyperplanes
-#: of the facets alone, in random order, in the order given, or those first that cut the fewest.
+#: How a tree over facets is built. "balanced": axis-parallel cuts first, then the hyperplanes of
+#: facets in random order. The others use hyperplanes of facets only: in random order, in the given
+#: order, or those first that cut the fewest facets.
 BuildPolicy: TypeAlias = Literal["balanced", "random", "first", "fewest-splits"]
 
-#: The position of a root and a splitting hyperplane to each other (see `split_case`).
+#: How a root's cut and a splitting hyperplane lie to each other (see `ObjectTree.split_case`).
 SplitCase: TypeAlias = Literal[
     "leaf", "same", "opposite", "minus-minus", "minus-plus", "plus-minus", "plus-plus", "crossing"
 ]
@@ -19,19 +20,15 @@ SplitCase: TypeAlias = Literal[
 NormalAndOffset: TypeAlias = tuple[Any, Scalar]
 
 
-#: Vertices, offsets and owners, as `Pieces` holds them.
-PieceArrays: TypeAlias = tuple[FloatArray, IndexArray, IndexArray]
-
-
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """Convex pieces in order: points (1D), segments (2D), polygons (3D).
+    """A list of convex pieces in flat arrays: points (1D), segments (2D), polygons (3D).
 
     Parameters
     ----------
     vertices : (n, d) float64
-        The corners of all pieces one after another, the set on the left (2D), or behind a polygon
-        that is seen counterclockwise (3D).
+        The corners of all pieces one after another. In 2D a set lies on the left of its boundary;
+        in 3D boundary polygons run counterclockwise seen from outside.
     offsets : (k + 1,) int64
         Piece i owns ``vertices[offsets[i]:offsets[i + 1]]``.
     owner : (k,) int64
@@ -43,7 +40,7 @@ class Pieces:
     owner: IndexArray
 
     def __len__(self) -> int:
-        """Count the pieces."""
+        """Return the number of pieces."""
         return len(self.owner)
 
     def __getitem__(self, index: int) -> FloatArray:
@@ -54,16 +51,16 @@ class Pieces:
 
 @dataclass(frozen=True, eq=False)
 class NodeTable:
-    """The inner nodes in preorder: each before its subtrees, the minus subtree first.
+    """The inner nodes of an `ObjectTree` in preorder: a node, its minus subtree, its plus subtree.
 
     Parameters
     ----------
     hyperplanes : (n, d + 1) float64
-        A normal of length 1 and the offset, in model units, rounded.
+        The unit normal and the offset of each node's hyperplane, in model units, rounded.
     minus, plus : (n,) int64
         The children's rows; -1 for a leaf outside, -2 for a leaf inside.
     coefficients : tuple of tuple of int
-        The same hyperplanes exactly: whole numbers n, c with n·x = c, x in lattice steps.
+        The hyperplanes exactly, as integers (*n, c) with n·x = c, x in lattice steps.
     """
 
     hyperplanes: FloatArray
@@ -76,5 +73,5 @@ class NodeTable:
     IN: ClassVar[int] = -2
 
     def __len__(self) -> int:
-        """Count the inner nodes."""
+        """Return the number of inner nodes."""
         return len(self.minus)

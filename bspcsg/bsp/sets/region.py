@@ -1,14 +1,16 @@
 """`Region`: a set of points in the plane with polygonal boundary, as an immutable value."""
 
+import math
 import os
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
+from fractions import Fraction
 from typing import Any, Literal, Self, TypeAlias
 
 import numpy as np
 
 from ..._core import ObjectTree as CoreTree
-from ..._types import FloatArray, Scalar, Vector, WindingRule
+from ..._types import FloatArray, Scalar, SetOp, Vector, WindingRule
 from ...errors import FormatError, LimitError, UnboundedError, core_errors, invalid_parameter
 from ...geometry import transform
 from ...geometry.arrays import doubles
@@ -36,9 +38,20 @@ from ...shapes.sweep import unit_circle
 from ...solid.solid import Solid
 from ..trees.facets import chosen_pitch
 from .boundary import segment_rows
-from .loops import closed_loops, loop_segments, moved_points
+from .flat_set import FlatSet
+from .loops import Outline, closed_loops, loop_segments, moved_points
 from .objects import ObjectTree
-from .plane_queries import PlaneQueries, on_one_lattice, vector2
+from .plane_queries import (
+    cast_line,
+    convex_parts,
+    exact_centroid,
+    exact_outlines,
+    on_one_lattice,
+    outlines_of,
+    rounded_area,
+    vector2,
+)
+from .tree_set import TreeSet
 
 #: The rules that say which winding numbers count as inside, in the plane.
 FillRule: TypeAlias = WindingRule | Literal["negative"]
@@ -47,7 +60,7 @@ _AXES = {"x": (1.0, 0.0), "y": (0.0, 1.0)}
 
 
 @owning
-class Region(PlaneQueries):
+class Region(FlatSet):
     """A polygonal set of the plane.
 
     A point is inside if the winding number of the outlines satisfies the rule; outlines may cross,
@@ -55,8 +68,9 @@ class Region(PlaneQueries):
     snapped to steps of ``10**pitch``, at most 2**53 steps from the origin, and everything else is
     exact. Sets are regularised: points and edges without adjacent area vanish. ``==``, ``<=``,
     ``<``, ``in`` and the like compare sets of points exactly, as for `Solid`. Operations use the
-    finest lattice of the operands, or if it does not reach far enough, the finest one that does and
-    that holds all their corners; without one they raise a `LimitError`.
+    finest lattice of the operands, or if its range is too small, the finest lattice with a
+    sufficient range that has all corners of the operands; without such a lattice they raise a
+    `LimitError`.
 
     Parameters
     ----------
@@ -68,7 +82,7 @@ class Region(PlaneQueries):
         of the polygons; points and lines in collections are ignored.
     winding : {"positive", "nonzero", "even-odd", "negative"}
     pitch : int, optional
-        By default -9, or another if the size requires it.
+        By default -9, or another if the coordinates require it.
 
     Raises
     ------
@@ -86,7 +100,7 @@ class Region(PlaneQueries):
     (20.0, 2)
     """
 
-    __slots__ = ()
+    __slots__ = ("_outlines",)
 
     def __init__(
         self, outlines: Any = (), *, winding: FillRule = "positive", pitch: int | None = None
@@ -95,6 +109,10 @@ class Region(PlaneQueries):
         points = np.concatenate(loops) if loops else np.zeros((0, 2))
         rows = loop_segments(loops).reshape(-1, 4)
         self._set(_built(rows, chosen_pitch(pitch, points), winding))
+
+    def _set(self, tree: CoreTree) -> None:
+        super()._set(tree)
+        self._outlines: tuple[Outline, ...] | None = None
 
     # Making
 
@@ -107,7 +125,7 @@ class Region(PlaneQueries):
         Raises
         ------
         InvalidMeshError
-            If they do not close (`where` lists segments).
+            If the segments do not form closed outlines (`where` lists segments).
         """
         refusal = invalid_parameter(
             "Segments must be pairs of points with two numbers each, in an array of shape (n, 2,"
@@ -134,7 +152,7 @@ class Region(PlaneQueries):
     def rectangle(
         cls, width: Scalar | Vector, height: Scalar | None = None, *, center: bool = False
     ) -> Self:
-        """Return a rectangle with its lowest corner or its middle at the origin.
+        """Return a rectangle with its minimum corner or its centre at the origin.
 
         Give its sides as two numbers or one pair; a single number makes a square.
         """
@@ -147,14 +165,14 @@ class Region(PlaneQueries):
     def circle(
         cls, r: Scalar | None = None, segments: int = SEGMENTS, *, d: Scalar | None = None
     ) -> Self:
-        """Return a regular polygon with its corners on the circle about the origin.
+        """Return a regular polygon with its corners on a circle about the origin.
 
         Parameters
         ----------
         r, d : float
-            Radius, or diameter instead.
+            The radius of the circle, or its diameter.
         segments : int
-            Sides around, at least 3.
+            The number of sides of the polygon, at least 3.
         """
         size = positive(radius(r, d, "A circle"), "r")
         return cls(unit_circle(sides_around(3, segments, "segments")) * size)
@@ -168,17 +186,18 @@ class Region(PlaneQueries):
         d: Scalar | None = None,
         flats: Scalar | None = None,
     ) -> Self:
-        """Return a regular polygon about the origin.
+        """Return a regular polygon about the origin, of a radius or of a width across flats.
 
         Parameters
         ----------
         sides : int
-            At least 3.
+            The number of sides, at least 3.
         r, d : float
-            Radius, or diameter, of the circle that its corners are on; the first is on the x axis.
+            The radius or the diameter of the circle through the corners; the first corner is on the
+            x axis.
         flats : float
-            Diameter of the circle that its sides touch, instead: with an even number of sides the
-            width across flats, as of a nut. Then the first side is upright.
+            Instead: the diameter of the inscribed circle, which for an even number of sides is the
+            width across flats, as of a nut. The first side is then parallel to the y axis.
 
         Examples
         --------
@@ -191,7 +210,7 @@ class Region(PlaneQueries):
             return cls(unit_circle(around) * positive(radius(r, d, "A regular polygon"), "r"))
         if r is not None or d is not None:
             raise invalid_parameter("A regular polygon needs exactly one of r, d and flats.")
-        # Every other point of twice as many, so that sides lie where they should bit by bit.
+        # Every second point of a circle of twice as many, so that axis-parallel sides are exact.
         corners = unit_circle(2 * around)[1::2]
         return cls(corners * (positive(flats, "flats") / 2 / corners[0, 0]))
 
@@ -209,11 +228,11 @@ class Region(PlaneQueries):
         Parameters
         ----------
         length : float
-            From end to end, at least twice the radius.
+            The length from end to end, at least twice the radius.
         r, d : float
-            Radius of the ends, or the slot's width instead.
+            The radius of the round ends, or their diameter, which is the slot's width.
         segments : int
-            Sides of a full circle, at least 4; an odd number counts as the next one.
+            The number of sides of a full circle, at least 4; an odd number is increased by one.
 
         Examples
         --------
@@ -228,13 +247,13 @@ class Region(PlaneQueries):
             )
         steps = -(-sides_around(4, segments, "segments") // 2)
         turned = unit_circle(2 * steps)[: steps + 1]
-        # From the lowest to the highest point of the right end.
+        # The right end's arc, in the order of increasing y.
         end = np.column_stack([turned[:, 1], -turned[:, 0]]) * size + (whole / 2 - size, 0)
         return cls(np.concatenate([end, -end]))
 
     @classmethod
     def polygon(cls, points: Any, *, pitch: int | None = None) -> Self:
-        """Return the region that one outline encloses, for either orientation ("nonzero")."""
+        """Return the region that one outline of either orientation encloses (rule "nonzero")."""
         return cls([points], winding="nonzero", pitch=pitch)
 
     @classmethod
@@ -259,7 +278,7 @@ class Region(PlaneQueries):
 
     @classmethod
     def compose(cls, regions: Iterable["Region"]) -> "Region":
-        """Return the union of any number of regions, made at once.
+        """Return the union of any number of regions in one operation.
 
         Examples
         --------
@@ -278,8 +297,46 @@ class Region(PlaneQueries):
         with core_errors():
             return cls._of(trees[0].composed(trees[1:]))
 
+    # Set operations
+
+    def _merged(self, other: TreeSet, op: SetOp) -> Self:
+        """Return a result by the faster method: a sweep over the boundaries, or merged trees."""
+        try:
+            a, b = self.tree._aligned(other)
+        except LimitError:
+            a, b = on_one_lattice([self.tree, other.tree])
+        with core_errors():
+            return self._of(a.combined(b, op))
+
+    # Outlines and parts
+
+    @property
+    def outlines(self) -> tuple[Outline, ...]:
+        """The boundary as nested simple loops: outer ones counterclockwise, holes clockwise.
+
+        Collinear edges are joined. Loops touch each other only in corners, and if a corner of one
+        lies on another, the other has a corner there, too. The loops depend only on the set.
+
+        Raises
+        ------
+        UnboundedError
+            If the region reaches to infinity.
+        """
+        if self._outlines is None:
+            self._outlines = outlines_of(self._tree)
+        return self._outlines
+
+    @property
+    def exact_outlines(self) -> list[list[tuple[Fraction, Fraction]]]:
+        """The corners of the outlines in model units, not rounded."""
+        return exact_outlines(self._tree)
+
+    def to_polygons(self) -> list[FloatArray]:
+        """Return the outlines as (n, 2) arrays; ``bspcsg.extrude`` and others take them."""
+        return [outline.points for outline in self.outlines]
+
     def decompose(self) -> list["Region"]:
-        """Return the connected parts, each with its holes; see `components`.
+        """Return the list of connected parts, each with its holes; see `components`.
 
         Examples
         --------
@@ -291,15 +348,15 @@ class Region(PlaneQueries):
 
     @property
     def components(self) -> tuple["Region", ...]:
-        """The connected parts, in the order of their outlines; touching corners connect nothing.
+        """The connected parts, each with its holes, in the order of their outlines.
 
-        Corners that are no lattice points are rounded to them, so that a part that is thinner than
-        a step may come out empty.
+        Parts that touch only in corners are separate. Corners that are not on the lattice are
+        rounded to it, so that a part thinner than a step may become empty.
         """
         return tuple(Region(loops, pitch=self.pitch) for loops in self._parts())
 
     def _parts(self) -> list[list[FloatArray]]:
-        """Return the outlines of each connected part, the outer one first."""
+        """Return for each connected part its outlines, the outer outline before the holes."""
         parts: dict[int, list[FloatArray]] = {}
         outlines = list(enumerate(self.outlines))
         for k, outline in outlines:
@@ -310,6 +367,90 @@ class Region(PlaneQueries):
                 parts[outline.parent].append(outline.points)
         return list(parts.values())
 
+    def convex_parts(self) -> list[FloatArray]:
+        """Return the region divided into convex polygons: the inside leaves of its tree.
+
+        Returns
+        -------
+        list of (n, 2) float64
+            Counterclockwise, in the order of the leaves, rounded.
+        """
+        return convex_parts(self.tree.cells())
+
+    # Measures
+
+    @property
+    def area_exact(self) -> Fraction:
+        """Area in square model units, exactly.
+
+        Raises
+        ------
+        UnboundedError
+            If the region reaches to infinity; so for all measures.
+        """
+        return self.measure
+
+    @property
+    def area(self) -> float:
+        """Area in square model units, rounded once."""
+        return rounded_area(self._tree)
+
+    @property
+    def perimeter(self) -> float:
+        """Length of the boundary in model units, the same as that of the complement.
+
+        Raises
+        ------
+        UnboundedError
+            If the region and its complement both reach to infinity.
+        """
+        inner = self if self.is_bounded else ~self
+        return math.fsum(outline.length for outline in inner.outlines)
+
+    @property
+    def centroid_exact(self) -> tuple[Fraction, Fraction] | None:
+        """Centre of area (barycentre), exactly; None for the empty set."""
+        return exact_centroid(self._tree)
+
+    @property
+    def centroid(self) -> FloatArray:
+        """Centre of area, (2,) float64, each coordinate rounded once; NaN for the empty set."""
+        exact = self.centroid_exact
+        return np.full(2, np.nan) if exact is None else np.array([float(c) for c in exact])
+
+    @property
+    def bounds(self) -> FloatArray | None:
+        """Lowest and highest coordinates, (2, 2) float64, or None for the empty set."""
+        if self.is_empty:
+            return None
+        points = np.concatenate(self.to_polygons())
+        return np.array([points.min(axis=0), points.max(axis=0)])
+
+    # Questions
+
+    def cast(self, origin: Vector, direction: Vector) -> FloatArray:
+        """Return the stretches of a line inside the region.
+
+        Parameters
+        ----------
+        origin, direction : (2,) float
+            The origin is snapped to the lattice, the direction rounded to 53 bits.
+
+        Returns
+        -------
+        (k, 2) float64
+            Entry and exit of each stretch in the order of the line, as multiples t of `direction`
+            from `origin`; infinite if the stretch is. Stretches along the boundary do not count,
+            and a single boundary point separates two stretches. The order is exact, each t is
+            rounded.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the direction is zero or a number is not finite.
+        """
+        return cast_line(self._tree, origin, direction)
+
     # Transforms
 
     def translate(
@@ -317,7 +458,7 @@ class Region(PlaneQueries):
     ) -> "Region":
         """Return the region translated by two numbers, one vector, or along named axes.
 
-        Exact for whole lattice steps.
+        The result is exact for whole lattice steps.
 
         Examples
         --------
@@ -329,7 +470,7 @@ class Region(PlaneQueries):
         return self._placed(transform.translation([*step, 0.0]))
 
     def rotate(self, angle: Scalar, *, about: Vector = (0, 0)) -> "Region":
-        """Return the region rotated counterclockwise about a point, in degrees.
+        """Return the region rotated counterclockwise by an angle in degrees about a point.
 
         Quarter turns are exact.
         """
@@ -343,9 +484,9 @@ class Region(PlaneQueries):
         y: Scalar | None = None,
         about: Vector = (0, 0),
     ) -> "Region":
-        """Return the region scaled by one factor, by two, or along named axes.
+        """Return the region scaled by one factor, by two factors, or along named axes.
 
-        The point `about` stays.
+        The point `about` does not move.
         """
         given = () if factor is None else (factor, *others)
         factors = per_axis(given, "scale factor", missing=1.0, x=x, y=y)
@@ -360,9 +501,9 @@ class Region(PlaneQueries):
         y: Scalar | None = None,
         about: Vector = (0, 0),
     ) -> "Region":
-        """Return the mirror image in the line through the point `about` with this normal.
+        """Return the mirror image across the line through `about` with the given normal.
 
-        The normal is "x", "y", a vector, two numbers, or has the named coordinates.
+        The normal is "x" or "y", a vector, two numbers, or given by the coordinates `x` and `y`.
         """
         given = () if normal is None else (normal, *others)
         across = per_axis(given, "normal", x=x, y=y)
@@ -392,7 +533,7 @@ class Region(PlaneQueries):
         return self._placed(transform.matrix_factor(wide))
 
     def _placed_about(self, point: Vector, factor: Factor) -> "Region":
-        """Return the image under a factor with a given fixed point instead of the origin."""
+        """Return the image under an affine map applied about a point, not about the origin."""
         x, y = vector2(point, "about")
         placed = self
         for one in reversed(transform.about((x, y, 0.0), (factor,))):
@@ -402,7 +543,8 @@ class Region(PlaneQueries):
     def _placed(self, factor: Factor) -> "Region":
         motion = transform.lattice_motion((factor,), self.pitch)
         if motion is not None:
-            # A region that leaves this lattice is moved by coordinates to a coarser one.
+            # If the image does not fit the lattice, the code below moves the corners to a coarser
+            # one.
             with suppress(LimitError):
                 return self._moved(list(motion.axes[:2]), list(motion.shift[:2]))
         if self.is_bounded:
@@ -419,7 +561,7 @@ class Region(PlaneQueries):
         return ~outside._placed(factor)
 
     def _pitch_for(self, loops: Sequence[FloatArray]) -> int | None:
-        """Return the region's own pitch if its lattice holds these points."""
+        """Return the region's own pitch if its lattice has the range of these points, else None."""
         largest = max((float(np.abs(loop).max()) for loop in loops), default=0.0)
         return self.pitch if largest < (2**53 - 1) * 10.0**self.pitch else None
 
@@ -433,20 +575,20 @@ class Region(PlaneQueries):
         segments: int = SEGMENTS,
         miter_limit: Scalar = 1e6,
     ) -> "Region":
-        """Return the region with its outline moved outwards.
+        """Return the region with its outline moved outwards, or inwards, by a distance.
 
         Parameters
         ----------
         delta : float
             The distance, in model units; inwards if it is negative.
         join : {"round", "miter", "square", "bevel"}
-            The form of corners from which the outline moves away: arcs; the corners where the moved
-            lines meet; corners cut off across, at the distance `delta` from the old one; or cut off
-            from the end of one moved line to the next.
+            The shape at corners from which the outline moves away. "round": an arc; "miter": the
+            corner where the moved edges meet; "square": cut off at the distance `delta` from the
+            old corner; "bevel": cut off from the end of one moved edge to the start of the next.
         segments : int
-            Sides of a full circle, for arcs, at least 3.
+            The number of sides of a full circle, for arcs, at least 3.
         miter_limit : float
-            Mitred corners that reach farther than this multiple of `delta` become square.
+            Mitred corners farther than this multiple of `delta` from the old corner become square.
 
         Raises
         ------
@@ -459,8 +601,8 @@ class Region(PlaneQueries):
 
         Notes
         -----
-        Corners are rounded to some 2**-40 of the region's size. Arcs and mitred corners are those
-        of OpenSCAD, `segments` being its ``$fn``.
+        Corners are rounded to about 2**-40 of the region's extent. Arcs and mitred corners are
+        those of OpenSCAD, with `segments` as its ``$fn``.
 
         Examples
         --------
@@ -481,23 +623,23 @@ class Region(PlaneQueries):
         *,
         segments: int = SEGMENTS,
     ) -> "Region":
-        """Return the region with round corners.
+        """Return the region with corners rounded by arcs.
 
         Parameters
         ----------
         r : float
-            Radius of the arcs, in model units.
+            The radius of the arcs, in model units.
         corners : function, optional
-            Takes points, (n, 2), and returns a truth value for each. By default all corners where
-            the outline bends by more than 30 degrees; other corners are never rounded.
+            Takes corners, (n, 2), and returns for each whether to round it. Only corners where the
+            outline bends by more than 30 degrees are rounded; by default all of these.
         segments : int
-            Sides of a full circle, at least 4.
+            The number of sides of a full circle, at least 4.
 
         Raises
         ------
         InvalidParameterError
-            If the edges have no room, or new corners cross another outline; the message names the
-            place.
+            If edges are too short, or new corners cross another outline; the message has the
+            coordinates.
         UnboundedError
             If the region and its complement both reach to infinity.
 
@@ -522,7 +664,7 @@ class Region(PlaneQueries):
         Parameters
         ----------
         size : float
-            Distance from the corner to the cut, on both edges, in model units.
+            The distance from the corner to the cut along both edges, in model units.
         corners : function, optional
             As for `fillet`.
 
@@ -543,7 +685,7 @@ class Region(PlaneQueries):
         return chamfer_region(self, size, corners)
 
     def hull(self) -> "Region":
-        """Return the convex hull, exactly.
+        """Return the convex hull of the region, exactly.
 
         Examples
         --------
@@ -556,16 +698,16 @@ class Region(PlaneQueries):
         return hull_of_region(self)
 
     def simplify(self, tolerance: Scalar) -> "Region":
-        """Return the region with fewer corners.
+        """Return the region with fewer corners, within a tolerance of the old outline.
 
-        Corners that are left stay where they are. Each point of the new outline lies within
-        `tolerance` of the old one, and the other way round but for parts that are thinner: these
-        may vanish, and where outlines come to cross each other their parts are united.
+        The remaining corners do not move. Each point of the new outline lies within `tolerance` of
+        the old outline, and vice versa, except that parts thinner than `tolerance` may vanish.
+        Where new outlines cross, their insides are united.
 
         Parameters
         ----------
         tolerance : float
-            In model units. With 0 the region itself is returned.
+            The largest distance in model units. With 0 the region itself is returned.
 
         Raises
         ------
@@ -585,21 +727,22 @@ class Region(PlaneQueries):
         return simplify_region(self, tolerance)
 
     def warp(self, function: Callable[[FloatArray], Any]) -> "Region":
-        """Return what the region becomes if each of its corners moves.
+        """Return the region after a function has moved each of its corners.
 
-        Edges stay straight. Inside is what the moved outlines go round, in whichever direction, so
-        that mirror images are right; where a fold covers a part twice, from either side once, it
-        cancels out.
+        Edges stay straight. Inside are the points with a winding number of the moved outlines that
+        is not zero, so that mirror images are correct; a fold that covers a part once in either
+        orientation cancels out.
 
         Parameters
         ----------
         function : callable
-            Takes (n, 2) float64 and returns as many points; it may change the array it gets.
+            Takes all corners, (n, 2) float64, and returns the moved corners, (n, 2); it may change
+            its argument.
 
         Raises
         ------
         InvalidParameterError
-            If what it returns has another shape or is not finite.
+            If the function returns another shape or a number that is not finite.
         UnboundedError
             If the region reaches to infinity.
 
@@ -630,9 +773,9 @@ class Region(PlaneQueries):
         slices: int | None = None,
         taper: Scalar = 0.0,
     ) -> Solid:
-        """Return what the region sweeps on its way up, nothing if it is empty.
+        """Return the solid that the region sweeps along z, from 0 to the height.
 
-        The parameters are those of `bspcsg.extrude`.
+        The parameters are those of `bspcsg.extrude`; an empty region gives an empty solid.
 
         Examples
         --------
@@ -646,7 +789,7 @@ class Region(PlaneQueries):
         )
 
     def revolve(self, *, angle: Scalar = 360.0, segments: int = SEGMENTS) -> Solid:
-        """Return what the region sweeps around the z axis, x being the distance from the axis.
+        """Return the solid that the region sweeps around z; x is the distance from the axis.
 
         See `bspcsg.revolve`; empty for an empty region.
         """
@@ -655,19 +798,19 @@ class Region(PlaneQueries):
     # Files and other libraries
 
     def to_svg(self, path: str | os.PathLike[str], **options: Any) -> None:
-        """Write an SVG file (see `bspcsg.bsp.save_svg`)."""
+        """Write the region to an SVG file (see `bspcsg.bsp.save_svg`)."""
         from ..drawings.svg import save_svg
 
         save_svg(self, path, **options)
 
     def to_dxf(self, path: str | os.PathLike[str]) -> None:
-        """Write a DXF file (see `bspcsg.bsp.save_dxf`)."""
+        """Write the region to a DXF file (see `bspcsg.bsp.save_dxf`)."""
         from ..drawings.dxf import save_dxf
 
         save_dxf(self, path)
 
     def save(self, path: str | os.PathLike[str], **options: Any) -> None:
-        """Write a drawing; the suffix chooses SVG or DXF (see `to_svg`, `to_dxf`).
+        """Write the region to an SVG or a DXF file, by the path's suffix (see `to_svg`, `to_dxf`).
 
         Raises
         ------
@@ -694,24 +837,26 @@ class Region(PlaneQueries):
         show(self)
 
     def to_shapely(self) -> Any:
-        """Return a ``shapely.MultiPolygon``; shapely must be installed."""
+        """Return the region as a ``shapely.MultiPolygon``; shapely must be installed."""
         shapely = interop.optional("shapely", "shapely")
         return shapely.MultiPolygon([(shell, holes) for shell, *holes in self._parts()])
 
     def _repr_svg_(self) -> str | None:
-        """Return a picture for notebooks; None if there is no outline to show."""
+        """Return an SVG picture for notebooks, or None if there is no outline."""
         from ...report.viewer.notebook import region_svg
 
         return region_svg(self)
 
     def _repr_png_(self) -> bytes | None:
-        """Return a picture, for notebooks that show pixels only; None without Pillow, too."""
+        """Return a PNG picture for notebooks, or None if there is no outline or no Pillow."""
         from ...report.viewer.notebook import region_png
 
         return region_png(self)
 
+    # As a value
+
     def __repr__(self) -> str:
-        """Say how large it is, as far as that is cheap."""
+        """Return a text with the numbers of outlines and corners and the area."""
         if self.is_empty or self.is_full:
             return f"Region({'empty' if self.is_empty else 'full'})"
         if not self.is_bounded:
@@ -724,7 +869,7 @@ class Region(PlaneQueries):
 
 
 def _moved_corners(points: FloatArray, given: Any) -> FloatArray:
-    """Return what a function made of points, if it may be corners."""
+    """Return the corners that a function returned, or raise an error if they are invalid."""
     wrong = invalid_parameter(
         "The function must return an array of numbers of the shape that it is given,"
         f" {points.shape}."
@@ -745,7 +890,7 @@ def _moved_corners(points: FloatArray, given: Any) -> FloatArray:
 
 def _built(rows: FloatArray, pitch: int, winding: FillRule) -> CoreTree:
     if isinstance(winding, str) and winding == "negative":
-        # Whatever winds once backwards winds once forwards seen from behind.
+        # Reversed segments have the opposite winding numbers.
         rows, winding = np.ascontiguousarray(rows[:, [2, 3, 0, 1]]), "positive"
     rule = winding_rule(winding)
     with core_errors():

@@ -1,4 +1,4 @@
-"""Points and hyperplanes as rows for the core."""
+"""Check points and hyperplanes, and convert them to rows for the core."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -14,7 +14,7 @@ from .pieces import NormalAndOffset
 
 
 def hyperplane(normal: Any, offset: Scalar, dimension: int | None = None) -> exact.Hyperplane:
-    """Return the hyperplane of a normal, which one number may stand for, and an offset."""
+    """Return the exact hyperplane with a normal and an offset; in 1D a number can be the normal."""
     entries = np.atleast_1d(np.asarray(normal, dtype=object)).tolist()
     count = len(entries)
     if dimension is None and not 1 <= count <= 3:
@@ -29,17 +29,17 @@ def hyperplane(normal: Any, offset: Scalar, dimension: int | None = None) -> exa
 
 
 def hyperplane_row(normal: Any, offset: Scalar, dimension: int, pitch: int) -> list[int]:
-    """Return the normal and the offset of the nearest hyperplane of a lattice, in its steps."""
+    """Return the lattice hyperplane nearest to a given one, as integers (*normal, offset)."""
     return hyperplane(normal, offset, dimension).on_lattice(pitch).row
 
 
 def hyperplane_rows(cuts: Sequence[NormalAndOffset], dimension: int, pitch: int) -> list[list[int]]:
-    """Return a row for each hyperplane."""
+    """Return for each hyperplane the nearest one of the lattice, as integers (*normal, offset)."""
     return [hyperplane_row(*pair, dimension, pitch) for pair in pairs_of(cuts)]
 
 
 def point_rows(points: Any, dimension: int) -> FloatArray:
-    """Return points as (k, dimension) float64."""
+    """Return points as a (k, dimension) float64 array, or raise an error for another shape."""
     array = np.ascontiguousarray(
         doubles(points, invalid_parameter("points must be an array of numbers."))
     )

@@ -1,4 +1,4 @@
-"""Sections of solids by planes, as regions."""
+"""Sections of solids by planes, as regions in coordinates of the plane."""
 
 from fractions import Fraction
 from typing import Any, overload
@@ -14,7 +14,7 @@ from ...parameters import number, of_kind
 from ...solid.solid import Solid
 from .region import Region
 
-#: For a normal along an axis: the axes of the section's coordinates, right-handed about the normal.
+#: For a normal along an axis: the indices of the two axes that the section's coordinates follow.
 _AXES = {
     (1, 0, 0): (1, 2),
     (-1, 0, 0): (2, 1),
@@ -42,7 +42,10 @@ def slice_solid(
     *,
     origin: Vector | None = None,
 ) -> Region | list[Region]:
-    """Return sections of a solid by planes, in coordinates of the planes (see `Solid.slice`)."""
+    """Return the section of a solid by a plane, or a list of sections for several offsets.
+
+    Sections are in coordinates of the plane; parameters are those of `Solid.slice`.
+    """
     of_kind(Solid, solid, "solid")
     if axes_of(offset) == 1:
         return _sections(solid, list(offset), normal, None)
@@ -56,7 +59,7 @@ def _sections(
     products = [_product(direction, offset, origin) for offset in offsets]
     planes = [Hyperplane.from_numbers(direction.tolist(), product) for product in products]
     tree = solid.normalized().tree
-    # A plane beyond the lattice does not cut a bounded solid.
+    # A plane outside the range of the lattice does not cut a bounded solid.
     is_met = [plane.is_above_lattice(tree.pitch) is None for plane in planes]
     if not all(is_met) and not solid.is_bounded:
         is_met = [True] * len(planes)
@@ -69,14 +72,14 @@ def _sections(
 
 
 def _region(edges: FloatArray, normal: FloatArray, pitch: int) -> Region:
-    """Return the region that (n, 6) edges in a plane enclose."""
+    """Return the region that (n, 6) edges in a plane enclose, in the plane's coordinates."""
     segments = _in_plane(edges.reshape(-1, 3), normal).reshape(-1, 2, 2)
     proper = (segments[:, 0] != segments[:, 1]).any(axis=1)
     return Region.from_segments(segments[proper], pitch=pitch)
 
 
 def _product(normal: FloatArray, offset: Scalar, origin: Vector | None) -> Fraction:
-    """Return the product of the normal with the points of the plane."""
+    """Return the exact offset n·x of the plane: `offset`, or n·x at the point `origin`."""
     if origin is None:
         return exact_number(number(offset, "offset"))
     pairs = zip(normal.tolist(), vector3(origin, "origin").tolist(), strict=True)
@@ -84,7 +87,7 @@ def _product(normal: FloatArray, offset: Scalar, origin: Vector | None) -> Fract
 
 
 def _in_plane(points: FloatArray, normal: FloatArray) -> FloatArray:
-    """Return (n, 2) coordinates of points in a plane."""
+    """Return the (n, 2) coordinates of points in the frame of a plane with this normal."""
     u, v = plane_frame(normal)
     columns = [sum(points[:, k] * axis[k] for k in range(3)) for axis in (u, v)]
     return np.column_stack(columns)
@@ -93,9 +96,9 @@ def _in_plane(points: FloatArray, normal: FloatArray) -> FloatArray:
 def plane_frame(normal: Vector) -> tuple[FloatArray, FloatArray]:
     """Return the two unit vectors of a plane's coordinates, right-handed about its normal.
 
-    A coordinate axis keeps the other two in cyclic order: z gives (x, y), x gives (y, z), y gives
-    (z, x); a negative axis exchanges them. Any other normal n gives the horizontal direction z × n
-    first, and what points up the slope, n × (z × n), second.
+    For a normal along a coordinate axis they are the two other axes in cyclic order: z gives (x,
+    y), x gives (y, z), y gives (z, x); a negative axis exchanges them. For any other normal n, the
+    first is the horizontal direction z × n, the second n × (z × n), which points up the slope.
     """
     n = vector3(normal, "normal")
     n = n / np.abs(n).max()
@@ -105,7 +108,7 @@ def plane_frame(normal: Vector) -> tuple[FloatArray, FloatArray]:
         unit = np.eye(3)
         return unit[axes[0]], unit[axes[1]]
     n = n / np.linalg.norm(n)
-    # Not vertical: more than one component, so that z × n is zero for x = y = 0 alone.
+    # n is not along an axis here, so z × n is not zero.
     u = np.array([-n[1], n[0], 0.0])
     u /= np.linalg.norm(u)
     return u, np.cross(n, u)

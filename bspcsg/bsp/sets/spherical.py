@@ -1,8 +1,8 @@
-"""Sets of directions: regions of the circle (1S) and of the sphere (2S), exactly.
+"""Sets of directions: exact regions of the circle and of the sphere.
 
 A great circle is the section of the sphere by a plane through the origin. So a region of the sphere
-is a set in space cut only by such planes, and set operations are those of `ObjectTree`, in the
-plane for directions of the plane, in space for directions of space.
+corresponds to a cone: a set in space cut only by such planes. Set operations are those of
+`ObjectTree`, in 2D for directions of the plane, in 3D for directions of space.
 """
 
 import math
@@ -23,7 +23,7 @@ from ...parameters import of_kind, shown
 from .objects import ObjectTree
 from .operators import SetOperators
 
-#: The lattice of cones: directions are whole numbers.
+#: The pitch of the lattice of cones, whose steps are 1: directions are integer vectors.
 _WHOLE = 0
 
 #: The largest coordinate of a direction. Normals between such directions have 106 bits, which the
@@ -34,11 +34,11 @@ _MAX_DIRECTION = 1 << 52
 class SphericalRegion(SetOperators):
     """A set of directions of the plane or of space; an immutable value.
 
-    Make one with `hemisphere`, `polygon`, `arc`, `empty` or `full`, and combine them with
-    ``| & - ^ ~``. Directions are points seen from the origin, of any length; their numbers count as
-    the decimals they are written as. Directions that need integers beyond 2**52 are rounded to
-    smaller ones, the same everywhere, so that arcs between them are exact; axes are not rounded.
-    All decisions are exact; only sizes are rounded.
+    Make one with `hemisphere`, `polygon`, `arc`, `empty` or `full`, and combine them with ``| & - ^
+    ~``. Directions are vectors of any length; their numbers count as the decimals they are written
+    as. A direction that is no multiple of integers up to 2**52 is rounded to one that is, so that
+    arcs between directions are exact; axes are not rounded. All decisions are exact; only `measure`
+    and `share` are rounded.
 
     Examples
     --------
@@ -64,17 +64,17 @@ class SphericalRegion(SetOperators):
 
     @classmethod
     def empty(cls, dimension: int = 3) -> Self:
-        """Return no direction, of the plane (2) or of space (3)."""
+        """Return the empty set of directions of the plane (dimension 2) or of space (3)."""
         return cls(ObjectTree.uniform(dimension, full=False, pitch=_WHOLE))
 
     @classmethod
     def full(cls, dimension: int = 3) -> Self:
-        """Return all directions, of the plane (2) or of space (3)."""
+        """Return the set of all directions of the plane (dimension 2) or of space (3)."""
         return cls(ObjectTree.uniform(dimension, full=True, pitch=_WHOLE))
 
     @classmethod
     def hemisphere(cls, axis: Any) -> Self:
-        """Return the directions at most a quarter turn away from an axis, (2,) or (3,)."""
+        """Return all directions within a quarter turn of an axis, a vector (2,) or (3,)."""
         whole = _whole(axis)
         return cls(ObjectTree.half_space([-x for x in whole], 0, pitch=_WHOLE))
 
@@ -85,12 +85,12 @@ class SphericalRegion(SetOperators):
         Parameters
         ----------
         corners : (k, 3) array_like of float
-            At least three directions in a hemisphere, counterclockwise seen from outside.
+            At least three directions within one hemisphere, counterclockwise seen from outside.
 
         Raises
         ------
         InvalidParameterError
-            If the polygon is not convex, runs clockwise, or has one corner again and again.
+            If the polygon is not convex, runs clockwise, or all corners have one direction.
         """
         whole = [_snapped(corner) for corner in _listed(corners)]
         if len(whole) < 3 or any(len(corner) != 3 for corner in whole):
@@ -111,7 +111,7 @@ class SphericalRegion(SetOperators):
 
     @classmethod
     def arc(cls, start: Any, end: Any) -> Self:
-        """Return the directions of the plane counterclockwise from start to end, (2,) each."""
+        """Return all directions of the plane counterclockwise from start to end, vectors (2,)."""
         a, b = _snapped(start), _snapped(end)
         if len(a) != 2 or len(b) != 2:
             raise invalid_parameter(
@@ -137,11 +137,11 @@ class SphericalRegion(SetOperators):
         return made
 
     def __invert__(self) -> Self:
-        """Complement."""
+        """Return the complement: all other directions."""
         return type(self)(~self._cone)
 
     def __eq__(self, other: object) -> bool:
-        """Return true if both hold the same directions, exactly."""
+        """Return true if both regions contain exactly the same directions."""
         if not isinstance(other, SphericalRegion):
             return NotImplemented
         return self.dimension == other.dimension and (self ^ other).is_empty
@@ -149,37 +149,37 @@ class SphericalRegion(SetOperators):
     __hash__ = None  # type: ignore[assignment]
 
     def __reduce__(self) -> tuple[Any, tuple[ObjectTree]]:
-        """Pickle the cone."""
+        """Return the cone, for pickling."""
         return type(self), (self._cone,)
 
     def __bool__(self) -> bool:
-        """Say whether the set is not empty."""
+        """Return true if the region is not empty."""
         return not self.is_empty
 
     def __repr__(self) -> str:
-        """Show the share of the circle or sphere."""
+        """Return a text with the fraction of the circle or sphere that the region covers."""
         return f"SphericalRegion({self.dimension - 1}S, {100 * self.share:.1f} %)"
 
     # Questions
 
     @property
     def cone(self) -> ObjectTree:
-        """The points in these directions, as a set of the plane or of space."""
+        """The region's cone: all points of the plane or space whose direction is in the region."""
         return self._cone
 
     @property
     def dimension(self) -> int:
-        """2 for directions of the plane, 3 for those of space."""
+        """2 for directions of the plane, 3 for directions of space."""
         return self._cone.dimension
 
     @property
     def is_empty(self) -> bool:
-        """True if there is no direction."""
+        """True if the region contains no direction."""
         return self._cone.is_empty
 
     @property
     def is_full(self) -> bool:
-        """True if all directions are there."""
+        """True if the region contains all directions."""
         return self._cone.is_full
 
     def classify(self, directions: Any) -> SideArray:
@@ -217,7 +217,7 @@ class SphericalRegion(SetOperators):
         return np.array([side(direction) for direction in _listed(directions)], dtype=np.int8)
 
     def pieces(self) -> list[FloatArray]:
-        """Return the region in convex pieces: the corners of each as unit vectors, (k, d).
+        """Return the region as convex pieces: the corners of each piece as unit vectors, (k, d).
 
         In the plane each piece has two ends; in space corners run counterclockwise seen from
         outside. Pieces are also cut along the projected edges of a cube about the origin.
@@ -226,7 +226,7 @@ class SphericalRegion(SetOperators):
 
     @property
     def measure(self) -> float:
-        """The angle (1S) or solid angle (2S), in radians or steradians."""
+        """The region's angle in radians (2D) or solid angle in steradians (3D)."""
         if self.dimension == 2:
             return math.fsum(_angle(piece) for piece in self.pieces())
         return math.fsum(
@@ -235,11 +235,11 @@ class SphericalRegion(SetOperators):
 
     @property
     def share(self) -> float:
-        """The measure as a share of the whole circle or sphere."""
+        """The fraction of the whole circle or sphere that the region covers."""
         return self.measure / (2 * math.pi if self.dimension == 2 else 4 * math.pi)
 
     def _cut_cube(self) -> Iterator[tuple[Corner, ...]]:
-        """Yield the parts of a cube's faces, or of a square's sides, in the In leaves."""
+        """Yield the parts inside the cone of a cube's faces (3D) or of a square's sides (2D)."""
         nodes = self._cone.nodes
         if not len(nodes):
             yield from _cube(self.dimension) if self.is_full else ()
@@ -258,14 +258,14 @@ class SphericalRegion(SetOperators):
 
 
 def visible_sky(facets: Any, eye: Any) -> SphericalRegion:
-    """Return the directions in which an eye sees none of the facets.
+    """Return the directions in which an eye sees the sky, not blocked by facets.
 
     Parameters
     ----------
     facets : (n, 2, 2) or (n, 3, 3) array_like of float
         Segments in the plane or triangles in space, opaque from both sides.
     eye : (2,) or (3,) array_like of float
-        It must not lie in a facet. A facet seen edge-on hides nothing.
+        The eye must not lie in a facet. A facet seen edge-on hides nothing.
 
     Examples
     --------
@@ -287,7 +287,7 @@ def visible_sky(facets: Any, eye: Any) -> SphericalRegion:
         cone = _cone_of(arms)
         if cone is not None:
             hidden.append(cone)
-    # Merge pairs of neighbours first, so that each direction takes part in few merges.
+    # Unite pairs of neighbours, then pairs of results, so that no operand is large for long.
     while len(hidden) > 1:
         hidden = [
             hidden[k] | hidden[k + 1] if k + 1 < len(hidden) else hidden[k]
@@ -297,7 +297,7 @@ def visible_sky(facets: Any, eye: Any) -> SphericalRegion:
 
 
 def _cone_of(arms: list[list[Fraction]]) -> SphericalRegion | None:
-    """Return the directions of a facet seen from the origin, None if it is seen edge-on."""
+    """Return the directions of a facet with corners `arms` from the origin; None if edge-on."""
     if len(arms) == 2:
         (a, b), (c, d) = map(_snapped, arms)
         turn = a * d - b * c
@@ -321,7 +321,7 @@ def _listed(directions: Any) -> list[Any]:
 
 
 def _whole(direction: Any) -> list[int]:
-    """Return whole numbers without a common divisor in the same direction."""
+    """Return the integers without a common divisor that have the same direction."""
     entries = direction if isinstance(direction, list) else np.asarray(direction, object).tolist()
     try:
         exact = [exact_number(entry) for entry in entries]
@@ -336,7 +336,7 @@ def _whole(direction: Any) -> list[int]:
 
 
 def _snapped(direction: Any) -> list[int]:
-    """Return the nearest whole numbers, not beyond 2**52, in about the same direction."""
+    """Return integers up to 2**52 in nearly the same direction, equal for equal directions."""
     whole = _whole(direction)
     largest = max(map(abs, whole))
     if largest <= _MAX_DIRECTION:
@@ -354,7 +354,7 @@ def _dot(a: Sequence[int], b: Sequence[int]) -> int:
 
 
 def _cube(dimension: int) -> list[tuple[Corner, ...]]:
-    """Return the faces of a cube about the origin, or the sides of a square, counterclockwise."""
+    """Return the faces of a cube (3D) or the sides of a square (2D), counterclockwise."""
     body = Polytope.box([-1] * dimension, [1] * dimension)
     if dimension == 3:
         return list(body.faces)

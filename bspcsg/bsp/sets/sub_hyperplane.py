@@ -20,33 +20,34 @@ from .rows import hyperplane, hyperplane_row, point_rows
 from .slicing import plane_frame
 from .tree_set import TreeSet, set_of
 
-#: A set in a hyperplane.
+#: A set in the coordinates of a hyperplane.
 InnerSet: TypeAlias = Intervals | Region
 
-#: Hyperplanes count as one if their normals and offsets differ by no more than their rounding.
+#: Two hyperplanes count as equal if their normals and, relatively, their offsets differ by at most
+#: this.
 _SAME = 1e-12
 
-#: A set that reaches this many steps from the origin reaches the border of the lattice, even if its
-#: corners are rounded.
+#: A corner more than this many lattice steps from the origin, rounding included, is at the border
+#: of the lattice and stands for infinity.
 _BORDER_STEPS = 2**53 - 4
 
 
 class SubHyperplane(SetOperators):
     """A part of a line in the plane, or of a plane in space; an immutable value.
 
-    The hyperplane has the precision of its doubles; the set in it is exact. ``| & - ^ ~`` combine
+    The normal and offset are doubles; the set in the hyperplane is exact. ``| & - ^ ~`` combine
     parts of one hyperplane.
 
     Parameters
     ----------
     normal : (2,) or (3,) array_like of float
-        Points to the plus side; need not have length 1.
+        The normal, which points to the plus side and may have any length.
     offset : float
         Points x of the hyperplane have ``normal . x == offset``.
     part : Intervals or Region, optional
-        In the hyperplane's coordinates, whose origin is the point nearest to that of space. On a
-        line they grow with the minus side on the left; for planes see `plane_frame`. By default the
-        whole hyperplane.
+        The set in the hyperplane's coordinates; by default the whole hyperplane. Their origin is
+        the point nearest to the origin of space. On a line the coordinate grows with the minus side
+        on the left; for planes see `plane_frame`.
 
     Raises
     ------
@@ -96,12 +97,12 @@ class SubHyperplane(SetOperators):
 
     @classmethod
     def of_boundary(cls, points: TreeSet) -> tuple["SubHyperplane", ...]:
-        """Return a set's boundary as one sub-hyperplane for each hyperplane and side.
+        """Return a set's boundary, with one sub-hyperplane for each hyperplane and orientation.
 
         Parameters
         ----------
         points : Region or ObjectTree
-            The set lies on the minus sides.
+            The set, which lies on the minus side of each sub-hyperplane.
 
         Raises
         ------
@@ -116,9 +117,9 @@ class SubHyperplane(SetOperators):
 
     @classmethod
     def inside(cls, points: TreeSet, normal: Any, offset: Scalar = 0.0) -> "SubHyperplane":
-        """Return the part of a hyperplane that lies inside a set.
+        """Return the part of a hyperplane that lies in the interior of a set.
 
-        What lies on the boundary is left out.
+        The part that lies in the set's boundary is left out.
 
         Parameters
         ----------
@@ -151,32 +152,32 @@ class SubHyperplane(SetOperators):
 
     @property
     def normal(self) -> FloatArray:
-        """The hyperplane's normal, of length 1; it points to the plus side."""
+        """The unit normal of the hyperplane, (d,) float64; it points to the plus side."""
         return self._normal
 
     @property
     def offset(self) -> float:
-        """The normal's product with all points of the hyperplane."""
+        """The offset c of the hyperplane n·x = c with unit normal n, in model units."""
         return self._offset
 
     @property
     def part(self) -> InnerSet:
-        """The set in it, in the hyperplane's coordinates."""
+        """The set in the hyperplane, in the hyperplane's coordinates."""
         return self._part
 
     @property
     def is_empty(self) -> bool:
-        """True if nothing lies in it."""
+        """True if the set in the hyperplane is empty."""
         return self._part.is_empty
 
     @property
     def is_bounded(self) -> bool:
-        """True if the part is bounded."""
+        """True if the set in the hyperplane is bounded."""
         return self._part.is_bounded
 
     @property
     def size(self) -> float:
-        """Length or area.
+        """The length of the part of a line, or the area of the part of a plane, in model units.
 
         Raises
         ------
@@ -187,7 +188,7 @@ class SubHyperplane(SetOperators):
 
     @property
     def centroid(self) -> FloatArray:
-        """Middle of the length or area, (d,) float64; NaN if nothing lies in it.
+        """The centre of mass of the part, (d,) float64; NaN for an empty part.
 
         Raises
         ------
@@ -198,7 +199,7 @@ class SubHyperplane(SetOperators):
         return np.asarray(self._lifted(flat)[0])
 
     def pieces(self) -> list[FloatArray]:
-        """Return the part divided into convex pieces, (m, d) float64 each.
+        """Return the part as a list of convex pieces, each the corners of one, (m, d) float64.
 
         Segments run with the minus side on their left; polygons are counterclockwise seen from the
         plus side.
@@ -219,7 +220,7 @@ class SubHyperplane(SetOperators):
         return [self._lifted(pair[:, None]) for pair in self._part.pairs]
 
     def nearest(self, points: Any) -> tuple[FloatArray, FloatArray]:
-        """Return the nearest point of the part, its border included, to each point.
+        """Return the nearest point of the part to each given point, and its distance.
 
         Parameters
         ----------
@@ -233,7 +234,7 @@ class SubHyperplane(SetOperators):
         Raises
         ------
         InvalidParameterError
-            If nothing lies in the hyperplane.
+            If the part is empty.
         """
         array = point_rows(points, self.dimension)
         if self.is_empty:
@@ -248,7 +249,7 @@ class SubHyperplane(SetOperators):
         return nearest, np.sqrt(((nearest - array) ** 2).sum(axis=1))
 
     def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
-        """Call `nearest`; deprecated, since a projection is a shadow."""
+        """Return what `nearest` returns; deprecated name, since a projection is a shadow."""
         deprecated("SubHyperplane.project", "nearest")
         return self.nearest(points)
 
@@ -261,15 +262,15 @@ class SubHyperplane(SetOperators):
         return made
 
     def __invert__(self) -> Self:
-        """Complement within the hyperplane."""
+        """Return the complement within the hyperplane."""
         return self._with(~self._part)
 
     def _with(self, part: Any) -> Self:
         return self._facing(1.0, part)
 
     def _facing(self, sign: float, part: Any) -> Self:
-        """Return another part of this hyperplane, or of the reversed one."""
-        # Normalising a unit normal again may change it.
+        """Return a part of this hyperplane (sign 1), or of the reversed hyperplane (sign -1)."""
+        # The constructor would normalise the unit normal again, which may change it.
         made = object.__new__(type(self))
         made._normal = sign * self._normal + 0.0
         made._offset = sign * self._offset + 0.0
@@ -278,7 +279,7 @@ class SubHyperplane(SetOperators):
         return made
 
     def _beside(self, other: "SubHyperplane") -> Any:
-        """Return the other's part in the coordinates of this hyperplane."""
+        """Return the part of `other`, which lies in this hyperplane, in this one's coordinates."""
         if self.dimension != other.dimension:
             raise invalid_parameter(
                 f"The sub-hyperplanes have different dimensions, {self.dimension} and"
@@ -295,9 +296,9 @@ class SubHyperplane(SetOperators):
     # Division and motion
 
     def split(self, normal: Any, offset: Scalar = 0.0) -> tuple[Self, Self]:
-        """Return the parts on the minus and the plus side of a hyperplane.
+        """Return the parts on the minus and on the plus side of another hyperplane.
 
-        If the hyperplane coincides with this one, both parts are empty.
+        If both hyperplanes coincide, both parts are empty.
         """
         other = SubHyperplane(normal, offset)
         inner = _frame(self._normal) @ other._normal
@@ -311,12 +312,12 @@ class SubHyperplane(SetOperators):
         return self._with(minus), self._with(plus)
 
     def transform(self, matrix: Any) -> "SubHyperplane":
-        """Return the image under an affine map, which keeps the sides.
+        """Return the image under an affine map, with the images of both sides as sides.
 
         Parameters
         ----------
         matrix : (d + 1, d + 1) or (d, d + 1) array_like of float
-            For column vectors.
+            The affine map as a matrix for column vectors.
 
         Raises
         ------
@@ -332,7 +333,7 @@ class SubHyperplane(SetOperators):
         return moved._with(_moved(self._part, columns, within @ corner))
 
     def reversed(self) -> "SubHyperplane":
-        """Return the same points with the sides exchanged."""
+        """Return the same points with minus and plus side exchanged."""
         across = self._facing(-1.0, self._part)
         columns = _frame(across._normal) @ _frame(self._normal).T
         return across._with(_moved(self._part, columns, np.zeros(self.dimension - 1)))
@@ -340,22 +341,22 @@ class SubHyperplane(SetOperators):
     # As a value
 
     def __eq__(self, other: object) -> bool:
-        """Say whether hyperplane, sides and what lies in it are the same."""
+        """Return true if both sub-hyperplanes have the same normal, offset and part."""
         if not isinstance(other, SubHyperplane):
             return NotImplemented
         mine, others = ([*s._normal.tolist(), s._offset] for s in (self, other))
         return mine == others and self._part == other._part
 
     def __hash__(self) -> int:
-        """Hash the hyperplane."""
+        """Return a hash value of the normal and the offset."""
         return hash((*self._normal.tolist(), self._offset))
 
     def __bool__(self) -> bool:
-        """Say whether the part is not empty."""
+        """Return true if the part is not empty."""
         return not self.is_empty
 
     def __repr__(self) -> str:
-        """Show the hyperplane and what lies in it."""
+        """Return a text with the normal, the offset and the part."""
         normal = ", ".join(f"{x:.6g}" for x in self._normal)
         return f"SubHyperplane(({normal}), {self._offset:.6g}, {self._part!r})"
 
@@ -369,7 +370,7 @@ class SubHyperplane(SetOperators):
 
 
 def _frame(normal: FloatArray) -> FloatArray:
-    """Return the unit vectors of a hyperplane's coordinates as rows."""
+    """Return the unit vectors of a hyperplane's coordinates as rows, (d - 1, d)."""
     if len(normal) == 2:
         return np.array([[-normal[1], normal[0]]]) + 0.0
     return np.array(plane_frame(normal))
@@ -388,14 +389,14 @@ def _tree(points: TreeSet) -> ObjectTree:
 
 
 def _lowest(row: Iterable[int]) -> tuple[int, ...]:
-    """Return a hyperplane's whole numbers without common factors."""
+    """Return the integers of a hyperplane divided by their greatest common divisor."""
     numbers = list(row)
     factor = int(np.gcd.reduce(np.array(numbers, dtype=object)))
     return tuple(number // factor for number in numbers)
 
 
 def _pieces(tree: ObjectTree) -> Iterator[tuple[tuple[int, ...], FloatArray]]:
-    """Yield the pieces of a boundary, each with its hyperplane, the set on the minus side."""
+    """Yield each piece of a tree's boundary with its hyperplane, whose minus side has the set."""
     pieces, rows = tree.boundary(), tree.nodes.coefficients
     for number, owner in enumerate(pieces.owner.tolist()):
         corners, row = pieces[number], _lowest(rows[owner])
@@ -406,7 +407,7 @@ def _pieces(tree: ObjectTree) -> Iterator[tuple[tuple[int, ...], FloatArray]]:
 
 
 def _outward(corners: FloatArray) -> FloatArray:
-    """Return a normal that points out of the set; zero if rounding left no size."""
+    """Return a normal of a piece that points out of the set; zero for a degenerate piece."""
     if corners.shape[1] == 2:
         (x, y), (u, v) = corners
         return np.array([v - y, x - u])
@@ -417,7 +418,10 @@ def _outward(corners: FloatArray) -> FloatArray:
 def _lattice_part(
     tree: ObjectTree, row: tuple[int, ...], pieces: list[FloatArray] | None
 ) -> SubHyperplane:
-    """Return what convex pieces cover in a hyperplane of a tree's lattice; all if they are None."""
+    """Return the sub-hyperplane that convex pieces cover, or the whole hyperplane for None.
+
+    `row` is the hyperplane (*n, c) in lattice steps.
+    """
     step = 10.0**tree.pitch
     longest = max(map(abs, row[:-1]))
     normal = [number / longest for number in row[:-1]]
@@ -468,7 +472,7 @@ def _affine(matrix: Any, dimension: int) -> tuple[FloatArray, FloatArray]:
 
 
 def _moved(part: InnerSet, columns: FloatArray, shift: FloatArray) -> InnerSet:
-    """Return a part's image under an affine map of the hyperplane's coordinates."""
+    """Return the image of a part under an affine map of the hyperplane's coordinates."""
     if isinstance(part, Region):
         return part.transform(np.column_stack([columns, shift]))
     return part.scale(float(columns[0, 0])).translate(float(shift[0]))

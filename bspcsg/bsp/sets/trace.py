@@ -1,4 +1,4 @@
-"""The trace of merging two sets: the steps of the core, node by node."""
+"""`MergeTrace`: the steps of the core when it merges two trees, node by node."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,11 +11,13 @@ if TYPE_CHECKING:
     from ..._core import _MergeRow
     from .objects import ObjectTree
 
-#: A root: a node of an operand in preorder, or a leaf, -1 outside and -2 inside, as in `NodeTable`.
+#: The root of a subtree: the preorder index of a node of an operand, or -1 for a leaf outside and
+#: -2 for a leaf inside, as in `NodeTable`.
 Root: TypeAlias = int
 
-#: The fate of a pair of trees: the second is split by the root of the first; a leaf; one of them as
-#: it is, with all its nodes shared, or its complement.
+#: The result of merging a pair of trees. "divide": the second is split by the root's cut of the
+#: first, and both halves are merged; "leaf-in", "leaf-out": a leaf; otherwise one of the two trees,
+#: with all its nodes shared, or its complement.
 Decision: TypeAlias = Literal[
     "divide",
     "leaf-in",
@@ -26,24 +28,25 @@ Decision: TypeAlias = Literal[
     "second-complement",
 ]
 
-#: The ground that decides a pair: one is a leaf, both are the same nodes, or complements.
+#: Why a pair of trees is not divided: one is a leaf, both share all nodes, or they are complements;
+#: empty if it is divided.
 Because: TypeAlias = Literal["", "first-is-leaf", "second-is-leaf", "same", "complement"]
 
-#: The fate of a node of the first operand: itself; a new node with the same cut; a leaf, because
-#: both its sides had become equal ones.
+#: What a node of the first operand becomes in the result. "shared": the node itself; "rebuilt": a
+#: new node with the same cut; "collapsed-…": a leaf, because both sides became equal leaves.
 Joined: TypeAlias = Literal["shared", "rebuilt", "collapsed-in", "collapsed-out"]
 
 
 @dataclass(frozen=True)
 class MergePair:
-    """The start of combining two trees of one region.
+    """The step that starts to merge two subtrees over one region.
 
     Parameters
     ----------
     a, b : int
-        Their roots, in the first and in the second operand.
+        The roots of the subtrees, in the first and in the second operand.
     decision, because : str
-        The decision about them, and its reason.
+        How the pair is merged, see `Decision`, and why, see `Because`.
     """
 
     a: Root
@@ -54,15 +57,16 @@ class MergePair:
 
 @dataclass(frozen=True)
 class MergeSplit:
-    """The start of splitting a part of the second operand by the cut of the last pair.
+    """The step that starts to split a subtree of the second operand by the cut of the last pair.
 
     Parameters
     ----------
     root : int
-        Its root.
+        The root of the subtree.
     case : str
-        The position of the cut, see `ObjectTree.split_case`. In the cases of two sides the subtree
-        on the first side is split, and the root stays in the second half.
+        How the root's cut and the splitting cut lie to each other, see `ObjectTree.split_case`. For
+        a case such as "minus-plus", the child on the first side is split, and the root goes to the
+        second half.
     """
 
     root: Root
@@ -71,12 +75,12 @@ class MergeSplit:
 
 @dataclass(frozen=True)
 class MergeHalves:
-    """The end of a split of a part of the second operand.
+    """The step that ends the split of a subtree of the second operand.
 
     Parameters
     ----------
     minus, plus : int
-        The roots of its halves.
+        The roots of the half on the minus side and of the half on the plus side.
     """
 
     minus: Root
@@ -85,38 +89,38 @@ class MergeHalves:
 
 @dataclass(frozen=True)
 class MergeJoin:
-    """The join of the results on both sides of a node of the first operand.
+    """The step that joins the merged minus and plus sides of a node of the first operand.
 
     Parameters
     ----------
     node : int
-        The node.
+        The index of the node in the first operand.
     joined : str
-        Its fate in the result.
+        What the node becomes in the result, see `Joined`.
     """
 
     node: Root
     joined: Joined
 
 
-#: A step of merging.
+#: A step of merging two trees.
 MergeStep: TypeAlias = MergePair | MergeSplit | MergeHalves | MergeJoin
 
 
 @dataclass(frozen=True, eq=False)
 class MergeTrace:
-    """A set operation, step by step.
+    """The trace of a set operation on two trees, step by step.
 
-    A divided pair is followed by the splits of the second tree, each with the splits of its
-    subtrees and its halves; then by the pair on the minus side, the pair on the plus side, and the
-    join.
+    After a `MergePair` with the decision "divide" come the steps that split the second tree
+    (`MergeSplit`, `MergeHalves`), then the steps of the pair on the minus side and of the pair on
+    the plus side, then a `MergeJoin`.
 
     Parameters
     ----------
     first, second, result : ObjectTree
     op : str
     steps : tuple of MergePair, MergeSplit, MergeHalves or MergeJoin
-        In the order of the work.
+        The steps in order.
     """
 
     first: "ObjectTree"
@@ -130,16 +134,16 @@ class MergeTrace:
         return len(self.steps)
 
     def __iter__(self) -> Iterator[MergeStep]:
-        """Yield the steps."""
+        """Yield the steps in order."""
         return iter(self.steps)
 
     def __repr__(self) -> str:
-        """Say how many steps there are; iterating shows them."""
+        """Return a text with the operation and the number of steps."""
         return f"MergeTrace({self.op}, {len(self)} steps)"
 
     @property
     def cases(self) -> tuple[SplitCase, ...]:
-        """The cases of all splits in their order."""
+        """The split cases of all `MergeSplit` steps, in order."""
         return tuple(step.case for step in self.steps if isinstance(step, MergeSplit))
 
 
@@ -150,7 +154,7 @@ def merge_trace(
     op: SetOp,
     rows: "list[_MergeRow]",
 ) -> MergeTrace:
-    """Return the trace of the core's rows."""
+    """Return the `MergeTrace` for two operands, their result and the core's rows of steps."""
     return MergeTrace(first, second, result, op, tuple(map(_step, rows)))
 
 

@@ -1,4 +1,4 @@
-"""`TreeSet`: a set of points that is or has a partition tree."""
+"""`TreeSet`: the base class of sets of points with a partition tree."""
 
 from abc import abstractmethod
 from fractions import Fraction
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 class TreeSet(PointSet):
     """A set of points with a partition tree; an immutable value.
 
-    All such sets of one dimension can be compared and combined; a result has the first operand's
-    type.
+    Sets of one dimension can be compared and combined, whatever their class; a result has the first
+    operand's class.
     """
 
     __slots__ = ("_tree",)
@@ -30,34 +30,34 @@ class TreeSet(PointSet):
     @property
     @abstractmethod
     def tree(self) -> "ObjectTree":
-        """The partition tree, with its nodes, cells and pieces of boundary."""
+        """The set's partition tree, with its nodes, cells and pieces of boundary."""
 
     @abstractmethod
     def _merged(self, other: "TreeSet", op: SetOp) -> Self:
-        """Return the set operation on this set and another one."""
+        """Return the result of a set operation on this set and another one."""
 
     def __or__(self, other: object) -> Self:
-        """Union."""
+        """Return the union of both sets."""
         return self._merged(other, "union") if isinstance(other, TreeSet) else NotImplemented
 
     def __and__(self, other: object) -> Self:
-        """Intersection."""
+        """Return the intersection of both sets."""
         return self._merged(other, "intersection") if isinstance(other, TreeSet) else NotImplemented
 
     def __sub__(self, other: object) -> Self:
-        """Difference."""
+        """Return the difference: this set without the other one."""
         return self._merged(other, "difference") if isinstance(other, TreeSet) else NotImplemented
 
     def __xor__(self, other: object) -> Self:
-        """Symmetric difference."""
+        """Return the symmetric difference of both sets."""
         return self._merged(other, "xor") if isinstance(other, TreeSet) else NotImplemented
 
     @abstractmethod
     def split(self, normal: Any, offset: Scalar = 0.0) -> tuple[Self, Self]:
-        """Return the parts on the minus and on the plus side of a hyperplane, as sets."""
+        """Return the parts of the set on the minus and on the plus side of a hyperplane."""
 
     def isdisjoint(self, other: "TreeSet") -> bool:
-        """Say whether the two have no interior point in common; contact is allowed."""
+        """Return true if the sets have no interior point in common; they may touch."""
         return (self & set_of(other)).is_empty
 
     def _is_alike(self, other: object) -> bool:
@@ -91,16 +91,16 @@ class TreeSet(PointSet):
 
     @abstractmethod
     def nearest(self, points: Any) -> tuple[FloatArray, FloatArray]:
-        """Return the nearest boundary point of each point, and its distance."""
+        """Return the nearest boundary point of each point, (k, d), and its distance, (k,)."""
 
     def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
-        """Call `nearest`; deprecated, since a projection is a shadow."""
+        """Return what `nearest` returns; deprecated name, since a projection is a shadow."""
         deprecated(f"{type(self).__name__}.project", "nearest")
         return self.nearest(points)
 
     @property
     def measure(self) -> Fraction:
-        """Length, area or volume in model units, exactly.
+        """The exact length, area or volume of the set in model units, by its dimension.
 
         Raises
         ------
@@ -112,32 +112,32 @@ class TreeSet(PointSet):
 
     @property
     def dimension(self) -> int:
-        """1, 2 or 3."""
+        """The dimension of space: 1, 2 or 3."""
         return self._tree.dimension
 
     @property
     def pitch(self) -> int:
-        """Exponent of the lattice step: it is ``10**pitch`` model units."""
+        """The exponent of the lattice step, which is ``10**pitch`` model units."""
         return self._tree.pitch
 
     @property
     def is_empty(self) -> bool:
-        """True if nothing is inside."""
+        """True if the set has no points."""
         return self._tree.is_empty
 
     @property
     def is_full(self) -> bool:
-        """True if everything is inside."""
+        """True if the set is the whole space."""
         return self._tree.is_full
 
     @property
     def is_bounded(self) -> bool:
-        """True if the set fits into some box."""
+        """True if a bounded box contains the set."""
         return self._tree.is_bounded
 
 
 def set_of(value: object, name: str = "other") -> TreeSet:
-    """Return a value, checked to be a set of points."""
+    """Return the value itself if it is a `TreeSet`, or raise an error that names it."""
     if isinstance(value, TreeSet):
         return value
     message = f"{name} must be a Region, Intervals or an ObjectTree, not {shown(value)}."

@@ -1,6 +1,6 @@
 """Exact visibility polygons in the plane, and visibility volumes in space.
 
-The shadow of a facet is the part of its cone from the eye that lies beyond its hyperplane. The eye
+The shadow of a facet is the part of its cone from the eye that lies behind its hyperplane. The eye
 sees a box minus all shadows.
 """
 
@@ -22,24 +22,24 @@ from ..trees.facets import box_corners, chosen_pitch
 from .objects import ObjectTree
 from .region import Region
 
-#: A corner, exactly.
+#: A point in exact coordinates.
 _Point = list[Fraction]
 
 
 def visibility_polygon(
     segments: Any, eye: Any, low: Sequence[Scalar], high: Sequence[Scalar]
 ) -> Region:
-    """Return the part of a rectangle that an eye sees between segments.
+    """Return the part of a rectangle that an eye sees, with segments as walls.
 
     Parameters
     ----------
     segments : (n, 2, 2) array_like of float
-        They may cross, touch and overlap. A segment that points at the eye hides nothing. All
-        points are snapped to a lattice that suits them.
+        Segments may cross, touch and overlap. A segment whose line contains the eye hides nothing.
+        All points are snapped to a lattice that suits their coordinates.
     eye : (2,) array_like of float
-        Anywhere but on a segment.
+        The eye must not lie on a segment.
     low, high : (2,) array_like of float
-        The corners of the rectangle.
+        The minimum and the maximum corner of the rectangle.
 
     Raises
     ------
@@ -70,7 +70,8 @@ def visibility_polygon(
                 )
             continue
         first, last = (a, b) if turn > 0 else (b, a)
-        # Left of the ray to the first end, right of the ray to the last, and beyond the wall.
+        # The shadow: left of the ray to the first end, right of the ray to the last, behind the
+        # wall.
         ways = (place, first), (last, place), (last, first)
         halves = [_left_of(start, end, pitch) for start, end in ways]
         shadow = halves[0] & halves[1] & halves[2]
@@ -81,15 +82,15 @@ def visibility_polygon(
 def visibility_volume(
     triangles: Any, eye: Any, low: Sequence[Scalar], high: Sequence[Scalar]
 ) -> Solid:
-    """Return the part of a box that an eye sees between triangles.
+    """Return the part of a box that an eye sees, with triangles as walls.
 
     Parameters
     ----------
     triangles : (n, 3, 3) array_like of float
-        As of `visibility_polygon`.
+        Triangles may cross, touch and overlap.
     eye : (3,) array_like of float
     low, high : (3,) array_like of float
-        The corners of the box.
+        The minimum and the maximum corner of the box.
 
     Raises
     ------
@@ -98,7 +99,7 @@ def visibility_volume(
 
     Notes
     -----
-    A triangle whose plane holds the eye hides nothing.
+    A triangle whose plane contains the eye hides nothing.
 
     Examples
     --------
@@ -141,18 +142,18 @@ def _turn(a: _Point, b: _Point, c: _Point) -> Fraction:
 
 
 def _between(place: _Point, a: _Point, b: _Point) -> bool:
-    """Return true if a point of the line through two others lies on the segment between them."""
+    """Return true if `place`, a point of the line through a and b, lies on their segment."""
     return all(min(p, q) <= x <= max(p, q) for x, p, q in zip(place, a, b, strict=True))
 
 
 def _snapped(point: _Point, pitch: int) -> _Point:
-    """Return the nearest point of the lattice, in model units."""
+    """Return the nearest lattice point, in model units."""
     step = Fraction(10) ** pitch
     return [round(x / step) * step for x in point]
 
 
 def _left_of(start: _Point, end: _Point, pitch: int) -> ObjectTree:
-    """Return all points to the left of the line from one point to another."""
+    """Return the half-plane to the left of the line from `start` to `end`."""
     normal = [end[1] - start[1], start[0] - end[0]]
     return ObjectTree.half_space(normal, _offset(normal, start), pitch=pitch)
 
@@ -163,12 +164,12 @@ def _normal(a: _Point, b: _Point, c: _Point) -> Any:
 
 
 def _offset(normal: Sequence[Fraction], point: _Point) -> Any:
-    """Return the product of a normal and a point, a number that half-spaces take."""
+    """Return the exact product of a normal and a point."""
     return sum((n * x for n, x in zip(normal, point, strict=True)), Fraction(0))
 
 
 def _united(regions: list[Region]) -> Region:
-    """Return the union; merge neighbours first, so that each corner takes part in few merges."""
+    """Return the union of regions: pairs of neighbours first, then pairs of results."""
     while len(regions) > 1:
         regions = [
             regions[k] | regions[k + 1] if k + 1 < len(regions) else regions[k]

@@ -1,9 +1,9 @@
-"""Measurements of the bounds in the lecture notes.
+"""Measurements of partition trees against the bounds in the lecture notes.
 
-Fragments of n disjoint segments under a random order: at most n + 2 n ln n expected. The chance
-that the line of s_i cuts s_j: at most 1 / (dist(s_i, s_j) + 2), with equality where nothing but
-the segments between them can separate the two. Construction: n² log n. In space the worst case is
-quadratic (`ruled_grid`), surfaces are near linear.
+Fragments of n disjoint segments under a random order: at most n + 2 n ln n expected. The
+probability that the line of s_i cuts s_j: at most 1 / (dist(s_i, s_j) + 2), with equality if only
+the segments between s_i and s_j can separate them. Construction: n² log n. In space the worst case
+is quadratic (`ruled_grid`), surfaces are near linear.
 
 Paterson, Yao 1990, "Efficient binary space partitions for hidden-surface removal and solid
 modeling"; de Berg et al., Computational Geometry, section 12.3.
@@ -23,31 +23,31 @@ from ...errors import InvalidMeshError, invalid_parameter
 from ...parameters import at_least
 from .tree import PartitionTree
 
-#: Side of the square of whole numbers in which random segments lie.
+#: The side of the square in which random segments with integer coordinates start.
 _SQUARE = 1 << 24
 
 
 @dataclass(frozen=True)
 class Growth:
-    """The size of the tree of one scene.
+    """The size and build time of the trees over one scene, compared with a bound.
 
     Parameters
     ----------
     scene : str
     n : int
-        Facets.
+        The number of facets of the scene.
     fragments : float
         On average over the trials.
     bound : float
-        n + 2 n ln n for segments, n² for the grid, n for surfaces.
+        The bound of `fragments`: n + 2 n ln n for segments, n² for the grid, n for surfaces.
     ratio : float
         ``fragments / bound``.
     depth : float
         On average over the trials.
     seconds : float
-        Time of one construction, on average.
+        The time of one construction, on average over the trials.
     work : float
-        Nanoseconds per n² ln n.
+        The time of one construction in nanoseconds, divided by n² ln n.
     """
 
     scene: str
@@ -61,10 +61,10 @@ class Growth:
 
 
 class GrowthTable(list[Growth]):
-    """Rows that print as a table."""
+    """A list of `Growth` rows that prints as a table."""
 
     def __str__(self) -> str:
-        """Return the rows under each other, with a heading."""
+        """Return the table as text: a heading and one line for each scene."""
         names = [field.name for field in fields(Growth)]
         cells = [names] + [[_cell(value) for value in asdict(row).values()] for row in self]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
@@ -80,19 +80,19 @@ def growth_table(
     trials: int = 5,
     seed: int = 0,
 ) -> GrowthTable:
-    """Measure fragments and time against the bounds, for scenes of growing size.
+    """Measure the fragments and the build time of trees over scenes of growing size.
 
     Parameters
     ----------
     segments : sequence of int
-        Sizes of random scenes of disjoint segments, built in random order.
+        The numbers of segments of random scenes of disjoint segments, built in random order.
     grids : sequence of int
-        Sizes of `ruled_grid`, built in random order; even numbers.
+        The even numbers of strips of scenes `ruled_grid`, built in random order.
     meshes : sequence of object
         Surfaces, of any type that `PartitionTree.from_mesh` takes, built with axis-parallel cuts on
         top.
     trials : int
-        Constructions for each row, each with a seed of its own.
+        The number of constructions for each row, each with a seed of its own.
     seed : int
 
     Returns
@@ -152,7 +152,7 @@ def _cell(value: Any) -> str:
 
 @dataclass(frozen=True, eq=False)
 class VisitBound:
-    """The cost of rays and the bound of the notes: C(T) ≤ depth(T) · stabbed leaves.
+    """The cost of rays, compared with the bound C(T) ≤ depth(T) · stabbed leaves of the notes.
 
     The level of a leaf is the number of nodes on its path, and every node that a ray visits is
     above a leaf that it stabs.
@@ -160,11 +160,11 @@ class VisitBound:
     Parameters
     ----------
     cost : (n,) int64
-        C(T) of each ray: all nodes visited, leaves among them.
+        C(T) of each ray: the number of inner nodes and leaves visited.
     leaves : (n,) int64
-        Leaves stabbed.
+        The number of leaves that each ray stabs.
     levels : int
-        depth(T): the nodes on the longest way from the root to a leaf, both counted.
+        depth(T): the number of nodes on the longest path from the root to a leaf, both included.
     """
 
     cost: IndexArray
@@ -173,7 +173,7 @@ class VisitBound:
 
     @property
     def bound(self) -> IndexArray:
-        """``levels * leaves``, (n,) int64."""
+        """The largest possible cost of each ray, ``levels * leaves``, (n,) int64."""
         most: IndexArray = self.levels * self.leaves
         return most
 
@@ -202,7 +202,7 @@ def visit_bound(tree: PartitionTree, origins: Any, directions: Any) -> VisitBoun
 def disjoint_segments(n: int, seed: int = 0) -> FloatArray:
     """Return (n, 2, 2) random segments with whole coordinates, no two of which meet.
 
-    Their lengths are of the order of the distance between neighbours.
+    The segments are about as long as neighbours are apart.
     """
     count = at_least(0, n, "n")
     random = np.random.default_rng(seed)
@@ -221,15 +221,15 @@ def disjoint_segments(n: int, seed: int = 0) -> FloatArray:
 def ruled_grid(n: int) -> FloatArray:
     """Return (n, 4, 3) thin strips whose every partition has a quadratic number of fragments.
 
-    Half of them follow the lines y = i, the other half the lines x = j, just below, of the two
-    rulings of the hyperbolic paraboloid z = xy. Where two strips pass each other, only a plane
-    close to the tangent plane separates them without cutting one, and this plane crosses all other
-    lines of its row and column.
+    The strips follow the two rulings of the hyperbolic paraboloid z = xy: half of them the lines y
+    = i, the other half, just below, the lines x = j. At a crossing, only planes close to the
+    tangent plane separate the two strips without a cut, and such a plane crosses all other strips
+    of this row and column.
 
     Parameters
     ----------
     n : int
-        An even number.
+        The number of strips, even.
 
     Notes
     -----
@@ -256,18 +256,18 @@ def ruled_grid(n: int) -> FloatArray:
 
 @dataclass(frozen=True)
 class CutFrequency:
-    """The frequency with which the line of one segment cuts another segment.
+    """How often the line of one segment cuts another segment, over random orders.
 
     Parameters
     ----------
     cutter, cut : int
-        Indices of the segments.
+        The indices of the segment whose line cuts and of the segment that is cut.
     distance : int
-        Segments between them on the cutter's line, see `shielding_distance`.
+        The number of segments between the two on the cutter's line, see `shielding_distance`.
     bound : float
         ``1 / (distance + 2)``.
     frequency : float
-        Share of the random orders.
+        The fraction of the random orders in which the cut happens.
     """
 
     cutter: int
@@ -278,19 +278,19 @@ class CutFrequency:
 
 
 def cut_frequencies(segments: Any, trials: int = 1000, seed: int = 0) -> list[CutFrequency]:
-    """Count over random orders how often each line cuts each segment, and compare with the bound.
+    """Count over random orders how often each segment's line cuts each other segment.
 
     Parameters
     ----------
     segments : (n, 2, 2) array_like
         Whole numbers below 2^25 in magnitude, no two segments crossing.
     trials : int
-        Random orders, with the seeds ``seed, seed + 1, …``.
+        The number of random orders, with the seeds ``seed, seed + 1, …``.
 
     Returns
     -------
     list of CutFrequency
-        One for each ordered pair of finite distance, in the order of the indices.
+        One row for each ordered pair of segments with finite distance, in the order of the indices.
     """
     count = at_least(1, trials, "trials")
     whole = _whole(segments)
@@ -310,7 +310,7 @@ def cut_frequencies(segments: Any, trials: int = 1000, seed: int = 0) -> list[Cu
 
 
 def shielding_distance(segments: Any, i: int) -> IndexArray:
-    """Return dist(s_i, s_j) for all j: how many segments the line of s_i crosses in between.
+    """Return dist(s_i, s_j) for all j: the number of segments that s_i's line crosses before s_j.
 
     Parameters
     ----------
@@ -321,15 +321,14 @@ def shielding_distance(segments: Any, i: int) -> IndexArray:
     Returns
     -------
     (n,) int64
-        -1 for infinity: where the line of s_i does not cross the relative interior of s_j. A
-        segment that the line only touches, or that lies in it, is crossed by none and shields from
-        none.
+        -1 stands for infinity: the line of s_i does not cross the relative interior of s_j. A
+        segment that the line only touches, or that lies in the line, does not count.
 
     Notes
     -----
-    The distance of the notes and of de Berg et al., section 12.3. The minimum of a random order of
-    s_i, s_j and the `dist` segments between them is s_i with probability 1 / (dist + 2); if another
-    comes first, it shields s_j.
+    The distance of the lecture notes and of de Berg et al., section 12.3. In a random order of s_i,
+    s_j and the `dist` segments between them, s_i comes first with probability 1 / (dist + 2); if
+    one of the segments between comes first, it shields s_j from the line of s_i.
     """
     whole = _whole(segments)
     (x, y), end = whole[i]
@@ -339,7 +338,7 @@ def shielding_distance(segments: Any, i: int) -> IndexArray:
         a = u * (ay - int(y)) - v * (ax - int(x))
         b = u * (by - int(y)) - v * (bx - int(x))
         if a * b < 0:
-            # Where the line meets s_j, as a fraction along s_i's direction: top / (a - b).
+            # The line meets s_j at top / (a - b) along s_i's direction.
             top = a * ((bx - int(x)) * u + (by - int(y)) * v)
             top -= b * ((ax - int(x)) * u + (ay - int(y)) * v)
             places.append((j, (top, a - b) if a > b else (-top, b - a)))
@@ -347,7 +346,11 @@ def shielding_distance(segments: Any, i: int) -> IndexArray:
 
 
 def _counted(count: int, places: list[tuple[int, tuple[int, int]]], length: int) -> IndexArray:
-    """Return for each crossed segment how many are crossed between it and the cutter."""
+    """Return for each crossed segment the number of segments crossed between it and the cutter.
+
+    `places` has the index of each crossed segment and its position along the line as a fraction; -1
+    for segments that are not crossed.
+    """
     distances: IndexArray = np.full(count, -1, dtype=np.int64)
     along = [(Fraction(top, bottom), j) for j, (top, bottom) in places]
     for ahead in (True, False):
@@ -372,7 +375,10 @@ def _whole(segments: Any) -> IndexArray:
 
 
 def _meet(segments: IndexArray, other: IndexArray) -> Any:
-    """Say whether each of the segments has a point in common with another one; exact for 2^25."""
+    """Return for each segment whether it has a point in common with `other`, as (n,) bool.
+
+    Exact for coordinates below 2^25.
+    """
     p, q = segments[:, 0], segments[:, 1]
     r, s = other
 

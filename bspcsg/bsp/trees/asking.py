@@ -1,4 +1,4 @@
-"""Policies given as callables, and hyperplanes given by the caller."""
+"""Build partition trees whose cuts are chosen by a callable or given by the caller."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -21,13 +21,14 @@ class Choice:
     Parameters
     ----------
     depth : int
-        Hyperplanes above the region.
+        The number of hyperplanes on the path from the root to the region.
     count : int
-        Pieces in the region.
+        The number of convex pieces of facets in the region.
     pieces : (k,) int64
         The candidates: convex pieces whose hyperplanes can be chosen, at most `sample` of them.
     minus, plus, splits : (k,) int64
-        For each, how many pieces have parts on the minus side, on the plus side, on both.
+        For each candidate's hyperplane: the number of pieces in the region with a part on its minus
+        side, on its plus side, and on both sides.
     """
 
     depth: int
@@ -42,18 +43,19 @@ class Choice:
         return len(self.pieces)
 
 
-#: A policy of the caller's own: it returns the place of a candidate, or a hyperplane (normal,
-#: offset) that has at least one piece, or a part of one, less on either side than the region has.
+#: A policy of the caller's own: it returns the index of a candidate in the `Choice`, or a
+#: hyperplane (normal, offset) with fewer pieces or parts of pieces on each side than there are in
+#: the region.
 Chooser: TypeAlias = Callable[[Choice], Any]
 
 
 def lattice_rows(cuts: Sequence[tuple[Any, Any]], dimension: int, pitch: int) -> list[list[int]]:
-    """Return hyperplanes (normal, offset) as rows of whole numbers, in lattice steps."""
+    """Return hyperplanes (normal, offset) as integer rows (*normal, offset) in lattice steps."""
     return [_row(normal, offset, dimension, pitch) for normal, offset in pairs_of(cuts)]
 
 
 def pairs_of(cuts: Any) -> list[tuple[Any, Any]]:
-    """Return hyperplanes, each as its normal and its offset."""
+    """Return the hyperplanes as a list of pairs (normal, offset), or raise an error."""
     try:
         return [(normal, offset) for normal, offset in cuts]
     except (TypeError, ValueError) as error:
@@ -77,7 +79,10 @@ def asked_tree(
     lenience: tuple[bool, bool],
     own: list[list[int]],
 ) -> FragmentTree:
-    """Return the core's tree with cuts chosen by a callable."""
+    """Return the core's tree over facets, with each cut chosen by the callable `policy`.
+
+    `own` are hyperplanes of the caller as integer rows, which are tried before the policy.
+    """
     corners, offsets = facets
     dimension = corners.shape[1]
 

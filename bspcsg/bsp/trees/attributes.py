@@ -1,7 +1,8 @@
-"""`AttributeTree`: a partition of space whose regions have labels of any kind.
+"""`AttributeTree`: a partition of space by hyperplanes, with a label for each region.
 
-Facets and hyperplanes are inserted one after the other. Each region that one of them divides
-becomes two, labelled by a cut rule: both inherit the label, or each side gets its own.
+A facet or hyperplane that is inserted divides regions in two. A cut rule labels both halves: they
+inherit the region's label, or each side gets its own.
+
 
 Everything is exact, in whole numbers and fractions; meant for trees of hundreds of regions.
 """
@@ -23,13 +24,14 @@ from .asking import lattice_rows
 from .facets import box_corners, corners_of
 from .node import RegionShape
 
-#: The type of the leaves' labels.
+#: The type of the labels of regions.
 Label = TypeVar("Label")
 
-#: The labels of the two sides of a new cut: those of the region, or one for each side.
+#: The labels of the two halves of a divided region: "inherit" its label, or (minus, plus) labels.
 CutRule: TypeAlias = Literal["inherit"] | tuple[Label, Label]
 
-#: A part of a facet, the link that it comes to, the node above and the side of it.
+#: A part of a facet, the link of the subtree that it enters, the parent node, and the child's
+#: index.
 _Part: TypeAlias = tuple[Sequence[Corner], int, int | None, int]
 
 #: Lattice coordinates are below this many steps.
@@ -38,13 +40,14 @@ _REACH = 2**53
 
 @dataclass(frozen=True)
 class LabelledRegion(Generic[Label]):
-    """A region of an `AttributeTree`.
+    """A convex region of an `AttributeTree`, with its label.
 
     Parameters
     ----------
     label : object
     sides : tuple of (hyperplane, side)
-        The path from the root: integers n, c of n·x = c in lattice steps, and the side, -1 or 1.
+        The hyperplanes on the path from the root, each as the integers (*n, c) of n·x = c in
+        lattice steps, with the side on which the region lies: -1 minus, 1 plus.
     pitch : int
         The lattice step is ``10**pitch`` units.
     """
@@ -54,7 +57,9 @@ class LabelledRegion(Generic[Label]):
     pitch: int
 
     def within(self, low: Sequence[Scalar], high: Sequence[Scalar]) -> RegionShape | None:
-        """Return the part inside a box, as `PartitionTree.region` does; None if there is none.
+        """Return the part of the region inside a box, shaped as by `PartitionTree.region`, or None.
+
+        None means that the region and the box have no volume in common.
 
         Raises
         ------
@@ -65,14 +70,14 @@ class LabelledRegion(Generic[Label]):
         return None if part is None else part.shape(10.0**self.pitch)
 
     def measure_within(self, low: Sequence[Scalar], high: Sequence[Scalar]) -> float:
-        """Return the length, area or volume of the part inside a box, given as for `within`."""
+        """Return the length, area or volume of the region's part inside the box `low` to `high`."""
         part = self._clipped(low, high)
         if part is None:
             return 0.0
         return float(part.measure) * 10.0 ** (self.pitch * part.dimension)
 
     def _clipped(self, low: Any, high: Any) -> Polytope | None:
-        # The whole space as a region has no known dimension.
+        # A region without hyperplanes is the whole space; the box then tells the dimension.
         dimension = len(self.sides[0][0]) - 1 if self.sides else max(np.size(low), 1)
         least, most = box_corners(low, high, dimension)
         part: Polytope | None = Polytope.box(_steps(least, self.pitch), _steps(most, self.pitch))
@@ -109,7 +114,8 @@ class AttributeTree(Generic[Label]):
         self.dimension = dimension_number(dimension)
         self.pitch = pitch_exponent(pitch)
         self._rows: list[tuple[int, ...]] = []
-        #: Links to inner nodes, or -1 - k for label k.
+        #: The minus and plus child of each inner node: the index of an inner node, or -1 - k for
+        #: label k.
         self._links: list[list[int]] = []
         self._labels: list[Label] = [label]
 
@@ -118,11 +124,11 @@ class AttributeTree(Generic[Label]):
         return len(self._labels)
 
     def __repr__(self) -> str:
-        """Say how many regions there are."""
+        """Return a text with the dimension and the number of regions."""
         return f"AttributeTree({self.dimension}D, {len(self)} regions)"
 
     def __eq__(self, other: object) -> bool:
-        """Return true if both have the same cuts and labels."""
+        """Return true if both trees have the same dimension, pitch, cuts and labels."""
         if not isinstance(other, AttributeTree):
             return NotImplemented
         return vars(self) == vars(other)
@@ -139,7 +145,7 @@ class AttributeTree(Generic[Label]):
     # Growing
 
     def insert(self, facet: Any, rule: "CutRule[Label]" = "inherit") -> Self:
-        """Return the tree in which a facet divides each region that it reaches.
+        """Return the tree in which a facet divides each region that it enters.
 
         Parameters
         ----------
@@ -147,7 +153,7 @@ class AttributeTree(Generic[Label]):
             A number on the line, (2, 2) ends of a segment with its minus side on the left, (k, 3)
             corners of a convex polygon, counterclockwise seen from its plus side.
         rule : "inherit" or (minus, plus)
-            The labels of the two sides.
+            The labels of the two halves of each divided region.
 
         Raises
         ------
@@ -240,7 +246,7 @@ class AttributeTree(Generic[Label]):
     # Questions
 
     def labels_at(self, point: Any) -> tuple[Label, ...]:
-        """Return the labels of all regions that a point touches, minus sides first.
+        """Return the labels of all regions that contain a point or border on it, minus sides first.
 
         Parameters
         ----------
@@ -261,11 +267,11 @@ class AttributeTree(Generic[Label]):
         return tuple(found)
 
     def label_at(self, point: Any) -> Label:
-        """Return the label at a point; on a cut that of the minus side."""
+        """Return the label of the region at a point; on a cut the label of the minus side."""
         return self.labels_at(point)[0]
 
     def __iter__(self) -> Iterator[LabelledRegion[Label]]:
-        """Yield the regions, minus before plus."""
+        """Yield the regions in the order of the tree, minus sides first."""
         way: tuple[tuple[tuple[int, ...], int], ...] = ()
         pending = [(self._root, way)]
         while pending:
@@ -278,14 +284,14 @@ class AttributeTree(Generic[Label]):
             pending += [(plus, (*way, (row, 1))), (minus, (*way, (row, -1)))]
 
     def mapped(self, function: Callable[[Label], Any]) -> "AttributeTree[Any]":
-        """Return the tree with a function applied to each label."""
+        """Return the tree with each label replaced by ``function(label)``."""
         made: AttributeTree[Any] = self._copy()
         made._labels = list(map(function_of(function, "function"), self._labels))
         return made
 
 
 def _checked_rule(rule: "CutRule[Label]") -> tuple[Label, Label] | None:
-    """Return the labels of both sides, or None where they inherit."""
+    """Return the labels (minus, plus) of a cut rule, or None if both sides inherit."""
     if isinstance(rule, str) and rule == "inherit":
         return None
     try:
@@ -299,13 +305,16 @@ def _checked_rule(rule: "CutRule[Label]") -> tuple[Label, Label] | None:
 
 
 def _steps(values: Any, pitch: int) -> list[int]:
-    """Return the lattice coordinates nearest to numbers."""
+    """Return the lattice coordinates nearest to coordinates in model units."""
     scale = exact_number(10) ** -pitch
     return [round(exact_number(value) * scale) for value in values]
 
 
 def _supporting(corners: Sequence[Corner]) -> tuple[int, ...]:
-    """Return the hyperplane of a facet with integer corners, with the facet's minus side."""
+    """Return the hyperplane n·x = c through a facet's integer corners as (*n, c).
+
+    Its minus side is the facet's minus side.
+    """
     whole = [[int(x) for x in corner] for corner in corners]
     first = whole[0]
     arms = [[x - y for x, y in zip(corner, first, strict=True)] for corner in whole[1:]]

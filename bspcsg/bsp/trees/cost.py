@@ -1,8 +1,8 @@
-"""The quality of a partition tree: its expected cost and its size.
+"""The quality of a partition tree: the expected cost of a query, and size figures.
 
-The cost of the notes, C(T) = 1 + P⁻ C(T⁻) + P⁺ C(T⁺) with C = 0 for an empty region, is the
+The cost of the lecture notes, C(T) = 1 + P⁻ C(T⁻) + P⁺ C(T⁺) with C = 0 for an empty region, is the
 expected number of nodes that a query visits. With P± = μ(R(T±)) / μ(R(T)) the products along each
-way telescope: C(T) is the sum of μ(R(v)) / μ(R(root)) over all nodes v.
+path telescope: C(T) is the sum of μ(R(v)) / μ(R(root)) over all nodes v.
 """
 
 import math
@@ -17,12 +17,13 @@ from ...parameters import not_negative, word
 if TYPE_CHECKING:
     from .tree import PartitionTree
 
-#: Whom a cost is for: points spread evenly over the root's region, or lines through it.
+#: The kind of query that a cost counts: points spread evenly over the root's region, or rays
+#: through it.
 Query: TypeAlias = Literal["point", "ray"]
 
 
 def cost(tree: "PartitionTree", query: Query = "point", margin: float | None = None) -> float:
-    """Return the expected number of nodes that a query visits.
+    """Return the expected number of nodes that a query of a tree visits.
 
     Parameters
     ----------
@@ -63,24 +64,24 @@ def cost(tree: "PartitionTree", query: Query = "point", margin: float | None = N
 
 @dataclass(frozen=True)
 class Stats:
-    """Size figures of a tree.
+    """The numbers of nodes, leaves, fragments and splits of a tree, its depths and its balance.
 
     Parameters
     ----------
     facets : int
-        Input facets.
+        The number of facets that the tree was built over.
     nodes : int
-        Inner nodes.
+        The number of inner nodes.
     leaves : int
-        Empty regions.
+        The number of leaves, which are empty regions.
     fragments : int
-        Fragments in all coplanar sets.
+        The number of fragments in all coplanar sets.
     splits : int
         The number of times a node's hyperplane cut a fragment in two.
     depth : int
-        Hyperplanes on the longest way from the root to a leaf.
+        The number of hyperplanes on the longest path from the root to a leaf.
     mean_depth : float
-        The same on average over the leaves.
+        The number of hyperplanes on the path from the root to a leaf, averaged over the leaves.
     balance : float
         log2(leaves) / mean_depth: 1 for a tree whose leaves are all at one depth, towards 0 for a
         chain. (No binary tree has a mean depth below log2 of its leaves.)
@@ -97,7 +98,7 @@ class Stats:
 
 
 def stats(tree: "PartitionTree") -> Stats:
-    """Return the size figures of a tree."""
+    """Return the numbers of nodes, leaves, fragments and splits of a tree, and its depths."""
     arrays = tree.arrays
     below = arrays["depth"] + 1
     ends = np.concatenate([below[arrays["minus"] < 0], below[arrays["plus"] < 0]])

@@ -14,19 +14,21 @@ from ...parameters import at_least, shown
 if TYPE_CHECKING:
     from .tree import PartitionTree
 
-#: The parts that make a stored tree again: its core object, its lenience and its margin.
+#: The arguments of `PartitionTree.from_core` for a stored tree: core object, whether non-planar
+#: facets are triangulated and degenerate ones dropped, and margin in model units.
 Parts: TypeAlias = tuple[FragmentTree, tuple[bool, bool], float]
 
 _FORMAT = "bspcsg partition tree"
 _VERSION = 3
-#: The version that had no hyperplanes of one's own; trees without them are still written so.
+#: The version without hyperplanes given by the caller; trees that have none are still written in
+#: it.
 _SECOND = 2
-#: The version that had no checksum.
+#: The version without a checksum.
 _FIRST = 1
 
 
 def to_json(tree: "PartitionTree") -> str:
-    """Return facets as lattice integers, the cuts in preorder, and a checksum of both."""
+    """Return a tree as JSON text: facets as lattice integers, cuts in preorder, a checksum."""
     corners, offsets = tree.core.lattice()
     content = {
         "format": _FORMAT,
@@ -47,7 +49,7 @@ def to_json(tree: "PartitionTree") -> str:
 
 
 def parsed(text: str) -> Parts:
-    """Return the parts of a tree from the text of `to_json`."""
+    """Return the arguments of `PartitionTree.from_core` from the text that `to_json` wrote."""
     try:
         content = json.loads(text)
         known = content["format"] == _FORMAT and content["version"] in (_FIRST, _SECOND, _VERSION)
@@ -83,7 +85,7 @@ def _text(content: dict[str, Any]) -> str:
 
 
 def _checksum(content: dict[str, Any]) -> int:
-    """Return the CRC-32 of the content, independent of the layout of the text."""
+    """Return the CRC-32 of a stored tree's content; whitespace and key order do not affect it."""
     return zlib.crc32(json.dumps(content, separators=(",", ":"), sort_keys=True).encode())
 
 
@@ -103,7 +105,7 @@ def _rebuilt(content: dict[str, Any]) -> Parts:
 
 
 def _whole(values: Any, columns: int) -> IndexArray:
-    """Return whole numbers as int64, in rows of `columns` unless it is 0."""
+    """Return integers as an int64 array: (n, columns), or of the given shape if `columns` is 0."""
     array = np.asarray(values if len(values) else np.zeros(0, dtype=np.int64))
     if array.dtype.kind != "i":
         raise ValueError("an array has numbers that are not integers")
@@ -117,7 +119,7 @@ def _whole(values: Any, columns: int) -> IndexArray:
 
 
 def to_dot(tree: "PartitionTree") -> str:
-    """Return the tree in the language of Graphviz: minus edges solid, plus edges dashed."""
+    """Return the tree as text in Graphviz's DOT language: minus edges solid, plus edges dashed."""
     arrays = tree.arrays
     lines = ["digraph partition_tree {", '  node [shape=box, fontname="sans-serif"];']
     sources = tree.fragments.source
@@ -134,12 +136,12 @@ def to_dot(tree: "PartitionTree") -> str:
     return "\n".join([*lines, "}", ""])
 
 
-#: The largest width of a picture in pixels: doubles still hold three digits after the point.
+#: The largest width of a picture in pixels, at which doubles still have three decimals.
 _MAX_WIDTH_PIXELS = 1 << 20
 
 
 def to_svg(tree: "PartitionTree", size: int = 480) -> str:
-    """Return a picture of a tree in the plane, `size` pixels wide."""
+    """Return a picture of a 2D tree as SVG text, `size` pixels wide."""
     if tree.dimension != 2:
         raise invalid_parameter(
             "Only trees of dimension 2 can be drawn as SVG, and this tree has dimension"

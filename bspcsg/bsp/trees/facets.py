@@ -1,4 +1,4 @@
-"""Points, segments and polygons of any input form, as corners and offsets."""
+"""Read points, segments and polygons in any form as one array of corners with offsets."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -22,7 +22,7 @@ _FORMS = "(n,) points, (n, 2, 2) segments, (n, 3, 3) triangles, or a list of (k,
 
 
 def corners_of(facets: Any) -> Corners:
-    """Return the corners of facets one after another.
+    """Return the corners of all facets in one array, and the offset at which each facet starts.
 
     Raises
     ------
@@ -68,14 +68,14 @@ def _polygons(facets: Any) -> Corners:
 
 
 def mesh_triangles(mesh: Any) -> FloatArray:
-    """Return the (n, 3, 3) triangles of any object that holds a mesh, closed or not."""
+    """Return the (n, 3, 3) triangles of any mesh object, closed or not."""
     vertices, faces = mesh_of(mesh)
     triangles: FloatArray = vertices[faces]
     return triangles
 
 
 def mesh_of(mesh: Any) -> MeshArrays:
-    """Return vertices and triangles of any object that holds a mesh, closed or not."""
+    """Return the vertices and triangles of any mesh object, closed or not."""
     if isinstance(mesh, Solid):
         mesh = mesh.to_mesh()
     vertices, faces = interop.own_arrays(*interop.arrays_from(mesh))
@@ -86,12 +86,12 @@ def mesh_of(mesh: Any) -> MeshArrays:
 
 
 def chosen_pitch(given: Any, points: FloatArray) -> int:
-    """Return the exponent of the lattice step: the given one, or one that suits these points."""
+    """Return the pitch that the caller gave, or else one that suits the points' coordinates."""
     return _suited_pitch(points) if given is None else pitch_exponent(given)
 
 
 def _suited_pitch(points: FloatArray) -> int:
-    """Return the exponent of the lattice step for these points: -9, or another for their size."""
+    """Return the pitch for these points: -9, or another if their coordinates require it."""
     if len(points) == 0 or not np.isfinite(points).all():
         return -9
     extent = float(np.ptp(points, axis=0).max())
@@ -100,12 +100,12 @@ def _suited_pitch(points: FloatArray) -> int:
 
 
 def box_corners(low: Any, high: Any, dimension: int) -> tuple[list[Fraction], list[Fraction]]:
-    """Return the lowest and the highest corner of a box exactly.
+    """Return the minimum and the maximum corner of a box as exact fractions.
 
     Raises
     ------
     InvalidParameterError
-        If a corner has another dimension or is not finite, or the corners are exchanged.
+        If a corner has another dimension or is not finite, or `low` is above `high` on an axis.
     """
     least, most = exact_point(low, dimension, "low"), exact_point(high, dimension, "high")
     if any(start > end for start, end in zip(least, most, strict=True)):
@@ -118,12 +118,12 @@ def box_corners(low: Any, high: Any, dimension: int) -> tuple[list[Fraction], li
 
 
 def vector_rows(given: Any, dimension: int, name: str) -> FloatArray:
-    """Return points or directions as (n, d) float64; a single one becomes one row.
+    """Return points or directions as (n, d) float64; a single vector becomes one row.
 
     Raises
     ------
     InvalidParameterError
-        If the shape is another.
+        If the shape is neither (n, d) nor (d,).
     """
     array = doubles(given, invalid_parameter(f"{name} must be an array of numbers."))
     if dimension == 1 and array.ndim <= 1:

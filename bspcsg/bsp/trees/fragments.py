@@ -1,4 +1,4 @@
-"""`Fragments`: convex pieces of facets in some order, as flat arrays."""
+"""`Fragments`: the convex pieces of facets that a tree stores, as flat arrays."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -10,24 +10,25 @@ from ..._types import BoolArray, FloatArray, IndexArray
 
 @dataclass(frozen=True, eq=False)
 class Fragments:
-    """Convex pieces in order: points (1D), segments (2D), polygons (3D).
+    """The convex pieces of facets of a tree: points in 1D, segments in 2D, polygons in 3D.
 
     Parameters
     ----------
     vertices : (n, d) float64
-        Corners of all fragments one after another, in model units, each within a few units in the
-        last place of its exact position. Counterclockwise seen from the plus side of the fragment.
+        The corners of all fragments one after another, in model units, each within a few units in
+        the last place of its exact position. Counterclockwise seen from the plus side of the
+        fragment.
     offsets : (k + 1,) int64
         Fragment i owns ``vertices[offsets[i]:offsets[i + 1]]``.
     source : (k,) int64
-        Index of the input facet it is a part of.
+        The index of the input facet that each fragment is a part of.
     node : (k,) int64
-        The tree node in whose coplanar set it lies.
+        The index of the tree node in whose coplanar set each fragment lies.
     original : (n,) bool
-        True if the edge from this corner to the next lies on an edge of the input facet. In 2D:
-        true if this end is an end of the input segment.
+        In 3D: true if the edge from this corner to the next lies on an edge of the input facet. In
+        2D: true if this corner is an end of the input segment.
     flipped : (k,) bool
-        True if the fragment faces against its node's hyperplane.
+        True if the fragment's normal is opposite to its node's normal.
     """
 
     vertices: FloatArray
@@ -52,7 +53,7 @@ class Fragments:
         return self.vertices[self.offsets[index] : self.offsets[index + 1]]
 
     def __iter__(self) -> Iterator[FloatArray]:
-        """Yield the corners of each fragment."""
+        """Yield the (m, d) corners of each fragment."""
         return (self[index] for index in range(len(self)))
 
     def take(self, indices: IndexArray) -> "Fragments":

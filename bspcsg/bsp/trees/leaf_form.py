@@ -1,4 +1,4 @@
-"""A tree as the lecture notes draw it: leaves store at most one fragment.
+"""Partition trees in the form of the lecture notes: a leaf stores at most one fragment.
 
 A `PartitionTree` divides until no region has a facet, so that every leaf is empty and every
 fragment lies in the hyperplane of an inner node. In the notes a region with one fragment is a leaf
@@ -21,7 +21,7 @@ EMPTY = -1
 
 @dataclass(frozen=True, eq=False)
 class LeafForm:
-    """A tree whose leaves store |S| ≤ 1 fragments.
+    """A partition tree in which each leaf stores no fragment or one fragment.
 
     The number of nodes is 2 · leaves - 1, as of any tree whose inner nodes have two children. It is
     at most 2 n̄ - 1, with n̄ = Σ |S(v)| the number of fragments, if every cut supports a fragment;
@@ -33,12 +33,13 @@ class LeafForm:
     inner : (m,) int64
         The nodes of the `PartitionTree` that are inner nodes here, in preorder.
     minus, plus : (m,) int64
-        Their children: places in `inner`; -1 for an empty leaf, -2 - k for a leaf that stores
-        fragment k of `PartitionTree.fragments`. Without inner nodes the tree is one leaf.
+        The children of these nodes on the minus and plus side, as indices into `inner`; -1 for an
+        empty leaf, -2 - k for a leaf that stores fragment k of `PartitionTree.fragments`. Without
+        inner nodes the tree is one leaf.
     fragments : int
-        n̄.
+        The number n̄ of fragments of the tree.
     stored : int
-        The number of those that leaves store.
+        The number of fragments that leaves store.
     """
 
     inner: IndexArray
@@ -54,17 +55,17 @@ class LeafForm:
 
     @property
     def nodes(self) -> int:
-        """The number of nodes, leaves among them."""
+        """The number of inner nodes and leaves together."""
         return len(self.inner) + self.leaves
 
 
 def leaf_form(tree: "PartitionTree") -> LeafForm:
-    """Return a tree with its last single fragments in leaves."""
+    """Return a tree in leaf form: a node over a single fragment becomes a leaf that stores it."""
     arrays = tree.arrays
     single = arrays["end"] - arrays["start"] == 1
     stores = single & (arrays["minus"] < 0) & (arrays["plus"] < 0) & (arrays["cut"][:, 0] == -1)
     inner = np.flatnonzero(~stores)
-    # The new link for each node, and at the end the one for no node.
+    # The new link for each node; the last entry is for index -1, an empty leaf.
     links = np.full(len(tree) + 1, EMPTY, dtype=np.int64)
     links[inner] = np.arange(len(inner))
     kept = np.flatnonzero(stores)

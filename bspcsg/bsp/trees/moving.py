@@ -13,7 +13,7 @@ from ...errors import LimitError, core_errors, invalid_parameter
 from ...geometry.arrays import doubles
 from ...geometry.hyperplane import exact_number
 
-#: The axis in the rows of cuts if the cut is a hyperplane of the tree's own.
+#: The first entry of a row of ``arrays["cut"]`` whose second is an index in `own_hyperplanes`.
 _OWN = -2
 
 #: Lattice coordinates are below this many steps.
@@ -44,7 +44,8 @@ def moved_core(
         if cut[0] >= 0:
             row = [0] * core.dimension + [int(cut[1])]
             row[cut[0]] = 1
-            # Stored as an own hyperplane, since the minus side may have the larger coordinates.
+            # After a rotation the minus side may have the larger coordinates, which an
+            # axis-parallel cut cannot express.
             cut[:] = _OWN, len(own)
             own.append(_moved_row(row, matrix, shift, scale))
     moved = np.ascontiguousarray(scale * corners @ matrix.T + shift)

@@ -1,4 +1,4 @@
-"""Nodes and leaves of a partition tree, as light views of its arrays."""
+"""Nodes and leaves of a partition tree: views of its arrays that store only an index."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, Protocol
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 #: The two sides of a hyperplane; minus is inside.
 Side = Literal["minus", "plus"]
 
-#: The axis in the rows of cuts if a facet gave the cut.
+#: The first entry of a row of ``arrays["cut"]`` if the cut is the hyperplane of a facet.
 _PIVOT = -1
 
 #: A bounded convex region: (2,) ends in 1D, (k, 2) corners counterclockwise in 2D, a list of
@@ -23,13 +23,13 @@ RegionShape = FloatArray | list[FloatArray]
 
 
 class Visitor(Protocol):
-    """The functions that `PartitionTree.visit` calls."""
+    """The methods that `PartitionTree.visit` calls on its argument."""
 
     def node(self, node: "Node") -> None:
-        """Visit an inner node."""
+        """Receive an inner node."""
 
     def leaf(self, leaf: "Leaf") -> None:
-        """Visit an empty region."""
+        """Receive a leaf, which is an empty region."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Node:
     ----------
     tree : PartitionTree
     index : int
-        Its place in the preorder of the tree, minus before plus; the root is 0.
+        The node's index in preorder, minus child before plus child; the root is 0.
     """
 
     tree: "PartitionTree"
@@ -48,9 +48,9 @@ class Node:
 
     @property
     def hyperplane(self) -> tuple[FloatArray, float]:
-        """H(v) as unit normal n (d,) and offset c in model units: n·x = c, minus side n·x < c.
+        """H(v) as unit normal n, (d,) float64, and offset c in model units: n·x = c.
 
-        Both are rounded; `coefficients` are exact.
+        The minus side is n·x < c. Both are rounded; `coefficients` are exact.
         """
         arrays = self.tree.arrays
         return arrays["normal"][self.index], float(arrays["offset"][self.index])
@@ -62,25 +62,25 @@ class Node:
 
     @property
     def is_free(self) -> bool:
-        """True if H(v) is not from a facet: it is axis-parallel, or given by the caller."""
+        """True if the node's cut is axis-parallel or given by the caller, not from a facet."""
         return bool(self.tree.arrays["cut"][self.index, 0] != _PIVOT)
 
     @property
     def pivot(self) -> int | None:
-        """The facet whose supporting hyperplane H(v) is, or None for a free cut."""
+        """The index of the facet whose supporting hyperplane is H(v), or None for a free cut."""
         axis, piece = self.tree.arrays["cut"][self.index]
         return None if axis != _PIVOT else int(self.tree.core.piece_sources()[piece])
 
     @property
     def coplanar(self) -> Fragments:
-        """S(v): the fragments that lie in H(v); empty only for a free cut."""
+        """S(v): the fragments that lie in the node's hyperplane; empty only for a free cut."""
         arrays = self.tree.arrays
         start, end = arrays["start"][self.index], arrays["end"][self.index]
         return self.tree.fragments.take(np.arange(start, end))
 
     @property
     def depth(self) -> int:
-        """The number of hyperplanes above."""
+        """The number of hyperplanes on the path from the root to this node."""
         return int(self.tree.arrays["depth"][self.index])
 
     @property
@@ -95,19 +95,19 @@ class Node:
 
     @property
     def parent(self) -> "Node | None":
-        """The node above, None for the root."""
+        """The parent node, None for the root."""
         return self._linked("parent")
 
     @property
     def children(self) -> tuple["Node | Leaf", "Node | Leaf"]:
-        """The minus and the plus side, each a node or a leaf."""
+        """The child on the minus side and the child on the plus side, each a node or a leaf."""
         return self.minus or Leaf(self.tree, self, "minus"), self.plus or Leaf(
             self.tree, self, "plus"
         )
 
     @property
     def region(self) -> RegionShape:
-        """R(v), within the box of the facets grown by the tree's margin."""
+        """The region R(v) of the node, clipped to the facets' box enlarged by the tree's margin."""
         return self.tree.region(self)
 
     @property
@@ -123,7 +123,7 @@ class Node:
         return None if index < 0 else Node(self.tree, index)
 
     def __repr__(self) -> str:
-        """Show the position and the cut of the node."""
+        """Return a text with the node's index, hyperplane and depth."""
         normal, offset = self.hyperplane
         terms = ", ".join(f"{x:.4g}" for x in normal)
         return f"Node({self.index}, normal=({terms}), offset={offset:.6g}, depth={self.depth})"
@@ -131,15 +131,15 @@ class Node:
 
 @dataclass(frozen=True)
 class Leaf:
-    """A region without facets.
+    """A leaf of a partition tree: a convex region without facets.
 
     Parameters
     ----------
     tree : PartitionTree
     parent : Node or None
-        The node above, None for the only leaf of a tree without facets.
+        The parent node, None for the only leaf of a tree without facets.
     side : {"minus", "plus"}
-        On which side of the parent's hyperplane the region lies.
+        The side of the parent's hyperplane on which the region lies.
     """
 
     tree: "PartitionTree"
@@ -148,10 +148,10 @@ class Leaf:
 
     @property
     def depth(self) -> int:
-        """The number of hyperplanes above."""
+        """The number of hyperplanes on the path from the root to this leaf."""
         return 0 if self.parent is None else self.parent.depth + 1
 
     @property
     def region(self) -> RegionShape:
-        """The region, within the box of the facets grown by the tree's margin."""
+        """The region of the leaf, clipped to the facets' box enlarged by the tree's margin."""
         return self.tree.region(self)

@@ -1,4 +1,4 @@
-"""A comparison of pivot policies by the figures of their trees."""
+"""Compare pivot policies by the size, cost and build time of the trees that they give."""
 
 import time
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ from .tree import PartitionTree
 
 @dataclass(frozen=True)
 class PolicyRow:
-    """The figures of one policy's tree.
+    """The size, cost and build time of the tree that one policy gives.
 
     Parameters
     ----------
@@ -40,10 +40,10 @@ class PolicyRow:
 
 
 class Comparison(list[PolicyRow]):
-    """Rows that print as a table."""
+    """A list of `PolicyRow` that prints as a table."""
 
     def __str__(self) -> str:
-        """Return the rows under each other, with a heading."""
+        """Return the table as text: a heading and one line for each policy."""
         names = [field.name for field in fields(PolicyRow)]
         cells = [names] + [[_cell(value) for value in asdict(row).values()] for row in self]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
@@ -54,7 +54,7 @@ class Comparison(list[PolicyRow]):
 def compare_policies(
     facets: Any, policies: Sequence[Policy] = POLICIES, **options: Any
 ) -> Comparison:
-    """Build one tree for each policy and compare them.
+    """Build one tree over the facets for each policy, and return the figures of each tree.
 
     Parameters
     ----------

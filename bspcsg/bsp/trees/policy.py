@@ -1,4 +1,4 @@
-"""Pivot policies: whose hyperplane divides a region.
+"""Pivot policies: the rules that choose the hyperplane to divide a region.
 
 first
     The first facet in the order given.
@@ -44,12 +44,12 @@ Policy: TypeAlias = Literal[
 POLICIES: tuple[Policy, ...] = get_args(Policy)[:-1]
 
 
-#: All facets: no tree has as many as this.
+#: A count above that of the facets of any tree; it stands for all facets.
 _ALL = 2**31
 
 
 def checked_policy(policy: Any) -> Policy:
-    """Return the policy, or raise an error that lists the names."""
+    """Return the name of a known policy, or raise an error that lists all names."""
     for name in get_args(Policy):
         if isinstance(policy, str) and policy == name:
             known: Policy = name
@@ -60,7 +60,7 @@ def checked_policy(policy: Any) -> Policy:
 
 
 def core_options(seed: Any, sample: Any, alpha: Any, top: Any, pitch: Any) -> dict[str, Any]:
-    """Return the numbers of a construction as the core takes them.
+    """Return the checked options of a tree's construction as keyword arguments for the core.
 
     Raises
     ------

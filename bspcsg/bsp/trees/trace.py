@@ -1,8 +1,8 @@
 """Traces of the construction of a tree over facets, and of points and rays in it.
 
-The core records a trace while it works; replaying it takes a few lines and gives the same tree and
-the same answer. Convex pieces are numbered; if no facet is a concave polygon, the numbers are those
-of the facets. `Construction.facets` has the facet of each piece.
+The core records a trace while it works; replaying the trace gives the same tree and the same
+result. Traces number the convex pieces of facets; if no facet is a concave polygon, these are the
+numbers of the facets. `Construction.facets` has the facet of each piece.
 """
 
 from collections.abc import Iterator
@@ -16,8 +16,9 @@ if TYPE_CHECKING:
     from ..._core import _DivisionRow, _RayEventRow
     from .tree import PartitionTree
 
-#: The reason of a hyperplane to divide a region: a policy's name; "median" for an axis-parallel cut
-#: of a long list; "given" for one that was there; "asked" for the choice of a callable.
+#: Why a hyperplane divides a region: the name of the policy that chose it; "median" for an
+#: axis-parallel cut through a region with many facets; "given" for a cut that the caller, a file or
+#: an earlier tree gave; "asked" for the choice of a callable policy.
 Reason: TypeAlias = Literal[
     "first",
     "random",
@@ -36,18 +37,18 @@ _SIDES: dict[int, Side | None] = {-1: "minus", 0: None, 1: "plus"}
 
 @dataclass(frozen=True)
 class Candidate:
-    """A hyperplane that might have been chosen.
+    """A hyperplane that may divide a region, with the figures by which a policy compares it.
 
     Parameters
     ----------
     piece : int
-        The piece whose hyperplane it is.
+        The convex piece of a facet in whose hyperplane the candidate lies.
     minus, plus : int
-        The numbers of pieces with parts on either side.
+        The numbers of pieces in the region with a part on the minus side and on the plus side.
     splits : int
-        The number of those with parts on both.
+        The number of pieces with parts on both sides.
     score : float
-        The value that the policy minimises; of equal ones the first is taken.
+        The value that the policy minimises; of equal scores the first candidate wins.
     """
 
     piece: int
@@ -59,36 +60,36 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Division:
-    """The division of a region by a new node.
+    """The division of a region by the hyperplane of a new node.
 
     Parameters
     ----------
     node : int
-        Its place in preorder.
+        The index of the new node in preorder.
     parent : int or None
-        The node above.
+        The index of the parent node; None for the root.
     side : {"minus", "plus"} or None
-        On which side of it.
+        The side of the parent's hyperplane on which the region lies; None for the root.
     depth : int
-        Hyperplanes above.
+        The number of hyperplanes on the path from the root to the region.
     pivot : int or None
-        The piece whose hyperplane it is.
+        The convex piece whose hyperplane divides the region; None if none does.
     axis : tuple of int or None
-        Instead of a pivot: the axis perpendicular to the cut, and its position in lattice steps.
+        For an axis-parallel cut: the axis perpendicular to it, and its position in lattice steps.
     own : int or None
-        Instead of both: the place in `PartitionTree.own_hyperplanes`.
+        For a hyperplane given by the caller: its index in `PartitionTree.own_hyperplanes`.
     reason : str
-        The reason for this one.
+        Why this hyperplane was chosen, see `Reason`.
     candidates : tuple of Candidate
-        The candidates compared, in their order; none if there was no choice.
+        The candidates in the order of comparison; empty if there was no choice.
     pieces : tuple of int
-        The pieces in the region, in the order of its list.
+        The pieces in the region, in the order in which the construction lists them.
     minus, plus : tuple of int
-        Those with a part on either side.
+        The pieces with a part on the minus side, and with a part on the plus side.
     split : tuple of int
-        Those with parts on both.
+        The pieces with parts on both sides.
     coplanar : tuple of int
-        Those in the hyperplane: S(v).
+        The pieces that lie in the hyperplane, S(v).
     """
 
     node: int
@@ -109,7 +110,7 @@ class Division:
 
 @dataclass(frozen=True, eq=False)
 class Construction:
-    """The making of a tree: its divisions in the order in which they were made.
+    """The trace of how a tree was built: all divisions in the order in which they were made.
 
     Parameters
     ----------
@@ -122,24 +123,24 @@ class Construction:
     facets: IndexArray
 
     def __len__(self) -> int:
-        """Return the number of divisions, which is that of nodes."""
+        """Return the number of divisions, which equals the number of inner nodes."""
         return len(self.divisions)
 
     def __iter__(self) -> Iterator[Division]:
-        """Yield the divisions."""
+        """Yield the divisions in the order in which they were made."""
         return iter(self.divisions)
 
     def __repr__(self) -> str:
-        """Say how many divisions there are; iterating shows them."""
+        """Return a text with the numbers of divisions and pieces."""
         return f"Construction({len(self)} divisions, {len(self.facets)} pieces)"
 
     def __getitem__(self, node: int) -> Division:
-        """Return the division that made a node."""
+        """Return the division that made the inner node with this index."""
         return self.divisions[node]
 
 
 def division(row: "_DivisionRow") -> Division:
-    """Return a division of the core's row."""
+    """Return the `Division` for one row of a construction trace of the core."""
     (node, parent, side, depth, (axis, place), reason), candidates, lists = row
     pieces, minus, plus, split, coplanar = map(tuple, lists)
     return Division(
@@ -162,14 +163,14 @@ def division(row: "_DivisionRow") -> Division:
 
 @dataclass(frozen=True)
 class PointTrace:
-    """The path of a point from the root down.
+    """The path of a point through a tree, from the root downwards.
 
     Parameters
     ----------
     nodes : tuple of Node
-        The inner nodes that it passes.
+        The inner nodes on the path, the root first.
     sides : tuple of {-1, 0, 1}
-        Its side of each hyperplane; only the last can be 0.
+        The point's side of each node's hyperplane: -1 minus, 1 plus, 0 on it, which ends the path.
     end : Node or Leaf
         The empty region in which the point lies, or the node in whose hyperplane it lies.
     """
@@ -180,12 +181,12 @@ class PointTrace:
 
     @property
     def cost(self) -> int:
-        """C(T): the number of nodes visited, the leaf among them."""
+        """C(T): the number of inner nodes and leaves that the point visits."""
         return len(self.nodes) + isinstance(self.end, Leaf)
 
 
 def point_trace(tree: "PartitionTree", path: list[tuple[int, int]]) -> PointTrace:
-    """Return the way of a point of the core's steps."""
+    """Return the `PointTrace` for the core's steps, pairs (node index, side of the point)."""
     nodes = tuple(Node(tree, index) for index, _ in path)
     sides = tuple(side for _, side in path)
     if not nodes:
@@ -196,26 +197,27 @@ def point_trace(tree: "PartitionTree", path: list[tuple[int, int]]) -> PointTrac
 
 @dataclass(frozen=True)
 class RayStep:
-    """A step of a ray on its path; parameters are in lengths of its direction.
+    """A step of a ray on its path through a tree; t is the factor of the ray's direction vector.
 
     Parameters
     ----------
     kind : {"visit", "test", "leaf"}
         An inner node is visited; a piece in its hyperplane is tested; a leaf is stabbed.
     node : int or None
-        The node, or the one above the leaf; None if the whole tree is a leaf.
+        The index of the node, or of a leaf's parent; None if the whole tree is a leaf.
     side : {-1, 0, 1}
         Of a visit: the side of the hyperplane on which the ray starts, which is the near child. Of
         a leaf: the side of the node on which it lies.
     piece : int or None
         The piece that is tested.
     start, end : float or None
-        The parameters at which the ray enters and leaves the region; no end if it stays there.
+        The values of t at which the ray enters and leaves the region; `end` is None if it stays
+        there.
     at : float or None
-        Of a visit: where the ray's line crosses the hyperplane. Of a test: where the ray meets the
-        piece. None if it does not.
+        Of a visit: the t at which the ray's line crosses the hyperplane. Of a test: the t at which
+        the ray meets the piece. None if there is no such t.
     cost : int
-        C(T) so far: the nodes and leaves visited.
+        C(T): the number of nodes and leaves visited up to and including this step.
     """
 
     kind: Literal["visit", "test", "leaf"]
@@ -229,10 +231,11 @@ class RayStep:
 
     @property
     def case(self) -> Literal["near", "far", "both", "within"] | None:
-        """Of a visit: the children through which the ray goes on; None for other steps.
+        """Of a visit: the children through which the ray continues; None for other steps.
 
-        The near child is where the ray starts. "within" is a ray that runs in the hyperplane, and
-        goes through both.
+        "near" is the child in which the ray starts, "far" the other one. "within" means that the
+        ray runs in the hyperplane and goes through both.
+
 
         Notes
         -----
@@ -249,16 +252,17 @@ class RayStep:
 
 @dataclass(frozen=True)
 class RayTrace:
-    """The path of a ray through a tree, up to its first hit.
+    """The path of a ray through a tree, which ends at the first hit.
 
     Parameters
     ----------
     facet : int or None
-        The facet that it meets first.
+        The index of the facet that the ray meets first; None if it meets none.
     t : float
-        The parameter there, rounded correctly; inf for nothing.
+        The hit point is ``origin + t * direction``; rounded correctly, inf without a hit.
     steps : tuple of RayStep
-        In their order: near child, what lies in the hyperplane, far child.
+        The steps in order; at each node the near child, the pieces in the hyperplane, the far
+        child.
     """
 
     facet: int | None
@@ -267,32 +271,32 @@ class RayTrace:
 
     @property
     def nodes(self) -> tuple[int, ...]:
-        """The inner nodes visited, in their order."""
+        """The indices of the inner nodes visited, in the order of the visits."""
         return tuple(s.node for s in self.steps if s.kind == "visit" and s.node is not None)
 
     def __repr__(self) -> str:
-        """Show the hit and the cost; `steps` has the path."""
+        """Return a text with the hit, the number of steps and the cost."""
         met = "no facet" if self.facet is None else f"facet {self.facet} at t = {self.t:.6g}"
         return f"RayTrace({met}, {len(self.steps)} steps, cost {self.cost})"
 
     @property
     def leaves(self) -> int:
-        """The number of leaves that are stabbed."""
+        """The number of leaves that the ray stabs."""
         return sum(step.kind == "leaf" for step in self.steps)
 
     @property
     def tests(self) -> int:
-        """The number of pieces that are tested."""
+        """The number of pieces that the ray is tested against."""
         return sum(step.kind == "test" for step in self.steps)
 
     @property
     def cost(self) -> int:
-        """C(T): all nodes visited, leaves among them."""
+        """C(T): the number of inner nodes and leaves that the ray visits."""
         return self.steps[-1].cost if self.steps else 0
 
 
 def ray_trace(facet: int | None, t: float, rows: "list[_RayEventRow]") -> RayTrace:
-    """Return the way of a ray of the core's rows."""
+    """Return the `RayTrace` for a hit (facet, t) and the rows of steps from the core."""
     steps: list[RayStep] = []
     for kind, node, piece, side, start, end, at in rows:
         cost = (steps[-1].cost if steps else 0) + (kind != "test")
@@ -309,11 +313,11 @@ class RayCosts:
     Parameters
     ----------
     facet : (n,) int64
-        -1 for none.
+        The index of the facet that each ray meets first, -1 for none.
     t : (n,) float64
-        The exact parameter rounded correctly; inf for none.
+        The hit point is ``origin + t * direction``; rounded correctly, inf without a hit.
     nodes, leaves, tests : (n,) int64
-        Inner nodes visited, leaves stabbed, pieces tested.
+        The numbers of inner nodes visited, leaves stabbed and pieces tested by each ray.
     """
 
     facet: IndexArray
@@ -328,6 +332,6 @@ class RayCosts:
 
     @property
     def cost(self) -> IndexArray:
-        """C(T) of each ray: all nodes visited, leaves among them."""
+        """C(T) of each ray, (n,) int64: the number of inner nodes and leaves visited."""
         visited: IndexArray = self.nodes + self.leaves
         return visited

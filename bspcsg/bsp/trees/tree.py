@@ -2,7 +2,7 @@
 
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, Self
 
@@ -15,7 +15,6 @@ from ...formats.atomic import write_file
 from ...formats.source import whole_content
 from ...geometry.arrays import doubles
 from ...geometry.polygon import convex_corners
-from ...owned import owning
 from ...parameters import at_least, not_negative, shown, word
 from .asking import Chooser, asked_tree, lattice_rows
 from .cost import Query, Stats, cost, stats
@@ -24,28 +23,26 @@ from .facets import chosen_pitch, corners_of, mesh_triangles, vector_rows
 from .fragments import Fragments
 from .leaf_form import LeafForm, leaf_form
 from .moving import moved_core
-from .node import Leaf, Node, RegionShape, Side
-from .order import Ordered
+from .node import Leaf, Node, RegionShape, Side, Visitor
+from .order import back_to_front, far_to_near, front_to_back, near_to_far, visit, walk
 from .policy import Policy, checked_policy, core_options
 from .trace import Construction, PointTrace, RayCosts, RayTrace, division, point_trace, ray_trace
 
 if TYPE_CHECKING:
     from ..._core import NodeArrays
 
-#: Margin around the facets for regions, as a share of their largest extent.
+#: The default margin of regions around the box of the facets, as a fraction of its largest extent.
 MARGIN = 0.05
 
-#: The largest number of nodes of a tree that notebooks draw. The picture takes a second and two
-#: megabytes.
+#: Notebooks draw trees with at most this many nodes, which takes one second and two megabytes.
 _MAX_NODES_DRAWN = 10_000
 
 
-@owning
-class PartitionTree(Ordered):
+class PartitionTree:
     """A binary space partition tree over points, segments or polygons.
 
     Each node v has a hyperplane H(v), the coplanar set S(v) of fragments that lie in it, and two
-    subtrees over what lies on its minus (inside) and plus side. Every leaf is an empty region.
+    subtrees over the fragments on its minus (inside) and plus side. Every leaf is an empty region.
     Immutable; safe to share between threads.
 
     Parameters
@@ -57,7 +54,7 @@ class PartitionTree(Ordered):
         nodes.
     policy : str or callable
         The rule whose hyperplane divides a region, see `bspcsg.bsp.trees.policy`. A callable takes
-        a `Choice`, which has the candidates and their counts, and returns the place of one of them,
+        a `Choice`, which has the candidates and their counts, and returns the index of a candidate,
         or a hyperplane (normal, offset).
     seed : int
         For the policy "random".
@@ -149,7 +146,7 @@ class PartitionTree(Ordered):
     def from_core(
         cls, core: FragmentTree, lenience: tuple[bool, bool], margin: float | None = None
     ) -> "PartitionTree":
-        """Return the tree of a core object (for the modules of this package)."""
+        """Return the tree around an object of the core (for the modules of this package)."""
         tree = cls.__new__(cls)
         tree._set(core, lenience, margin)
         return tree
@@ -158,7 +155,7 @@ class PartitionTree(Ordered):
     def from_mesh(
         cls, mesh: Any, policy: Policy = "random", *, top: int = 16, **options: Any
     ) -> "PartitionTree":
-        """Return the tree over the triangles of any object that holds a mesh, closed or not.
+        """Return the tree over the triangles of any mesh object, closed or not.
 
         Triangles without area are left out unless ``degenerate="error"``.
 
@@ -173,10 +170,10 @@ class PartitionTree(Ordered):
 
     @classmethod
     def perfect(cls, facets: Any, **options: Any) -> "PartitionTree | None":
-        """Return an autopartition that cuts no facet, or None if there is none.
+        """Return a tree whose cuts lie in facets' hyperplanes and split no facet, or None.
 
-        An exhaustive search over sets of facets, for at most 24 convex pieces: the question is
-        NP-hard.
+        None means that there is no such tree. The search over sets of facets is exhaustive, for at
+        most 24 convex pieces: the problem is NP-hard.
 
         Parameters
         ----------
@@ -198,17 +195,18 @@ class PartitionTree(Ordered):
         return None if cuts is None else tree.with_cuts(cuts)
 
     def with_cuts(self, cuts: Any) -> "PartitionTree":
-        """Return the tree over the same facets with other cuts.
+        """Return a tree over the same facets, divided by the given cuts.
 
         Parameters
         ----------
         cuts : (n, 2) array_like of int
-            One row for each node in preorder, as ``arrays["cut"]`` has them.
+            One row for each node in preorder, encoded as in ``arrays["cut"]``.
 
         Raises
         ------
         FormatError
-            If there are too many or too few, or a facet is not in the region that it is to cut.
+            If there are too many or too few cuts, or a facet is not in the region that it is to
+            cut.
         """
         rows = _cut_rows(cuts)
         corners, offsets = self.core.lattice()
@@ -221,7 +219,7 @@ class PartitionTree(Ordered):
 
     @property
     def dimension(self) -> int:
-        """1, 2 or 3."""
+        """The dimension of the facets: 1, 2 or 3."""
         return self.core.dimension
 
     @property
@@ -235,12 +233,12 @@ class PartitionTree(Ordered):
 
     @cached_property
     def arrays(self) -> "NodeArrays":
-        """All nodes in preorder as arrays.
+        """All inner nodes in preorder, as a dictionary of read-only arrays.
 
         ``normal`` (n, d) and ``offset`` (n,) as in `Node.hyperplane`; ``minus``, ``plus``,
         ``parent`` (n,) node indices or -1; ``depth`` (n,); ``start``, ``end`` (n,) the coplanar set
         as a range of `fragments`; ``cut`` (n, 2): (-1, convex piece), (axis, lattice coordinate) or
-        (-2, place in `own_hyperplanes`). They are read-only.
+        (-2, index in `own_hyperplanes`).
         """
         nodes = self.core.nodes()
         _seal(nodes)
@@ -256,15 +254,17 @@ class PartitionTree(Ordered):
 
     @cached_property
     def own_hyperplanes(self) -> tuple[tuple[int, ...], ...]:
-        """Hyperplanes of neither a facet nor an axis, as integers n, c in lattice steps.
+        """The hyperplanes that neither a facet nor an axis gave, each as integers (*n, c).
 
-        Points x of one have n·x = c.
+        The points x of such a hyperplane have n·x = c, with x in lattice steps.
+
         """
         return tuple(tuple(row) for row in self.core.own())
 
     @property
-    def _tree(self) -> "PartitionTree":
-        return self
+    def root(self) -> Node | None:
+        """The root, None if there are no facets."""
+        return Node(self, 0) if len(self) else None
 
     @property
     def nodes(self) -> tuple[Node, ...]:
@@ -273,12 +273,12 @@ class PartitionTree(Ordered):
 
     @property
     def splits(self) -> IndexArray:
-        """(k, 2) int64: each cut of a fragment, as the node that cut and the facet that was cut."""
+        """The cuts of fragments, (k, 2) int64: the node that cut and the facet that was cut."""
         return self.core.splits()
 
     @cached_property
     def margin(self) -> float:
-        """The distance by which regions reach beyond the box of the facets, in model units."""
+        """The distance by which regions exceed the box of the facets, in model units."""
         if self._margin is not None:
             return self._margin
         corners, _ = self.core.lattice()
@@ -288,19 +288,23 @@ class PartitionTree(Ordered):
         return MARGIN * extent * 10.0**self.pitch
 
     def region(self, of: Node | Leaf | None = None, margin: float | None = None) -> RegionShape:
-        """Return the region of a node or leaf, by default of the root.
+        """Return the region of a node or leaf, by default of the root, clipped to a box.
+
+        The box is that of the facets, enlarged by the margin.
 
         Parameters
         ----------
         of : Node or Leaf, optional
         margin : float, optional
-            In place of the tree's own.
+            The distance by which the box exceeds the facets, in model units; by default the tree's
+            own.
 
         Returns
         -------
         (2,) float64, (k, 2) float64 or list of (k, 3) float64
-            Its ends in 1D; its corners, counterclockwise, in 2D; its faces, counterclockwise seen
-            from outside, in 3D. Empty if nothing of the box is left.
+            The region's ends in 1D; its corners, counterclockwise, in 2D; its faces,
+            counterclockwise seen from outside, in 3D. Empty if the region does not reach into the
+            box.
         """
         node, side = _place(of)
         reach = self.margin if margin is None else not_negative(margin, "margin")
@@ -310,25 +314,76 @@ class PartitionTree(Ordered):
             return np.sort(np.concatenate(walls).ravel())
         return convex_corners(walls) if self.dimension == 2 else walls
 
+    # Traversals
+
+    def back_to_front(self, *, eye: Any = None, direction: Any = None) -> Fragments:
+        """Return the fragments so that none hides one that comes after it.
+
+        Parameters
+        ----------
+        eye : (d,) array_like, optional
+            The viewpoint, in model units. It is not snapped: sides are decided for these doubles.
+        direction : (d,) array_like, optional
+            Instead of an eye: the direction of view of a parallel projection, away from the viewer.
+
+        Returns
+        -------
+        Fragments
+            Farthest first. Where the eye lies in a node's hyperplane, its fragments are seen
+            edge-on and neither side hides the other; the plus side comes first.
+
+        Raises
+        ------
+        InvalidParameterError
+            If not exactly one of the two is given, one is not finite, or the direction is zero.
+
+        Notes
+        -----
+        Fuchs, Kedem, Naylor 1980. Overlapping fragments of one coplanar set come in the order of
+        the construction.
+        """
+        return back_to_front(self, eye, direction)
+
+    def front_to_back(self, *, eye: Any = None, direction: Any = None) -> Fragments:
+        """Return the reverse of `back_to_front`: the nearest fragments first."""
+        return front_to_back(self, eye, direction)
+
+    def near_to_far(self, *, eye: Any = None, direction: Any = None) -> Iterator[Node | Leaf]:
+        """Yield nodes and leaves from near to far: near side, node, far side."""
+        return near_to_far(self, eye, direction)
+
+    def far_to_near(self, *, eye: Any = None, direction: Any = None) -> Iterator[Node | Leaf]:
+        """Yield nodes and leaves in the reverse order of `near_to_far`."""
+        return far_to_near(self, eye, direction)
+
+    def walk(self, order: Literal["pre", "in", "post"] = "pre") -> Iterator[Node | Leaf]:
+        """Yield all nodes and leaves, minus before plus; a node before, between or after both."""
+        return walk(self, order)
+
+    def visit(self, visitor: Visitor, order: Literal["pre", "in", "post"] = "pre") -> None:
+        """Call ``visitor.node(node)`` or ``visitor.leaf(leaf)`` for each, in an order of `walk`."""
+        visit(self, visitor, order)
+
     # Traces
 
     def trace(self) -> Construction:
         """Return the trace of the construction: the cut of each region, its reason, and the pieces.
 
-        The construction is repeated, as the tree itself keeps no trace. For a tree that was made by
-        a callable, read from a file or inserted into, the cuts themselves are "given".
+        The construction is repeated, as the tree itself keeps no trace. If the tree was made by a
+        callable, read from a file or inserted into, the reason of its cuts is "given".
         """
         with core_errors():
             rows = self.core.construction()
             return Construction(tuple(map(division, rows)), self.core.piece_sources())
 
     def trace_point(self, point: Any) -> PointTrace:
-        """Return the way of a point, down to its leaf or to the hyperplane in which it lies.
+        """Return the path of a point from the root to its leaf, or to a node whose cut contains it.
 
         Parameters
         ----------
         point : (d,) array_like of float
-            In model units. It is not snapped: sides are decided for these doubles.
+            In model units. It is not snapped to the lattice: sides are decided for exactly these
+            doubles.
         """
         place = vector_rows(point, self.dimension, "The point")
         if len(place) != 1 or not np.isfinite(place).all():
@@ -339,15 +394,16 @@ class PartitionTree(Ordered):
             return point_trace(self, self.core.path(_filled(place[0])))
 
     def locate(self, point: Any) -> Node | Leaf:
-        """Return the leaf in which a point lies, or the node in whose hyperplane it lies."""
+        """Return the leaf in which a point lies, or the inner node in whose hyperplane it lies."""
         return self.trace_point(point).end
 
     def test_ray(self, origins: Any, directions: Any) -> RayCosts:
-        """Return the first facet on each ray, and the cost of the path to it.
+        """Return the first facet on each ray, and the numbers of nodes and facets on its path.
 
-        The child on the side of the ray's origin comes first, then what lies in the hyperplane,
-        then the other child, until there is a hit. Facets are closed; of several at one point it is
-        the one that the tree meets first, and of those in one node the first of the input.
+        At each node the ray visits the child on the side of its origin, then the pieces in the
+        hyperplane, then the other child, until there is a hit. Facets are closed sets; of several
+        facets at one point the hit is the one that this order visits first, and in one node the
+        first of the input.
 
         Parameters
         ----------
@@ -357,14 +413,14 @@ class PartitionTree(Ordered):
         Raises
         ------
         InvalidMeshError
-            For a direction that is zero or not finite (`where` has the ray).
+            For a direction that is zero or not finite (`where` has the ray's index).
         """
         first, second = self._rays(origins, directions)
         with core_errors():
             return RayCosts(*self.core.cast(first, second))
 
     def trace_ray(self, origin: Any, direction: Any) -> RayTrace:
-        """Return the way of one ray step by step (see `test_ray`)."""
+        """Return the path of one ray step by step, in the order of `test_ray`."""
         first, second = self._rays(origin, direction)
         if len(first) != 1:
             raise invalid_parameter(
@@ -399,16 +455,16 @@ class PartitionTree(Ordered):
         sample: int = 8,
         alpha: float = 0.5,
     ) -> "PartitionTree":
-        """Return the tree with more facets: its nodes stay, and empty regions are divided.
+        """Return the tree over more facets: all nodes stay, and empty regions are divided further.
 
-        New facets are cut by the hyperplanes that are there; those that reach an empty region
-        divide it by the policy.
+        New facets are cut by the hyperplanes of the nodes; the policy chooses which of the new
+        facets in an empty region divides it.
 
         Parameters
         ----------
         facets, policy, seed, sample, alpha
-            As for `PartitionTree`; facets of the same dimension, numbered after those that are
-            there, on the tree's own lattice.
+            As for `PartitionTree`; facets have the tree's dimension, are snapped to its lattice,
+            and are numbered after its facets.
         """
         corners, offsets = corners_of(facets)
         if corners.shape[1] != self.dimension:
@@ -432,23 +488,26 @@ class PartitionTree(Ordered):
         return self.from_core(core, self.lenience, self._margin)
 
     def leaf_form(self) -> LeafForm:
-        """Return the tree as the lecture notes draw it: leaves store at most one fragment."""
+        """Return the tree in leaf form, as in lecture notes: a leaf stores at most one fragment."""
         return leaf_form(self)
 
     def moved(
         self, axes: Sequence[int] | None = None, offset: Any = None, scale: int = 1
     ) -> "PartitionTree":
-        """Return the image of the tree under a motion of the lattice, divided as the tree is.
+        """Return the image of the tree under a lattice motion: scaled, rotated, then translated.
+
+        The facets and all cuts move; the structure stays.
 
         Parameters
         ----------
         axes : sequence of int, optional
-            For each new axis the old one that it is, counted from 1, in the plane (2, -1) is a
-            quarter turn clockwise. Motions only: a mirror image has its minus sides elsewhere.
+            Entry i is the old axis, counted from 1 and with its sign, that becomes new axis i: in
+            the plane (2, -1) is a quarter turn clockwise. Only rotations: a mirror image would
+            exchange minus and plus sides.
         offset : (d,) array_like of float, optional
-            The vector added after that, in model units; snapped to the lattice.
+            The translation after the rotation, in model units; snapped to the lattice.
         scale : int
-            A positive factor about the origin, which comes first.
+            A positive factor about the origin, applied first.
 
         Raises
         ------
@@ -464,7 +523,7 @@ class PartitionTree(Ordered):
     # Quality
 
     def stats(self) -> Stats:
-        """Return size, depth, splits and balance (see `bspcsg.bsp.trees.cost`)."""
+        """Return the numbers of nodes, leaves, fragments and splits, the depths and the balance."""
         return stats(self)
 
     def cost(self, query: Query = "point", margin: float | None = None) -> float:
@@ -474,12 +533,12 @@ class PartitionTree(Ordered):
     # Files
 
     def to_json(self) -> str:
-        """Return facets and cuts as JSON, exactly; `from_json` makes an equal tree of it."""
+        """Return facets and cuts exactly, as JSON text that `from_json` reads."""
         return to_json(self)
 
     @classmethod
     def from_json(cls, text: str) -> "PartitionTree":
-        """Return the tree that `to_json` wrote, by making its cuts again.
+        """Return the tree from the JSON text that `to_json` wrote, by repeating its cuts.
 
         Raises
         ------
@@ -489,7 +548,7 @@ class PartitionTree(Ordered):
         return cls.from_core(*parsed(text))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write `to_json` to a file.
+        """Write the tree to a file, as JSON text that `load` reads.
 
         Raises
         ------
@@ -500,7 +559,7 @@ class PartitionTree(Ordered):
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> "PartitionTree":
-        """Read what `save` wrote.
+        """Return the tree from a file that `save` wrote.
 
         Raises
         ------
@@ -510,21 +569,21 @@ class PartitionTree(Ordered):
         return cls.from_json(whole_content(path).decode("utf-8", "replace"))
 
     def to_dot(self) -> str:
-        """Return the tree in the language of Graphviz; leaves are drawn as dots."""
+        """Return the tree as text in Graphviz's DOT language; leaves are drawn as dots."""
         return to_dot(self)
 
     def to_svg(self, size: int = 480) -> str:
-        """Return a picture of a 2D tree: regions in grey, fragments in black, as SVG."""
+        """Return a picture of a 2D tree as SVG text: cuts in grey, fragments in black."""
         return to_svg(self, size)
 
     def _repr_svg_(self) -> str | None:
-        """Return the picture for notebooks; None for trees that are not in the plane."""
+        """Return the tree's picture for notebooks; None if it is not 2D or has too many nodes."""
         return self.to_svg() if self.dimension == 2 and len(self) <= _MAX_NODES_DRAWN else None
 
     # As a value
 
     def __eq__(self, other: object) -> bool:
-        """Say whether both have the same facets, on the same lattice, and the same cuts."""
+        """Return true if both trees have the same facets, lattice and cuts."""
         if not isinstance(other, PartitionTree):
             return NotImplemented
         mine, theirs = self.core.lattice(), other.core.lattice()
@@ -536,7 +595,7 @@ class PartitionTree(Ordered):
         )
 
     def __hash__(self) -> int:
-        """Return a number that equal trees share."""
+        """Return a hash value that equal trees share."""
         return hash((self.dimension, self.pitch, len(self)))
 
     def __copy__(self) -> Self:
@@ -555,7 +614,7 @@ class PartitionTree(Ordered):
         return _restored, (type(self), parts, self._margin)
 
     def __repr__(self) -> str:
-        """Show the size of the tree."""
+        """Return a text with the dimension and the numbers of facets and nodes."""
         facets = len(self.core.lattice()[1]) - 1
         return f"PartitionTree({self.dimension}D, {facets} facets, {len(self)} nodes)"
 
@@ -576,7 +635,7 @@ def _cut_rows(cuts: Any) -> IndexArray:
 
 
 def _seal(arrays: Mapping[str, Any]) -> None:
-    """Make the arrays of a tree read-only."""
+    """Make all arrays of a mapping read-only."""
     for array in arrays.values():
         array.flags.writeable = False
 
@@ -595,5 +654,5 @@ def _place(of: Node | Leaf | None) -> tuple[int | None, int]:
 
 
 def _filled(values: FloatArray) -> list[float]:
-    """Return one to three coordinates as three."""
+    """Return a vector of one to three coordinates as three, filled up with zeros."""
     return [*values.tolist(), 0.0, 0.0][:3]

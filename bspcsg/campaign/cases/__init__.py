@@ -1,1 +1,1 @@
-"""The cases that a campaign examines, their sources, and their poses."""
+"""The cases of a campaign: where they come from, their operands and their poses."""

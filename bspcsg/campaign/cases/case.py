@@ -1,4 +1,4 @@
-"""One question for two engines, as a value that is sent to another process as JSON."""
+"""`Case`: one set operation on given operands, as a value that can be sent as JSON."""
 
 import hashlib
 import json
@@ -11,29 +11,30 @@ from typing import Any
 from ..._core import __version__
 from ..record import Kind
 
-#: The name of the operation that runs a whole script.
+#: The name of the operation that evaluates a whole script.
 SCRIPT = "csg"
 
-#: Digits of a key: of 2^64 keys, a million cases share two with a chance of 3e-8.
+#: The number of hexadecimal digits of a key: with 2^64 keys, two of a million cases have equal keys
+#: with probability 3e-8.
 _KEY_DIGITS = 16
 
 
 @dataclass(frozen=True)
 class Operand:
-    """One input mesh.
+    """One input mesh of a case.
 
     Parameters
     ----------
     name : str
-        A letter.
+        The letter of the operand: "a", "b", ….
     file : str or None
-        The name as given.
+        The path of the file, as given.
     sha256 : str
-        Of the bytes of the file, or of `mesh` as JSON.
+        The SHA-256 hash of the bytes of the file, or of `mesh` as JSON.
     pose : list of list of float or None
-        Three rows of an affine map, if it is known in advance.
+        The three rows of the affine map that places the mesh, if it is known in advance.
     mesh : dict or None
-        ``vertices`` and ``faces``, if there is no file.
+        The mesh as ``vertices`` and ``faces``, if there is no file.
     """
 
     name: str
@@ -45,21 +46,22 @@ class Operand:
 
 @dataclass(frozen=True)
 class Case:
-    """One operation on some operands.
+    """One set operation on given operands, or one script.
 
     Parameters
     ----------
     name : str
-        The same in every run of the campaign.
+        The name, equal in every run of the campaign.
     kind : {"pair", "csg", "pose"}
     operation : str
     operands : tuple of Operand
     pose : str or None
-        How the second operand is placed on the first (see `bspcsg.campaign.poses`).
+        The name of the pose of the second operand relative to the first (see
+        `bspcsg.campaign.cases.poses`).
     seed, number : int or None
-        Of the random draw, for poses.
+        The seed and the number of the random draw, for poses.
     command : str
-        The command that runs this case alone.
+        The command line that runs only this case.
     """
 
     name: str
@@ -73,12 +75,12 @@ class Case:
     key: str = field(default="", compare=False)
 
     def __post_init__(self) -> None:
-        """Compute the key if it is not given."""
+        """Set the key to a hash of the case if no key is given."""
         if not self.key:
             object.__setattr__(self, "key", self._hashed())
 
     def _hashed(self) -> str:
-        """Return the hash of everything that the answer depends on."""
+        """Return the hash of everything that the case's result depends on."""
         inputs = [[operand.sha256, operand.pose] for operand in self.operands]
         drawn = [self.pose, self.seed, self.number]
         text = json.dumps([__version__, self.kind, self.operation, inputs, drawn])
@@ -90,23 +92,23 @@ class Case:
 
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> "Case":
-        """Return the case from the values of `to_dict`."""
+        """Return the case whose `to_dict` returned these values."""
         operands = tuple(Operand(**operand) for operand in values["operands"])
         return cls(**{**values, "operands": operands})
 
 
 def command_for(files: Sequence[str], *options: str) -> str:
-    """Return a command line, quoted for a shell."""
+    """Return the ``bspcsg crosscheck`` command line for files and options, quoted for a shell."""
     words = ["bspcsg", "crosscheck", *files, *options]
     return " ".join(shlex.quote(word) for word in words)
 
 
 def digest_of(path: Path) -> str:
-    """Return the hash of a file's bytes."""
+    """Return the SHA-256 hash of a file's bytes, in hexadecimal."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def digest_of_mesh(mesh: dict[str, Any]) -> str:
-    """Return the hash of a mesh given as JSON values."""
+    """Return the SHA-256 hash of a mesh given as JSON values, in hexadecimal."""
     return hashlib.sha256(json.dumps(mesh, sort_keys=True).encode()).hexdigest()

@@ -1,4 +1,4 @@
-"""Checks that exact volumes of the results of one pair add up."""
+"""Check that the exact volumes of a result and its two operands satisfy an equation."""
 
 from ...errors import BspcsgError
 from ...solid.measure import volume_residues
@@ -8,7 +8,7 @@ from ..record import IdentityRecord
 #: The moduli by which volumes are compared; see `volume_residues`.
 _PRIMES = (2**61 - 1, 2**61 - 31)
 
-#: For each operation the equation, and the coefficients of A, B and their intersection.
+#: For each operation the equation as text, and the coefficients of |A|, |B| and |A ∩ B|.
 _EQUATIONS = {
     "union": ("|A ∪ B| = |A| + |B| − |A ∩ B|", (1, 1, -1)),
     "difference": ("|A − B| = |A| − |A ∩ B|", (1, 0, -1)),
@@ -17,10 +17,10 @@ _EQUATIONS = {
 
 
 def identity_of(op: str, operands: list[Solid], result: Solid) -> IdentityRecord | None:
-    """Return whether the exact volume of a result agrees with those of its operands.
+    """Return the equation of exact volumes of an operation, and whether it holds; or None.
 
-    None for other than two operands, for operands on different lattices, and for intersections,
-    from which the other volumes are computed.
+    It is None for other than two operands, for operands on different lattices, and for
+    intersections, whose volume is used in the equations.
     """
     if op not in _EQUATIONS or len(operands) != 2 or operands[0].pitch != operands[1].pitch:
         return None

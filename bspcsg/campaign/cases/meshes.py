@@ -1,4 +1,4 @@
-"""The meshes of one case in one file, for pictures and later inspection."""
+"""The meshes of one case in one `.npz` file, for pictures and later inspection."""
 
 import io
 import os
@@ -12,14 +12,15 @@ from ...mesh.mesh import Mesh
 
 @dataclass(frozen=True, eq=False)
 class CaseMeshes:
-    """The meshes in a file.
+    """The meshes of one case, as read from its file.
 
     Parameters
     ----------
     operands : dict of str to Mesh
-        By letter.
+        The operands by letter.
     result, difference : Mesh
-        The difference has no faces if the sets are equal or were not compared.
+        Our result, and the boundary of the symmetric difference with manifold3d's result, without
+        faces if the sets are equal or were not compared.
     """
 
     operands: dict[str, Mesh]
@@ -28,7 +29,7 @@ class CaseMeshes:
 
 
 def packed(operands: Sequence[Mesh], result: Mesh, difference: Mesh | None) -> bytes:
-    """Return the bytes of a `.npz` file: ``a_vertices``, ``a_faces``, ``result_vertices`` …."""
+    """Return meshes as the bytes of a `.npz` file with arrays ``a_vertices``, ``a_faces``, …."""
     named = {chr(ord("a") + number): mesh for number, mesh in enumerate(operands)}
     named["result"], named["difference"] = result, difference or _empty()
     arrays: dict[str, np.ndarray] = {}
@@ -36,13 +37,13 @@ def packed(operands: Sequence[Mesh], result: Mesh, difference: Mesh | None) -> b
         arrays[f"{name}_vertices"] = mesh.vertices
         arrays[f"{name}_faces"] = mesh.faces.astype(np.int32)
     buffer = io.BytesIO()
-    # The stubs of numpy take the arrays' names for its only option.
+    # numpy's type stubs mistake the arrays' names for the option `allow_pickle`.
     np.savez_compressed(buffer, **arrays)  # type: ignore[arg-type]
     return buffer.getvalue()
 
 
 def unpacked(path: str | os.PathLike[str]) -> CaseMeshes:
-    """Return the meshes that `packed` wrote to a file."""
+    """Return the meshes from a file with the bytes that `packed` returned."""
     with np.load(path, allow_pickle=False) as arrays:
         names = [name.removesuffix("_faces") for name in arrays.files if name.endswith("_faces")]
         meshes = {

@@ -1,4 +1,4 @@
-"""The operands of a case as solids."""
+"""Read the operands of a case and place them, as solids."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -13,20 +13,20 @@ from ...solid.solid import Solid
 from .case import Case, Operand
 from .poses import OF_THE_FIRST, placed, pose_matrix, shuffled
 
-#: The largest number of files that a worker keeps in memory: the cases of a pair follow one
-#: another.
+#: The largest number of files that a worker keeps in memory, since consecutive cases use the same
+#: pair.
 _MAX_FILES_KEPT = 8
 
 
 def operands_of(case: Case) -> tuple[list[Solid], list[FloatArray | None]]:
-    """Return the operands in their places, and the rows of the maps that put them there.
+    """Return the placed operands of a case as solids, and the rows of the affine maps, or None.
 
     Raises
     ------
     FormatError
         If a file cannot be read.
     InvalidMeshError, LimitError
-        If a mesh is not a solid; the message names it.
+        If a mesh is not a solid; the message has the name of its file.
     """
     meshes = [_mesh_of(operand) for operand in case.operands]
     rows = [_given_pose(operand) for operand in case.operands]
@@ -42,7 +42,7 @@ def operands_of(case: Case) -> tuple[list[Solid], list[FloatArray | None]]:
 
 
 def _drawn(case: Case, meshes: Sequence[MeshArrays]) -> tuple[MeshArrays, FloatArray]:
-    """Return the second mesh in its drawn pose."""
+    """Return the second mesh of a case in its pose, and the rows of the pose."""
     pose = held(case.pose, "the pose")
     seed, number = held(case.seed, "the seed"), held(case.number, "the number")
     first, second = meshes
@@ -53,7 +53,7 @@ def _drawn(case: Case, meshes: Sequence[MeshArrays]) -> tuple[MeshArrays, FloatA
 
 
 def _used(mesh: MeshArrays) -> FloatArray:
-    """Return the vertices that a face uses."""
+    """Return the vertices that belong to a face, (n, 3)."""
     used: FloatArray = mesh[0][np.unique(mesh[1])]
     if len(used) == 0:
         raise InvalidMeshError(
@@ -77,7 +77,7 @@ def _mesh_of(operand: Operand) -> MeshArrays:
 
 @lru_cache(maxsize=_MAX_FILES_KEPT)
 def _read(file: str, sha256: str) -> MeshArrays:
-    del sha256  # distinguishes versions of a changed file
+    del sha256  # only a key of the cache, for files that change
     raw = read(file)
     return raw.vertices, raw.faces
 

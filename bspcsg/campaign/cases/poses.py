@@ -1,7 +1,7 @@
-"""Places the second of two meshes on the first: at random, or so that parts coincide.
+"""Poses: affine maps that place the second of two meshes at random or on the first mesh.
 
-A pose is an affine map, given by the three rows of its matrix. It is applied to the vertices as
-they were read, in double precision.
+A pose is given by the three rows of its matrix and applied to the vertices as they were read, in
+double precision.
 """
 
 from collections.abc import Callable
@@ -19,29 +19,30 @@ _QUARTER_TURN = np.array([(0.0, -1, 0), (1, 0, 0), (0, 0, 1)])
 def pose_matrix(
     name: str, first: FloatArray, second: FloatArray, seed: int, number: int
 ) -> FloatArray:
-    """Return the rows of a pose, (3, 4) float64.
+    """Return the rows of the affine map of a pose, (3, 4) float64.
 
     Parameters
     ----------
     name : str
         One of `POSES`.
     first, second : (n, 3) float64
-        Vertices. Poses in `OF_THE_FIRST` place a copy of the first mesh, so `second` is that copy.
+        The vertices of both meshes. For a pose in `OF_THE_FIRST` the second mesh is a copy of the
+        first.
     seed, number : int
-        Of the random draw.
+        The seed of the campaign and the number of the case, which determine random choices.
     """
     return POSES[name](first, second, np.random.default_rng([seed, number]))
 
 
 def placed(mesh: MeshArrays, rows: FloatArray) -> MeshArrays:
-    """Return a mesh under an affine map; a mirroring map also reverses its faces."""
+    """Return the image of a mesh under an affine map; a mirroring map also reverses the faces."""
     vertices = mesh[0] @ rows[:, :3].T + rows[:, 3]
     mirrors = np.linalg.det(rows[:, :3]) < 0
     return vertices, mesh[1][:, ::-1].copy() if mirrors else mesh[1]
 
 
 def shuffled(mesh: MeshArrays, seed: int, number: int) -> MeshArrays:
-    """Return a mesh with its faces in another order."""
+    """Return the mesh with its faces in a random order."""
     rng = np.random.default_rng([seed, number])
     return mesh[0], mesh[1][rng.permutation(len(mesh[1]))]
 
@@ -60,7 +61,7 @@ def _size(points: FloatArray) -> float:
 
 
 def _random(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Turn, scale and shift the second mesh so that the two overlap in general position."""
+    """Rotate, scale and shift the second mesh so that both overlap in general position."""
     scale = _size(first) / _size(second) * rng.uniform(0.5, 1.5)
     linear = _rotation(rng) * scale
     shift = rng.uniform(-0.4, 0.4, 3) * np.ptp(first, axis=0)
@@ -80,18 +81,18 @@ def _rotation(rng: np.random.Generator) -> FloatArray:
 
 
 def _alike_in_size(first: FloatArray, second: FloatArray) -> float:
-    # A power of ten keeps decimals short, and coplanar faces coplanar.
+    # With a power of ten, decimals stay short and coplanar faces coplanar.
     return float(10.0 ** round(float(np.log10(_size(first) / _size(second)))))
 
 
 def _corner(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Align the lowest corners of both boxes: outer faces become coplanar."""
+    """Align the minimum corners of both bounding boxes, so that outer faces become coplanar."""
     scale = _alike_in_size(first, second)
     return _rows(np.eye(3) * scale, first.min(axis=0) - (second * scale).min(axis=0))
 
 
 def _beside(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Put the second mesh against the first: outer faces touch from both sides."""
+    """Put the second mesh beside the first along an axis, so that outer faces touch."""
     rows = _corner(first, second, rng)
     axis = int(rng.integers(3))
     rows[axis, 3] += np.ptp(first, axis=0)[axis]
@@ -99,14 +100,14 @@ def _beside(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> 
 
 
 def _copy(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Shift a copy of the first along an axis: its faces slide in their own planes."""
+    """Shift a copy of the first mesh along an axis, so that its faces slide in their planes."""
     shift, axis = np.zeros(3), int(rng.integers(3))
     shift[axis] = rng.choice([0.25, 0.5, 1.0]) * np.ptp(first, axis=0)[axis]
     return _rows(np.eye(3), shift)
 
 
 def _mirror(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Mirror a copy of the first in the middle of its box."""
+    """Reflect a copy of the first mesh in a plane through the centre of its bounding box."""
     linear, shift, axis = np.eye(3), np.zeros(3), int(rng.integers(3))
     linear[axis, axis] = -1
     shift[axis] = first[:, axis].max() + first[:, axis].min()
@@ -114,12 +115,12 @@ def _mirror(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> 
 
 
 def _turned(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Turn a copy of the first by a quarter about the middle of its box."""
+    """Rotate a copy of the first mesh by 90 degrees about the centre of its bounding box."""
     return _rows(_QUARTER_TURN, _middle(first) - _QUARTER_TURN @ _middle(first))
 
 
 def _same(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Leave a copy of the first where it is; `shuffled` lists its faces in another order."""
+    """Return the identity map for the copy; `shuffled` gives the copy's faces another order."""
     return _rows(np.eye(3), np.zeros(3))
 
 

@@ -1,4 +1,4 @@
-"""The cases that a command line describes: files, folders, scripts and files of cases."""
+"""Make the cases of a command line: from mesh files, scripts and files of cases."""
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -18,13 +18,13 @@ from .poses import COINCIDENT
 _SCRIPTS = frozenset({".csg", ".scad"})
 _CASES = ".json"
 
-#: An example of a file of cases, for messages.
+#: An example of a file of cases, for error messages.
 _EXAMPLE = '{"cases": [{"operation": "union", "operands": [{"file": "a.stl"}, {"file": "b.stl"}]}]}'
 
 
 @dataclass(frozen=True)
 class CaseInputs:
-    """The files that were given.
+    """The files of a command line, sorted by kind.
 
     Parameters
     ----------
@@ -38,17 +38,18 @@ class CaseInputs:
 
 @dataclass(frozen=True)
 class Draw:
-    """How pairs are placed.
+    """How pairs of meshes are chosen and placed.
 
     Parameters
     ----------
     count : int
-        The number of pairs drawn; 0 for all pairs of files, without a pose.
+        The number of random pairs; 0 for all pairs of files.
     seed : int
     pose : str or None
-        The pose of each pair; None for random poses in one half and coincident ones in the other.
+        The name of the pose of each pair. None for random pairs alternates between "random" and
+        coincident poses; with `count` 0 it leaves the meshes as they are.
     number : int or None
-        The only number to draw for the first two files, instead of `count` numbers.
+        Instead of `count`: the number of the one case to draw, for the first two files.
     """
 
     count: int = 0
@@ -58,7 +59,7 @@ class Draw:
 
 
 def inputs_in(paths: Sequence[Path]) -> CaseInputs:
-    """Sort the given paths by kind.
+    """Return the given paths, sorted by kind.
 
     Raises
     ------
@@ -89,15 +90,15 @@ def _kind_of(path: Path, meshes: list[Path], scripts: list[Path], cases: list[Pa
 
 
 def cases_of(inputs: CaseInputs, operations: Sequence[str], *draws: Draw) -> list[Case]:
-    """Return the cases, in the order in which they are asked.
+    """Return the cases of the inputs, in the order in which they are run.
 
     Parameters
     ----------
     inputs : CaseInputs
     operations : sequence of str
-        For pairs; files of cases name their own.
+        The operations for pairs of meshes; files of cases have their own.
     *draws : Draw
-        Each places all pairs.
+        Ways to choose and place pairs, each of which gives cases.
 
     Raises
     ------
@@ -131,7 +132,7 @@ def _pairs(paths: Sequence[Path], operations: Sequence[str], draw: Draw) -> Iter
 def _posed(
     paths: Sequence[Path], operations: Sequence[str], draw: Draw, operand: "_Operands"
 ) -> Iterator[Case]:
-    """Yield all pairs in one pose."""
+    """Yield the cases of all pairs of files in the pose of `draw`."""
     for number, (first, second) in enumerate(combinations(paths, 2)):
         yield from _in_pose(first, second, operations, draw.pose, draw.seed, number, operand)
 
@@ -170,12 +171,12 @@ def _in_pose(
 
 
 def _name(number: int, first: Path, second: Path, *words: str) -> str:
-    """Return the name of a case of two files; the number distinguishes files of one name."""
+    """Return the name of a case of two files; the number makes it unique."""
     return "-".join([f"{number:04d}", first.stem, second.stem, *words])
 
 
 class _Operands:
-    """Operands by file; each is hashed once."""
+    """Makes operands from files and hashes each file once."""
 
     def __init__(self) -> None:
         self._digests: dict[Path, str] = {}
@@ -199,7 +200,7 @@ def _readable(reader: Callable[[Path], Any], path: Path) -> Any:
 
 
 def _listed(path: Path) -> Iterator[Case]:
-    """Yield the cases of a file of cases."""
+    """Yield the cases that a JSON file of cases lists."""
     try:
         document = json.loads(_readable(Path.read_bytes, path))
         entries = [(entry, _operations_in(entry)) for entry in document["cases"]]

@@ -1,1 +1,1 @@
-"""Other engines that answer a campaign's questions."""
+"""Other engines that carry out a campaign's operations for comparison."""

@@ -1,4 +1,4 @@
-"""The program openscad, whose booleans are exact but whose output has six digits."""
+"""The engine OpenSCAD, whose set operations are exact but whose output has six digits."""
 
 import os
 import shutil
@@ -14,26 +14,27 @@ from ...mesh.mesh import Mesh
 from ...processes import run_program
 from .questions import EngineAnswer, NoOpinionError, Question, mesh_of
 
-#: The number of significant digits that openscad writes.
+#: The number of significant digits of coordinates that OpenSCAD writes.
 _DIGITS = 6
 
-#: Its grid for plane figures, in units.
+#: The step of OpenSCAD's grid for plane figures, in model units.
 _PLANE_GRID = 2.0**-16
 
 #: The largest number of triangles for OpenSCAD: its exact engine takes minutes for more.
 _MAX_TRIANGLES = 3000
 
-#: The longest time for OpenSCAD to print its version, in seconds.
+#: The time limit for OpenSCAD to print its version, in seconds.
 _VERSION_TIMEOUT = 30
 
 
 def ask_openscad(question: Question) -> EngineAnswer:
-    """Return openscad's result for the operands, passed as polyhedra with all digits.
+    """Return OpenSCAD's result for the operands, passed as polyhedra with all digits.
 
     Raises
     ------
     NoOpinionError
-        If it is not installed, fails or takes too long, or the operands are too large for it.
+        If OpenSCAD is not installed, fails or takes too long, or the operands have too many
+        triangles.
     """
     count = sum(len(mesh.faces) for mesh in question.operands)
     if count > _MAX_TRIANGLES:
@@ -47,7 +48,7 @@ def ask_openscad(question: Question) -> EngineAnswer:
 
 
 def _as_script(question: Question) -> str:
-    """Return the question in openscad's language, with all digits."""
+    """Return the operation as a script in OpenSCAD's language, with all digits."""
     bodies = [_polyhedron(mesh) for mesh in question.operands]
     if question.operation != "xor":
         return f"{question.operation}() {{\n{''.join(bodies)}}}\n"
@@ -60,7 +61,7 @@ def _as_script(question: Question) -> str:
 def _polyhedron(mesh: Mesh) -> str:
     if len(mesh.faces) == 0:
         return "group() { }\n"
-    # Polyhedra list their corners clockwise.
+    # OpenSCAD's polyhedra have their corners clockwise.
     faces = mesh.faces[:, ::-1].tolist()
     return f"polyhedron(points = {mesh.vertices.tolist()}, faces = {faces});\n"
 
@@ -73,25 +74,25 @@ def _scad_version() -> str:
 
 
 def run_script(path: Path, timeout: float) -> EngineAnswer:
-    """Return openscad's result for a script.
+    """Return OpenSCAD's result for a script.
 
     Raises
     ------
     NoOpinionError
-        If it is not installed, fails or takes too long.
+        If OpenSCAD is not installed, fails or takes too long.
     """
     version = _scad_version()
     with tempfile.TemporaryDirectory(prefix="bspcsg-") as name:
         target = Path(name, "answer.stl")
         done = _ran(["openscad", "-o", str(target), str(path.absolute())], timeout)
-        # It leaves out nodes that it cannot convert, reports that, and exits as if all were well.
+        # OpenSCAD omits nodes that it cannot convert, reports an ERROR, and exits with 0.
         errors = [line.strip() for line in done.stderr.splitlines() if "ERROR" in line]
         mesh = _written(target, done)
     return EngineAnswer(version, mesh, _shift(mesh), errors[0] if errors else "")
 
 
 def _written(target: Path, done: "subprocess.CompletedProcess[str]") -> Mesh:
-    """Return the mesh that openscad wrote, or an empty one if it reports an empty result."""
+    """Return the mesh that OpenSCAD wrote, or an empty mesh if it reports an empty result."""
     if "Current top level object is empty" in done.stderr:
         return mesh_of(np.zeros((0, 3)), np.zeros((0, 3)))
     if done.returncode != 0 or not target.is_file():
@@ -105,7 +106,7 @@ def _written(target: Path, done: "subprocess.CompletedProcess[str]") -> Mesh:
 
 
 def _shift(mesh: Mesh) -> float:
-    """Return the largest distance that writing may move a vertex."""
+    """Return the largest distance by which OpenSCAD's rounding may move a vertex."""
     largest = float(np.abs(mesh.vertices).max(initial=0))
     unit = 10.0 ** (len(str(int(largest))) - _DIGITS)
     return 3**0.5 * (unit / 2 + _PLANE_GRID)

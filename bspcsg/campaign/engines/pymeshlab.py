@@ -1,4 +1,4 @@
-"""pymeshlab's exact booleans, run in a process of their own."""
+"""The engine pymeshlab, whose exact set operations run in a separate process."""
 
 import json
 import os
@@ -22,7 +22,7 @@ def ask_pymeshlab(question: Question) -> EngineAnswer:
     Raises
     ------
     NoOpinionError
-        If it is not installed, fails, crashes or takes too long.
+        If pymeshlab is not installed, fails, crashes or takes too long.
     """
     if any(len(mesh.faces) == 0 for mesh in question.operands):
         raise NoOpinionError("it does not accept empty operands")
@@ -43,12 +43,12 @@ def _put_operands(folder: Path, question: Question) -> None:
     }
     for number, mesh in enumerate(question.operands):
         arrays[f"vertices{number}"], arrays[f"faces{number}"] = mesh.vertices, mesh.faces
-    # The stubs of numpy take the arrays' names for its only option.
+    # numpy's type stubs mistake the arrays' names for the option `allow_pickle`.
     np.savez(folder / "operands.npz", **arrays)  # type: ignore[arg-type]
 
 
 def _asked_child(folder: Path, timeout: float) -> dict[str, str]:
-    # Without -P, this package's own folder would hide modules of the standard library.
+    # Without -P, modules in the child's folder would hide packages of the same name.
     command = [sys.executable, "-P", os.fspath(_CHILD), os.fspath(folder)]
     try:
         done = run_program(command, timeout)

@@ -1,8 +1,8 @@
-"""The process that runs pymeshlab: ``pymeshlab_child.py FOLDER`` combines the meshes in there.
+"""Run pymeshlab in a process of its own: ``pymeshlab_child.py FOLDER`` combines meshes there.
 
-It runs apart because pymeshlab is under another licence, and can crash or hang. It imports nothing
+It is separate because pymeshlab is under another licence, and can crash or hang. It imports nothing
 of this package, reads ``operands.npz``, writes ``result.npz`` and ``said.json``, and exits with 6
-without pymeshlab.
+if pymeshlab cannot be imported.
 """
 
 import json
@@ -14,10 +14,11 @@ import numpy as np
 
 MISSING = 6
 
-#: pymeshlab's message when it cannot store an empty result.
+#: The text in pymeshlab's error message for an empty result.
 _EMPTY = "Vertex matrix is empty"
 
-#: The boolean filters: exact, by mesh arrangements with CGAL's kernel inside libigl.
+#: pymeshlab's filters for set operations, which are exact: libigl's mesh arrangements with CGAL's
+#: kernel.
 FILTERS = {
     "union": "generate_boolean_union",
     "difference": "generate_boolean_difference",
@@ -27,7 +28,7 @@ FILTERS = {
 
 
 def main(folder: Path) -> int:
-    """Combine the operands in a folder from left to right, each with the result so far."""
+    """Combine the operands in a folder from left to right, and return the exit code."""
     try:
         import pymeshlab
 
@@ -56,7 +57,7 @@ def main(folder: Path) -> int:
 
 
 def _note_failure(folder: Path, message: str, said: dict[str, str]) -> None:
-    """Record a failure; an empty result is raised as a failure too."""
+    """Record pymeshlab's error message, or an empty mesh if the message means an empty result."""
     if _EMPTY in message:
         np.savez(folder / "result.npz", vertices=np.zeros((0, 3)), faces=np.zeros((0, 3), int))
     else:

@@ -1,4 +1,4 @@
-"""Questions to another engine, and its answers."""
+"""`Question` and `EngineAnswer`: an operation for another engine, and the engine's result."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,26 +11,26 @@ from ...mesh.weld import welded
 
 
 class NoOpinionError(Exception):
-    """An engine gave no usable answer; the message says why."""
+    """An engine gave no usable result; the message has the reason."""
 
 
 @dataclass(frozen=True, eq=False)
 class Question:
-    """A question to an engine.
+    """An operation on operands for another engine, with our result.
 
     Parameters
     ----------
     operation : str
     program : sequence of (str, list of int)
     operands : sequence of Mesh
-        Reduced boundaries.
+        The reduced boundaries of the operands.
     ours : Mesh
     pitch : int
-        Of the lattice of our result.
+        The pitch of the lattice of our result.
     timeout : float
-        Seconds for one engine.
+        The time limit of one engine, in seconds.
     snapped_by : float
-        The most that coordinates of operands moved onto a lattice, possibly a coarser one.
+        The largest distance by which snapping to a lattice moved coordinates of operands.
     """
 
     operation: str
@@ -44,17 +44,16 @@ class Question:
 
 @dataclass(frozen=True, eq=False)
 class EngineAnswer:
-    """The answer of an engine.
+    """The result of an engine for an operation.
 
     Parameters
     ----------
     version : str
     mesh : Mesh
     shift : float
-        The largest distance of a vertex from its true place due to the output format, in model
-        units.
+        The largest distance by which the output format may have moved a vertex, in model units.
     complaint : str
-        The engine's message on what failed although it gave an answer, or empty.
+        The engine's error message if a part failed although it gave a result, or empty.
     """
 
     version: str
@@ -64,7 +63,7 @@ class EngineAnswer:
 
 
 def mesh_of(vertices: np.ndarray, faces: np.ndarray) -> Mesh:
-    """Return a mesh from another program's output, with equal corners joined."""
+    """Return another program's vertices and faces as a `Mesh`, with equal vertices joined."""
     points = np.ascontiguousarray(vertices, dtype=np.float64).reshape(-1, 3)
     corners: IndexArray = np.ascontiguousarray(faces, dtype=np.int64).reshape(-1, 3)
     if len(corners):

@@ -1,1 +1,1 @@
-"""The judging of a case: its evaluation, opinions on it, and the ruling."""
+"""Judge a case: evaluate it, ask other engines, and decide on a verdict."""

@@ -1,4 +1,4 @@
-"""The evaluation of one case: our answer, the other engines', and the comparison of them."""
+"""Evaluate one case: compute our result, ask other engines, and compare the results."""
 
 import time
 import warnings
@@ -36,32 +36,33 @@ from .facts import facts_of
 from .opinions import crossings_opinion, is_installed, opinion, script_opinion
 from .ruling import ruled
 
-#: Verdicts after which more engines are asked.
+#: The verdicts of the comparison with manifold3d after which further engines are asked.
 _DOUBTFUL = frozenset({Verdict.DISAGREE, Verdict.ORACLE_REFUSED, Verdict.ORACLE_FAILED})
 
-#: Verdicts whose meshes need not be kept.
+#: The verdicts of cases that are not interesting, so that their meshes are not written.
 _DULL = frozenset({str(Verdict.AGREE), str(Verdict.OTHER_TOPOLOGY)})
 
-#: The largest share of a case's time that one additional engine may take.
+#: The largest fraction of a case's time limit that one additional engine may take.
 _MAX_ENGINE_SHARE = 0.4
 
 
 @dataclass(frozen=True)
 class EvaluationSettings:
-    """The settings for the evaluation of cases.
+    """The settings that all cases of a campaign are evaluated with.
 
     Parameters
     ----------
     against : tuple of str
-        Engines to ask in every case besides manifold3d; others are asked only where it matters.
+        The engines to ask in every case besides manifold3d; others are asked only in doubtful
+        cases.
     samples : int
-        The number of points from which distances are measured; 0 for none.
+        The number of sample points for distances; 0 to measure none.
     timeout : float
-        Seconds for a case.
+        The time limit of a case, in seconds.
     meshes : str or None
-        Folder for the meshes of interesting cases, or None to keep none.
+        The folder for the meshes of interesting cases, or None to write none.
     relative : str
-        The name of that folder in records.
+        The name of the folder `meshes` in records.
     """
 
     against: tuple[str, ...] = ()
@@ -73,7 +74,7 @@ class EvaluationSettings:
 
 @dataclass
 class _Clock:
-    """Seconds by part of a case."""
+    """A stopwatch that records the seconds of each part of a case."""
 
     began: float = field(default_factory=time.perf_counter)
     last: float = field(default_factory=time.perf_counter)
@@ -86,7 +87,7 @@ class _Clock:
 
 
 def blank_record(case: Case, verdict: str, reason: str) -> CaseRecord:
-    """Return the record of a case about which nothing more is known."""
+    """Return the record of a case of which only the verdict and its reason are known."""
     return {
         "schema": SCHEMA,
         "type": "case",
@@ -123,14 +124,14 @@ def blank_record(case: Case, verdict: str, reason: str) -> CaseRecord:
 
 
 def evaluate(case: Case, settings: EvaluationSettings, keep: bool = False) -> CaseRecord:
-    """Return the record of a case; a refusal by the package is an answer, too.
+    """Evaluate a case and return its record; an error of the package becomes a verdict.
 
     Parameters
     ----------
     case : Case
     settings : EvaluationSettings
     keep : bool
-        Keep the meshes even if the case is not interesting.
+        True to write the meshes even if the case is not interesting.
     """
     forget_peak()
     clock = _Clock()
@@ -150,7 +151,7 @@ def evaluate(case: Case, settings: EvaluationSettings, keep: bool = False) -> Ca
 
 
 class _Evaluation:
-    """One case on its way to a record."""
+    """The evaluation of one case: computes our result, compares it and makes the record."""
 
     def __init__(self, case: Case, settings: EvaluationSettings, clock: _Clock) -> None:
         self._case, self._settings, self._clock = case, settings, clock
@@ -195,14 +196,14 @@ class _Evaluation:
         if not self._is_script:
             return examine(result, cast(SetOp, self._case.operation), solids)
         if result.last_operation is None:
-            # A script of one primitive: manifold3d is asked whether it takes the mesh.
+            # A script without operations: manifold3d gets its mesh as the union of one operand.
             return examine(result, "union", [result])
         return examine(result)
 
     def _further(
         self, found: Examination, solids: list[Solid], result: Solid
     ) -> list[OracleRecord]:
-        """Return the answers of the engines that have to be asked besides manifold3d."""
+        """Return the records of all engines that are asked besides manifold3d."""
         wanted = [name for name in self._settings.against if name != "manifold3d"]
         limit = self._settings.timeout * _MAX_ENGINE_SHARE
         if self._is_script:
@@ -242,7 +243,7 @@ class _Evaluation:
         return {"forward": forth, "backward": back, "samples": count}
 
     def _kept(self, found: Examination) -> str:
-        """Write the meshes of a case; return the path that the record names."""
+        """Write the meshes of a case to a file, and return its path as in the record."""
         folder = Path(str(self._settings.meshes))
         folder.mkdir(parents=True, exist_ok=True)
         name = f"{self._case.key}.npz"

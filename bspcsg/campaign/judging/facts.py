@@ -1,4 +1,4 @@
-"""Facts about meshes, as records store them."""
+"""Facts about meshes as the JSON values that records store."""
 
 from typing import Any
 
@@ -13,15 +13,15 @@ from ..record import FactsRecord
 
 
 def facts_of(mesh: Mesh, facts: Facts | None = None, crossings: bool = False) -> FactsRecord:
-    """Return the facts of a mesh.
+    """Return the facts about a mesh as JSON values.
 
     Parameters
     ----------
     mesh : Mesh
     facts : Facts, optional
-        The facts that are known already.
+        The facts about the mesh, if they are already computed.
     crossings : bool
-        True to look for faces that cross.
+        True to test whether faces cross.
     """
     known = facts or Facts.of(mesh)
     return {
@@ -39,12 +39,12 @@ def facts_of(mesh: Mesh, facts: Facts | None = None, crossings: bool = False) ->
 
 
 def _finite(array: FloatArray) -> Any:
-    """Return an array as lists, or None if it is not finite."""
+    """Return an array as nested lists, or None if a number is not finite."""
     return array.tolist() if np.isfinite(array).all() else None
 
 
 def _crossings(mesh: Mesh) -> int | None:
-    """Return 0 if no two faces of a mesh cross, exactly; None if that is not certain."""
+    """Return 0 if it is certain that no two faces of a mesh cross, else None."""
     if len(mesh.faces) == 0:
         return 0
     try:

@@ -1,7 +1,7 @@
-"""More engines, asked when two disagree: pymeshlab, openscad, and counts of crossings.
+"""Opinions on a case of further engines: pymeshlab, OpenSCAD, and exact counts of crossings.
 
-Each returns the set that it finds, and whether it equals ours. For scripts only openscad is asked,
-because they are in its language.
+They are asked if our result and manifold3d's differ. Each opinion says whether the engine's result
+equals ours. For scripts only OpenSCAD is asked, because they are in its language.
 """
 
 import shutil
@@ -24,27 +24,28 @@ from ..engines.questions import EngineAnswer, NoOpinionError, Question
 from ..record import OracleRecord
 from .facts import facts_of
 
-#: Engines by name, and how to install the optional ones.
+#: The engines by name, with the command that installs an optional one.
 ENGINES = {
     "manifold3d": "",
     "pymeshlab": 'pip install "bspcsg[repair]"',
     "openscad": "apt-get install openscad",
 }
 
-#: The number of points at which crossings are counted, half of them beside the surfaces.
+#: The number of points at which crossings are counted, half of them near the surfaces.
 _POINTS_COUNTED = 24
 
-#: The distance of these from the surfaces, as a fraction of the model's size.
+#: The typical distance of points near the surfaces, as a fraction of the diagonal of the bounding
+#: box.
 _BESIDE = 1e-4
 
 
 def is_installed(engine: str) -> bool:
-    """Say whether an engine can be asked."""
+    """Return true if an engine is installed."""
     return bool(shutil.which(engine)) if engine == "openscad" else find_spec(engine) is not None
 
 
 def require(engines: Sequence[str]) -> None:
-    """Refuse engines that are not installed.
+    """Raise an error if one of the engines is not installed.
 
     Raises
     ------
@@ -56,12 +57,12 @@ def require(engines: Sequence[str]) -> None:
 
 
 def opinion(engine: str, question: Question) -> OracleRecord:
-    """Ask an engine, and compare its result with ours as sets."""
+    """Return the record of an engine's result, compared with ours as sets."""
     return _recorded(engine, question, lambda: _ASKED[engine](question))
 
 
 def script_opinion(path: Path, ours: Solid, timeout: float) -> OracleRecord:
-    """Ask openscad for the result of a script that we made into a solid."""
+    """Return the record of OpenSCAD's result for a script, compared with our solid."""
     mesh = ours.normalized().to_mesh()
     question = Question("csg", [], [], mesh, ours.pitch, timeout, ours.tree.snapped_by)
     return _recorded("openscad", question, lambda: run_script(path, timeout))
@@ -80,7 +81,7 @@ def _recorded(engine: str, question: Question, asked: Callable[[], EngineAnswer]
 
 
 def crossings_opinion(question: Question, seed: int = 0) -> OracleRecord:
-    """Count how rays from some points cross the operands and our result, in rational arithmetic."""
+    """Return the record of whether exact counts of crossings at points confirm our result."""
     began = time.perf_counter()
     points = _points(question, np.random.default_rng(seed))
     agreeing, settled = count_agreeing(
@@ -131,7 +132,7 @@ _ASKED: dict[str, Callable[[Question], EngineAnswer]] = {
 
 
 def _points(question: Question, rng: np.random.Generator) -> np.ndarray:
-    """Return points throughout the operands' boxes and near the surfaces."""
+    """Return sample points throughout the box of all meshes and near their surfaces, (n, 3)."""
     meshes = [mesh for mesh in (*question.operands, question.ours) if len(mesh.faces)]
     if not meshes:
         return np.zeros((0, 3))

@@ -1,4 +1,4 @@
-"""The verdict on a case from the answers of all engines."""
+"""The verdict on a case from the opinions of all engines."""
 
 from collections.abc import Sequence
 
@@ -12,23 +12,23 @@ def ruled(
     identity: IdentityRecord | None,
     is_script: bool = False,
 ) -> tuple[str, str]:
-    """Return verdict and reason.
+    """Return the verdict on a case and its reason, from the opinions of all engines.
 
     Parameters
     ----------
     report : CheckReport
-        Against manifold3d.
+        The comparison of our result with manifold3d's.
     others : sequence of OracleRecord
     identity : IdentityRecord or None
     is_script : bool
-        True if `others` is openscad about its own language.
+        True for a script, about which `others` has OpenSCAD's opinion.
 
     Notes
     -----
-    Counts of crossings are exact, so a point in the wrong place overrules all engines. A rounding
-    engine that alone contradicts ours and another one is taken to be wrong; ours is never excused
-    when it stands alone. For scripts only openscad counts, because manifold3d gets the leaves that
-    we have made.
+    Counts of crossings are exact, so one wrongly classified point overrules all engines. An engine
+    with rounding that alone contradicts our result and another engine's counts as wrong; our result
+    never counts as right if it stands alone. For scripts only OpenSCAD counts, because manifold3d
+    gets primitives that we have made.
     """
     verdict, reason = report.verdict, report.reason
     if identity is not None and not identity["holds"]:
@@ -51,7 +51,7 @@ def ruled(
 def _weighed(
     verdict: Verdict, reason: str, engines: Sequence[OracleRecord], counted: bool
 ) -> tuple[str, str]:
-    """Return the verdict after other engines have supported or contradicted our result."""
+    """Return the verdict and its reason after weighing which engines support our result."""
     for_us = [engine["name"] for engine in engines if engine["agrees"] is True]
     against = [engine for engine in engines if engine["agrees"] is False]
     if verdict is Verdict.DISAGREE:

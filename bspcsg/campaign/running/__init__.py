@@ -1,1 +1,1 @@
-"""Cases on workers: processes, pools and clusters."""
+"""Run cases on workers: child processes, local pools and clusters."""

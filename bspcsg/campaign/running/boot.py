@@ -1,6 +1,6 @@
-"""Starts a worker, and a process that ends the worker together with its runner.
+"""Start a worker process, and a second process that kills the worker when its runner ends.
 
-No part of the package is imported before. Imports take a while, in which a runner can end, and
+It imports nothing of the package before: imports take a while, in which a runner can end, and they
 start threads, and a process with threads must not fork.
 """
 
@@ -8,19 +8,19 @@ import os
 import select
 import signal
 
-#: In a process that has just begun, all open file descriptors have lower numbers than this.
+#: A bound of the open file descriptors of a process that has just started.
 _MAX_DESCRIPTORS = 1024
 
 
 def end_with_runner() -> None:
-    """Fork a process of this group that kills the group once nobody can write to its input.
+    """Fork a process that kills this process group once the runner has closed its pipe to stdin.
 
-    A thread would have to wait for Python's lock, which another library may hold for minutes.
+    A thread could not do this, since it may wait minutes for Python's global lock.
     """
     if os.name != "posix" or os.getpgrp() != os.getpid() or os.fork():
         return
     try:
-        # Readers of the worker's output must not wait for the end of this process.
+        # Close stdout, so that readers of the worker's output do not wait for this process.
         os.closerange(1, _MAX_DESCRIPTORS)
         waiting = select.poll()
         waiting.register(0, 0)

@@ -1,4 +1,4 @@
-"""A child process that can be killed, so that its failures cannot harm the runner."""
+"""`Child`: a worker process that can be killed, so that its failures do not harm the runner."""
 
 import json
 import os
@@ -14,11 +14,11 @@ from typing import Any, Self
 
 from ...errors import held
 
-#: The longest time for a worker to start, in seconds. It imports the package, which takes a quarter
-#: of a second on an idle machine and a hundred times as long on an overloaded one.
+#: The time limit for a worker to start, in seconds. Importing the package takes a quarter of a
+#: second on an idle machine and a hundred times as long on an overloaded one.
 _START_TIMEOUT = 300.0
 
-#: The longest time for a process to end after it has closed its output, in seconds.
+#: The time limit for a process to end after it has closed its output, in seconds.
 _EXIT_TIMEOUT = 5.0
 
 
@@ -26,20 +26,21 @@ _BOOT = Path(__file__).with_name("boot.py")
 
 
 class TimedOutError(Exception):
-    """The child did not answer in time, and was killed."""
+    """The worker did not answer within the time limit and was killed."""
 
 
 class CrashedError(Exception):
-    """The child ended without an answer; the message says how."""
+    """The worker process ended without an answer; the message has its last line of output."""
 
 
 class Child:
-    """A worker (see `worker`), started on first use and again after each crash.
+    """A worker process (see `worker`), started on first use and again after each crash.
 
     Parameters
     ----------
     greeting : dict
-        Its first line: ``settings``, ``memory`` in bytes or None, ``threads``.
+        The first line that is sent to the worker: ``settings``, ``memory`` in bytes or None,
+        ``threads``.
     """
 
     def __init__(self, greeting: dict[str, Any]) -> None:
@@ -51,20 +52,20 @@ class Child:
         self._stopped = False
 
     def __enter__(self) -> Self:
-        """Return the child."""
+        """Return the child itself."""
         return self
 
     def __exit__(self, *_: object) -> None:
-        """End the process."""
+        """Stop the process."""
         self.stop()
 
     def answer(self, request: dict[str, Any], seconds: float) -> Any:
-        """Return the answer to a request.
+        """Send a request to the worker and return its answer.
 
         Raises
         ------
         TimedOutError
-            If no answer arrives in time.
+            If no answer arrives within `seconds`.
         CrashedError
             If the process ends before it answers.
         """
@@ -84,7 +85,7 @@ class Child:
         return json.loads(line)
 
     def stop(self) -> None:
-        """End the process for good; a pending answer will not arrive."""
+        """End the process and start no other; a pending request is not answered."""
         with self._lock:
             self._stopped = True
         self._kill()
@@ -115,8 +116,8 @@ class Child:
             env=_environment(),
             text=True,
             encoding="utf-8",
-            # A group of its own, so that its child processes die with it, and Ctrl-C does not reach
-            # it.
+            # A new process group: killing it ends the worker's own children, and Ctrl-C does not
+            # reach it.
             start_new_session=os.name == "posix",
         )
         listener = threading.Thread(target=_listen, args=(process, self._lines), daemon=True)
@@ -127,7 +128,7 @@ class Child:
         return process
 
     def _await_start(self) -> None:
-        """Wait until the process has imported its modules, which no case's time includes."""
+        """Wait until the worker has imported its modules, which no case's time includes."""
         try:
             if not self._lines.get(timeout=_START_TIMEOUT):
                 raise CrashedError(self._buried())
@@ -136,7 +137,7 @@ class Child:
             raise CrashedError(f"the process did not start within {_START_TIMEOUT:g} s") from None
 
     def _buried(self) -> str:
-        """Return how the process ended, and forget the process."""
+        """Return how the process ended, with its last line of output, and forget the process."""
         process, code = self._process, None
         if process is not None:
             try:
@@ -158,13 +159,13 @@ class Child:
         if process is None:
             return
         if os.name == "posix":
-            # All members of the group may have ended already.
+            # The process group may have ended already.
             with suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
         else:
             process.kill()
         process.wait()
-        # Closing may fail on unsent output.
+        # Closing fails if buffered requests cannot be sent.
         with suppress(OSError):
             held(process.stdin, "the process's input").close()
 
@@ -176,7 +177,7 @@ def _how(code: int | None) -> str:
 
 
 def _listen(process: "subprocess.Popen[str]", lines: "queue.SimpleQueue[str]") -> None:
-    """Pass on the lines of a process; an empty one marks the end."""
+    """Put the lines of a process's output into a queue, and an empty one at its end."""
     with held(process.stdout, "the process's output") as answers:
         for line in answers:
             lines.put(line)
@@ -184,7 +185,7 @@ def _listen(process: "subprocess.Popen[str]", lines: "queue.SimpleQueue[str]") -
 
 
 def _environment() -> dict[str, str]:
-    """Return the environment in which the child finds the same package."""
+    """Return the environment variables with which the child imports this same package."""
     home = str(Path(__file__).parents[3])
     paths = [home, *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
     return {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in paths if path)}

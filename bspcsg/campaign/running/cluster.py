@@ -1,7 +1,7 @@
-"""Answers from a cluster: the workers of Dask distributed, each with children of its own.
+"""`Cluster`: answers from the workers of Dask distributed, each with child processes.
 
 Dask neither limits the time of a task nor survives a crash of its worker. So a task only passes a
-request to a child process and waits, as `bspcsg.campaign.pool` does on one machine.
+request to a child process and waits, as `bspcsg.campaign.running.pool` does on one machine.
 """
 
 import json
@@ -16,7 +16,7 @@ from ...errors import MissingPartError, missing_part
 from .child import Child
 from .pool import answer_of
 
-#: The longest wait for a scheduler, and for a worker while there is none, in seconds.
+#: The time limit for reaching a scheduler, and for a scheduler to have a worker, in seconds.
 _TIMEOUT = 30
 
 #: The time between two checks for answers, in seconds.
@@ -27,7 +27,7 @@ _lock = threading.Lock()
 
 
 def answer_on_worker(request: Any, greeting: str, seconds: float) -> Any:
-    """Answer a request on a worker of the cluster, with the child of the current thread."""
+    """Return the answer to a request from the current thread's child process, on a worker."""
     key = threading.get_ident(), greeting
     with _lock:
         if key not in _children:
@@ -37,7 +37,7 @@ def answer_on_worker(request: Any, greeting: str, seconds: float) -> Any:
 
 
 def stop_children() -> None:
-    """End the children of this worker."""
+    """Stop all child processes of this worker."""
     with _lock:
         children = list(_children.values())
         _children.clear()
@@ -46,14 +46,14 @@ def stop_children() -> None:
 
 
 class Cluster:
-    """The workers of a scheduler.
+    """The workers of a Dask scheduler, which answer requests.
 
     Parameters
     ----------
     scheduler : str
-        Its address, such as ``tcp://host:8786``, or the path of its JSON file.
+        The address of the scheduler, such as ``tcp://host:8786``, or the path of its JSON file.
     greeting : dict
-        See `bspcsg.campaign.child.Child`.
+        The first line for each worker, see `bspcsg.campaign.running.child.Child`.
 
     Raises
     ------
@@ -70,13 +70,13 @@ class Cluster:
     def answers(
         self, requests: Sequence[Any], seconds: float
     ) -> Generator[tuple[int, Any], None, None]:
-        """Yield the number of each request and its answer as it comes.
+        """Yield the index of each request and its answer, as answers arrive.
 
         Raises
         ------
         MissingPartError
-            If the scheduler cannot be reached; code "no_scheduler". If it has no worker for a
-            while; code "no_workers".
+            If the scheduler cannot be reached (code "no_scheduler"), or has no worker for 30
+            seconds (code "no_workers").
         """
         import distributed
 
@@ -99,7 +99,7 @@ class Cluster:
             client.close()
 
     def _await_one(self, completed: Any, client: Any) -> None:
-        """Wait until an answer arrives, as long as there are workers."""
+        """Wait until an answer arrives; raise an error if there are no workers for a while."""
         seen = looked = time.monotonic()
         while not completed.has_ready():
             time.sleep(_POLL_INTERVAL)
@@ -129,7 +129,7 @@ class Cluster:
 
 
 def _result_of(future: Any) -> Any:
-    """Return the answer, or the failure if the worker itself was lost."""
+    """Return the answer of a task, or a crash as an answer if its worker was lost."""
     try:
         return future.result()
     except Exception as error:

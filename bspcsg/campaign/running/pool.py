@@ -1,4 +1,4 @@
-"""A pool that answers requests in child processes, several at a time."""
+"""`LocalPool`: answers requests in several child processes at a time."""
 
 import queue
 import threading
@@ -10,42 +10,42 @@ from .child import Child, CrashedError, TimedOutError
 
 
 class Answering(Protocol):
-    """Something that answers requests in any order."""
+    """A protocol: an object that answers requests, in any order."""
 
     def answers(
         self, requests: Sequence[Any], seconds: float
     ) -> Generator[tuple[int, Any], None, None]:
-        """Yield the number of each request and its answer as it arrives.
+        """Yield the index of each request and its answer, as answers arrive.
 
-        A missing answer is replaced by a dict with ``failure`` ("timeout" or "crash"), ``reason``
-        and ``seconds``. Closing the iterator stops requests that are still running.
+        If there is no answer, it is a dict with ``failure`` ("timeout" or "crash"), ``reason`` and
+        ``seconds``. Closing the iterator stops requests that are still running.
         """
         ...
 
 
 def answer_of(child: Child, request: Any, seconds: float) -> Any:
-    """Return a child's answer, or how the child failed."""
+    """Return a child's answer to a request, or a dict that describes the timeout or crash."""
     began = time.perf_counter()
     try:
         return child.answer(request, seconds)
     except TimedOutError:
         kind, reason = "timeout", f"stopped after {seconds:g} s"
     except (CrashedError, OSError, ValueError) as error:
-        # Neither a process that does not start nor a malformed answer ends the campaign.
+        # A process that does not start, or a malformed answer, counts as a crash.
         kind, reason = "crash", str(error)
     spent = round(time.perf_counter() - began, 4)
     return {"failure": kind, "reason": reason, "seconds": spent}
 
 
 class LocalPool:
-    """Children of this process.
+    """A pool of child processes on this machine that answer requests.
 
     Parameters
     ----------
     jobs : int
-        The number of workers at a time.
+        The largest number of child processes at a time.
     greeting : dict
-        See `bspcsg.campaign.child.Child`.
+        The first line for each child, see `bspcsg.campaign.running.child.Child`.
     """
 
     def __init__(self, jobs: int, greeting: dict[str, Any]) -> None:
@@ -54,7 +54,7 @@ class LocalPool:
     def answers(
         self, requests: Sequence[Any], seconds: float
     ) -> Generator[tuple[int, Any], None, None]:
-        """Yield the number of each request and its answer as it comes."""
+        """Yield the index of each request and its answer, as answers arrive."""
         waiting: queue.SimpleQueue[int] = queue.SimpleQueue()
         for number in range(len(requests)):
             waiting.put(number)

@@ -1,4 +1,4 @@
-"""Runs cases and records the results: each is on file before anything else happens."""
+"""Run the cases of a campaign and append each record to the results file at once."""
 
 import os
 import platform
@@ -22,20 +22,20 @@ _VERSIONED = ("manifold3d", "pymeshlab", "trimesh", "numpy")
 
 @dataclass(frozen=True)
 class CampaignPlan:
-    """The cases of a run, and how to run them.
+    """The cases of a run, the records already known, and how to run the other cases.
 
     Parameters
     ----------
     cases : sequence of Case
     known : dict of str to CaseRecord
-        Answers from an earlier run, by key; their cases are not asked again.
+        The records of an earlier run, by key; their cases are not run again.
     timeout : float
-        Seconds for a case.
+        The time limit of a case, in seconds.
     keep : str
-        The cases whose meshes are kept: "interesting", "all", "none", or the interesting ones and a
-        number of others.
+        The cases whose meshes are written: "interesting", "all", "none", or a number of cases
+        besides the interesting ones.
     fail_fast : bool
-        Stop at the first failure.
+        True to stop at the first failure.
     """
 
     cases: Sequence[Case]
@@ -46,12 +46,12 @@ class CampaignPlan:
 
     @property
     def open_cases(self) -> list[Case]:
-        """The cases without a known answer."""
+        """The cases without a known record."""
         return [case for case in self.cases if case.key not in self.known]
 
 
 def greeting(settings: EvaluationSettings, memory: int | None, threads: int) -> dict[str, Any]:
-    """Return the first message to a worker."""
+    """Return the first message to a worker, as JSON values."""
     told = {"settings": asdict(settings), "memory": memory, "threads": threads}
     return {**told, "folder": os.getcwd()}
 
@@ -62,16 +62,16 @@ def run_cases(
     journal: Journal | None,
     notice: Callable[[CaseRecord], None],
 ) -> list[CaseRecord]:
-    """Ask all open cases; return the records of all cases answered now or before.
+    """Run all open cases, and return the records of these and of the known cases.
 
     Parameters
     ----------
     plan : CampaignPlan
     answering : Answering
     journal : Journal or None
-        Gets each record as it arrives.
+        The results file to which each record is appended as it arrives.
     notice : callable
-        Called with each new record.
+        A function that is called with each new record.
     """
     found = {case.key: plan.known[case.key] for case in plan.cases if case.key in plan.known}
     with closing(_records(plan, answering)) as records:
@@ -103,19 +103,21 @@ def _record_of(case: Case, answer: Any) -> CaseRecord:
 
 
 def _chosen(count: int, keep: str) -> set[int]:
-    """Return the numbers of cases whose meshes are kept even if they are not interesting."""
+    """Return the indices of cases whose meshes are written even if they are not interesting."""
     wanted = count if keep == "all" else int(keep) if keep.isdecimal() else 0
-    # Spread over all cases, so that every kind is included.
+    # Evenly spread over all cases, so that each kind is included.
     return {number * count // wanted for number in range(min(wanted, count))} if wanted else set()
 
 
 def survey(
     files: Sequence[Path], answering: Answering, seconds: float
 ) -> dict[Path, dict[str, Any]]:
-    """Return for each file its ``triangles``, and why it is ``refused`` as a solid, or None.
+    """Return for each file its number of ``triangles``, and why it is ``refused``, or None.
 
-    A file on which the worker crashes or hangs counts as a solid without triangles. It stays in, so
-    that its cases report the failure, and so that the draw does not depend on the machine's load.
+    ``refused`` is the reason why the file is no solid.
+
+    A file on which the worker crashes or hangs counts as a solid without triangles, so that its
+    cases report the failure, and the random draw does not depend on the machine's load.
     """
     requests = [{"survey": str(file)} for file in files]
     found: dict[Path, dict[str, Any]] = {}
@@ -128,7 +130,7 @@ def survey(
 
 
 def run_record(command: str, seed: int) -> RunRecord:
-    """Return the header of a run that begins now."""
+    """Return the record of a run that starts now."""
     found = {"bspcsg": __version__, "python": platform.python_version()}
     for name in _VERSIONED:
         try:

@@ -1,7 +1,7 @@
-"""The process that evaluates cases: a JSON line in, a JSON line out.
+"""The worker process that evaluates cases: it reads requests and writes answers as JSON lines.
 
-Started by `boot`. When its input ends, because the runner has finished or was killed, it ends at
-once together with everything that it has started.
+The module `boot` starts it. When its input ends, because the runner has finished or was killed, it
+kills its whole process group.
 """
 
 import json
@@ -21,10 +21,10 @@ from ..judging.evaluation import EvaluationSettings, blank_record, evaluate
 
 
 def main() -> None:
-    """Answer requests until there are no more."""
+    """Answer requests from standard input, one for each line, until the process is killed."""
     lines: queue.SimpleQueue[str] = queue.SimpleQueue()
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    # Output of libraries must not get between the answers.
+    # Send the output of libraries to stderr, so that stdout has only answers.
     os.dup2(2, 1)
     started = json.loads(sys.stdin.readline())
     os.chdir(started["folder"])
@@ -65,7 +65,7 @@ def _answered(request: dict[str, Any], settings: EvaluationSettings) -> Any:
 
 
 def _surveyed(file: str) -> dict[str, Any]:
-    """Say whether a file is a solid, and how many triangles it has."""
+    """Return a file's number of triangles, and the reason if it is no solid."""
     try:
         solid = Solid.load(file)
         return {"file": file, "triangles": len(solid.to_mesh().faces), "refused": None}

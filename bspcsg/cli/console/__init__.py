@@ -1,1 +1,1 @@
-"""The terminal: streams, tables, colours, and the status line."""
+"""Output on a terminal or in a pipe: streams, tables, colours, and the status line."""

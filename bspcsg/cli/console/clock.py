@@ -1,4 +1,4 @@
-"""The running time of the command, counted from its first line."""
+"""The running time of the command, measured from the start of the process."""
 
 import time
 
@@ -6,7 +6,7 @@ _began = time.perf_counter()
 
 
 def start(began: float | None = None) -> None:
-    """Start the clock now, or at an earlier moment."""
+    """Start measuring the running time now, or from `began`, a time of `time.perf_counter`."""
     global _began  # noqa: PLW0603  one command runs at a time
     _began = time.perf_counter() if began is None else began
 

@@ -1,4 +1,4 @@
-"""Output streams and exit codes of the command line."""
+"""Printing of results, notes and errors by the command line, and its exit codes."""
 
 import json
 import sys
@@ -36,32 +36,32 @@ CLOSED_PIPE = 141
 #: The largest number of faces or vertices that a message names.
 _MAX_PLACES_NAMED = 3
 
-#: Codes of errors that say which optional package or program is not installed.
+#: Codes of errors which mean that an optional package or program is not installed.
 _MISSING_CODES = frozenset({"missing_dependency", "missing_package", "missing_program"})
 
-#: Codes of errors that say that a file was not written.
+#: Codes of errors which mean that a file was not written.
 _WRITING_CODES = frozenset({"unwritable", "write_mismatch"})
 
-#: Codes of errors that say that a time limit was hit.
+#: Codes of errors which mean that a time limit was exceeded.
 _TIME_CODES = frozenset({"timed_out", "timeout"})
 
 
 class EmptyResultError(BspcsgError):
-    """The result is empty, and the user did not allow that."""
+    """An error: the result is empty, and ``--allow-empty`` was not given."""
 
 
 @dataclass(frozen=True)
 class Output:
-    """The streams to which a command writes results, notes and warnings.
+    """Printing of a command's results, notes and warnings to standard output and error.
 
     Parameters
     ----------
     verbosity : int
-        Below 0 for no notes, above 0 for more of them.
+        Below 0 without notes and warnings, above 0 with details.
     as_json : bool
-        Standard output gets one JSON document, and nothing else.
+        True if standard output gets one JSON document, and nothing else.
     taken : bool
-        True if standard output carries a mesh, so that results go to standard error.
+        True if a mesh is written to standard output, so that results go to standard error.
     """
 
     verbosity: int = 0
@@ -70,11 +70,11 @@ class Output:
 
     @classmethod
     def of(cls, settings: dict[str, Any], taken: bool = False) -> "Output":
-        """Return the output that the common options of all verbs ask for."""
+        """Return the output for the values of ``--verbose``, ``--quiet`` and ``--json``."""
         return cls(int(settings["verbose"]) - int(settings["quiet"]), settings["as_json"], taken)
 
     def result(self, line: str, document: dict[str, Any]) -> None:
-        """Print a result, as text or as the document."""
+        """Print a result: `document` as JSON if ``--json`` is given, else `line`."""
         if self.as_json:
             with status.hidden():
                 click.echo(json.dumps({"schema": SCHEMA, **document}, allow_nan=False))
@@ -90,7 +90,7 @@ class Output:
 
     @property
     def advises(self) -> bool:
-        """True if a user is there to read advice on what to type next."""
+        """True if advice is printed: output goes to a terminal, and ``--quiet`` is not given."""
         return self.verbosity >= 0 and sys.stdout.isatty()
 
     def note(self, line: str) -> None:
@@ -104,7 +104,7 @@ class Output:
             terminal.say("warning", line)
 
     def finding(self, name: str, finding: Finding) -> None:
-        """Print a finding about a file on standard error."""
+        """Print a finding about the file `name` on standard error, with ``--quiet`` errors only."""
         least = -1 if finding.severity == "error" else 0
         if self.verbosity >= least:
             said = f"{finding.message}{_places(finding)}"
@@ -112,7 +112,10 @@ class Output:
 
 
 def _places(finding: Finding) -> str:
-    """Return the first numbers of the faces or vertices that a finding is about, as text."""
+    """Return text with the numbers of the first faces or vertices of a finding, after a colon.
+
+    Return an empty string if the message does not refer to them by “these”.
+    """
     if " these" not in finding.message or not finding.where:
         return ""
     first = ", ".join(map(str, finding.where[:_MAX_PLACES_NAMED]))
@@ -120,7 +123,7 @@ def _places(finding: Finding) -> str:
 
 
 def exit_code_of(error: BspcsgError) -> int:
-    """Return the exit code of a failure."""
+    """Return the exit code of the process for an error."""
     if isinstance(error, InternalError):
         return INTERNAL
     if isinstance(error, MissingPartError) or error.code in _MISSING_CODES:
@@ -133,7 +136,7 @@ def exit_code_of(error: BspcsgError) -> int:
 
 
 def tell_error(error: BspcsgError, as_json: bool) -> int:
-    """Print an error on standard error, and as JSON on standard output if asked for."""
+    """Print an error on standard error, and as JSON if `as_json`; return the exit code."""
     code = exit_code_of(error)
     terminal.say_error(error.message)
     if as_json:
@@ -142,7 +145,7 @@ def tell_error(error: BspcsgError, as_json: bool) -> int:
 
 
 def print_error(values: dict[str, Any], code: int) -> None:
-    """Print an error as the only JSON document on standard output."""
+    """Print an error, given as JSON values, with the exit code as JSON on standard output."""
     click.echo(json.dumps({"schema": SCHEMA, "error": values, "exit": code}))
 
 
@@ -157,10 +160,10 @@ def finding_values(findings: tuple[Finding, ...]) -> list[dict[str, Any]]:
 
 
 def grouped(number: int) -> str:
-    """Return a whole number as text with separated thousands."""
+    """Return an integer as text, on a terminal with separated thousands."""
     return f"{number:,}".replace(",", terminal.thousands())
 
 
 def counted(number: int, one: str) -> str:
-    """Return a number followed by its noun, singular or plural."""
+    """Return a count followed by a noun, in the singular or the plural, such as “2 files”."""
     return f"{grouped(number)} {one}{'' if number == 1 else 's'}"

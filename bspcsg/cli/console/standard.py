@@ -1,8 +1,8 @@
-"""Standard output and error: each write is complete, or fails with an error of its own.
+"""Replacement of standard output and error by streams that write completely or raise an error.
 
-Python's own streams guarantee neither. An unbuffered one (``PYTHONUNBUFFERED``) silently ignores
-partial writes, which occur on a full disk, at a file size limit and above 2 GiB; and an error of
-either stream does not name the file.
+Python's own streams do not. If they are unbuffered (``PYTHONUNBUFFERED``), they silently ignore
+partial writes, which occur on a full disk, at a file size limit and above 2 GiB; and their errors
+do not name the file.
 """
 
 import io
@@ -17,18 +17,18 @@ _BUFFER_BYTES = 1 << 16
 
 
 class FullOutputError(OSError):
-    """Standard output cannot be written; errors of other files have other classes."""
+    """An error: standard output cannot be written. Other files have errors of other classes."""
 
 
 class _CompleteWriter(io.RawIOBase):
-    """The end of a stream: takes all that it is given.
+    """A raw stream whose `write` writes all bytes, in several steps if necessary.
 
     Parameters
     ----------
     raw : file
         The file to which bytes are written.
     owner : file
-        The stream that closes the file when it is garbage-collected.
+        The original stream; it is stored, since its garbage collection would close the file.
     fail : callable
         Called with the error of a write, unless the pipe is closed. If it returns, the data are
         lost.
@@ -47,7 +47,7 @@ class _CompleteWriter(io.RawIOBase):
         return self._raw.isatty()
 
     def write(self, data: Any, /) -> int:
-        """Write all bytes."""
+        """Write all bytes of `data`, and return their number; call `fail` if that is impossible."""
         with memoryview(data) as view:
             size = len(view)
             try:
@@ -70,7 +70,10 @@ class _CompleteWriter(io.RawIOBase):
 
 
 def take_over(errors: str) -> None:
-    """Make both standard streams write completely, with this error handler of their codec."""
+    """Replace standard output and error by streams that write completely.
+
+    `errors` is the name of the codec's error handler.
+    """
     for name, fail in (("stdout", _refuse), ("stderr", _pass_by)):
         stream = getattr(sys, name)
         raw = _raw_of(stream)
@@ -84,7 +87,7 @@ def take_over(errors: str) -> None:
 
 
 def _raw_of(stream: object) -> io.FileIO | None:
-    """Return the raw file of a stream; None for a Windows console, which has none."""
+    """Return the unbuffered file under a text stream; None for a Windows console and others."""
     if not isinstance(stream, io.TextIOWrapper):
         return None
     raw = getattr(stream.buffer, "raw", stream.buffer)
@@ -115,7 +118,7 @@ def put(chunks: Iterable[bytes]) -> None:
 
 
 def discard(name: str = "stdout") -> None:
-    """Redirect a stream to the null device, so that the rest is not flushed to a broken one."""
+    """Redirect a standard stream to the null device, so that flushing it does not fail again."""
     nothing = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nothing, getattr(sys, name).fileno())
     os.close(nothing)

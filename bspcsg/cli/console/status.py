@@ -1,6 +1,6 @@
-"""The status line of a terminal: after a second it shows the current step and its time.
+"""The status line of a terminal: after a second it shows the current step and the time it takes.
 
-The line is the last one on standard error and is erased before anything else is printed there.
+The line is the last one on standard error; it is erased before other text is printed there.
 """
 
 import os
@@ -10,10 +10,10 @@ import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 
-#: The time until a line appears, and the time between two looks at the clock, in seconds.
+#: The time until the line appears, and the time between two updates, in seconds.
 _LINE_DELAY, _POLL_INTERVAL = 1.0, 0.1
 
-#: To the start of the line, and nothing behind it.
+#: The control sequence that moves the cursor to the start of the line and erases the line.
 _ERASE = "\r\033[K"
 
 
@@ -30,14 +30,14 @@ class _Line:
         self._thread.start()
 
     def end(self) -> None:
-        """Erase the line for good."""
+        """Erase the line and end the thread."""
         self._is_over.set()
         self._thread.join()
         self._put("")
 
     @contextmanager
     def hidden(self) -> Iterator[None]:
-        """Erase the line while something is printed."""
+        """Erase the line while other text is printed in the `with` block."""
         with self._lock:
             self._put("")
             yield
@@ -61,7 +61,10 @@ _line: _Line | None = None
 
 @contextmanager
 def watched(what: str, quiet: bool) -> Iterator[None]:
-    """Show the status line while the block runs, if there is a terminal and no ``--quiet``."""
+    """Show the status line while the `with` block runs, if standard error is a terminal.
+
+    It is not shown if `quiet` is true.
+    """
     global _line  # noqa: PLW0603  there is one terminal
     if quiet or os.environ.get("TERM") == "dumb" or not sys.stderr.isatty():
         yield
@@ -74,7 +77,7 @@ def watched(what: str, quiet: bool) -> Iterator[None]:
 
 
 def tell(what: str) -> None:
-    """Set the text of the status line."""
+    """Set the text of the status line, if there is one."""
     if _line is not None:
         _line.what = what
 
@@ -85,7 +88,7 @@ def hidden() -> AbstractContextManager[None]:
 
 
 def end() -> None:
-    """Erase the status line for good, so that something else can use the terminal."""
+    """End the status line, so that a progress bar or a script's output can use the terminal."""
     global _line
     if _line is not None:
         line, _line = _line, None

@@ -1,38 +1,38 @@
-"""Tables in the terminal, drawn by rich without colours."""
+"""Tables as text for the terminal, drawn by the package rich without colours."""
 
 from collections.abc import Iterable, Sequence
 
 from ...errors import harmless
 from . import terminal
 
-#: The characters that rule a table on a terminal, and in a pipe or a file.
+#: The character of a table's horizontal lines on a terminal, and in a pipe or a file.
 _RULE, _PLAIN_RULE = "─", "-"
 
-#: Columns of the terminal that a column takes besides its text.
+#: The number of characters that a table's column takes besides its text.
 _MARGIN = 3
 
 
 def table_text(
     columns: Sequence[str], rows: Iterable[Sequence[str]], right: Sequence[str] = ()
 ) -> str:
-    """Return a table as lines of text that fit the terminal; in a pipe, their width is not limited.
+    """Return a table as text that fits the terminal; in a pipe, the width is not limited.
 
-    Words are not broken: if the terminal is too narrow for the longest words side by side, each row
-    becomes several lines of a name and a value.
+    Words are not broken: if the terminal is too narrow for the longest word of each column, each
+    row becomes several lines of a name and a value.
 
     Parameters
     ----------
     columns : sequence of str
     rows : iterable of sequence of str
     right : sequence of str
-        Columns to align at the right.
+        Names of the columns to align at the right.
     """
     from rich.cells import cell_len
 
     columns, *listed = [[harmless(entry) for entry in row] for row in (columns, *rows)]
     entries = list(zip(columns, *listed, strict=True))
     width = terminal.width()
-    # A table in a pipe or a log must not lose letters.
+    # In a pipe or a file, no text of the table may be cut off.
     widths = [max(map(cell_len, column)) for column in entries]
     if width is None:
         whole = sum(widths) + _MARGIN * len(columns)
@@ -78,7 +78,7 @@ def _drawn(
     for row in rows:
         table.add_row(*row)
     drawn = StringIO()
-    # A name between colons is a name, not that of a picture.
+    # A word between colons is a name, not the name of an emoji.
     console = Console(file=drawn, width=width, highlight=False, markup=False, emoji=False)
     console.print(table)
     return "\n".join(line.rstrip() for line in drawn.getvalue().splitlines() if line.strip())

@@ -1,4 +1,4 @@
-"""The look of the terminal: colours and widths by the conventions of the command line."""
+"""Colours, labels and widths of terminal output, by the usual conventions (such as NO_COLOR)."""
 
 import os
 import shutil
@@ -10,18 +10,21 @@ import click
 from ...errors import harmless
 from . import status
 
-#: Colours of what a line begins with.
+#: The colour of each label with which a line on standard error may begin.
 _COLOURS = {"error": "red", "warning": "yellow", "note": "cyan"}
 
-#: The options that silence notes, for what is said before options are read.
+#: The options that suppress notes, for notes that are printed before options are parsed.
 QUIET = frozenset({"-q", "--quiet"})
 
-#: The smallest width that a table is fitted to, in characters.
+#: The smallest width for which a table is laid out, in characters.
 _MIN_TABLE_WIDTH = 40
 
 
 def wants_colour(stream: TextIO) -> bool:
-    """Say whether a stream gets colours, by `NO_COLOR`, then `FORCE_COLOR`, then its kind."""
+    """Say whether text for a stream is coloured.
+
+    The variable `NO_COLOR` decides, else `FORCE_COLOR`, else whether the stream is a terminal.
+    """
     if os.environ.get("NO_COLOR"):
         return False
     forced = os.environ.get("FORCE_COLOR")
@@ -31,7 +34,7 @@ def wants_colour(stream: TextIO) -> bool:
 
 
 def labelled(label: str, line: str) -> str:
-    """Return a line after a label such as "note", for standard error."""
+    """Return a line after a label such as "note:", coloured if standard error takes colours."""
     if wants_colour(sys.stderr):
         bold = label == "error"
         return f"{click.style(f'{label}:', fg=_COLOURS[label], bold=bold)} {line}"
@@ -39,7 +42,7 @@ def labelled(label: str, line: str) -> str:
 
 
 def say(label: str, line: str, before: str = "") -> None:
-    """Print a line with its label on standard error."""
+    """Print a line on standard error, after `before` and a label such as "note"."""
     with status.hidden():
         told = before + labelled(label, harmless(line))
         click.echo(told, err=True, color=wants_colour(sys.stderr))

@@ -1,4 +1,4 @@
-"""Files by name or as streams: how inputs are read, and where an output goes."""
+"""Reading of inputs and writing of outputs, as files or as standard input and output."""
 
 import io
 import os
@@ -29,16 +29,16 @@ _Kind = TypeVar("_Kind", bound="Mesh | RawMesh")
 #: The name that stands for standard input or standard output.
 STREAM = "-"
 
-#: The format of what nobody keeps and for which none is said: one that keeps all digits.
+#: The format of an output to the null device if none is given: one that stores doubles.
 _ANY = ".ply"
 
-#: Advice where a mesh is refused because it is not closed.
+#: Advice in the error about a mesh that is not closed.
 ON_INVALID = "  --on-invalid repair closes the mesh; --on-invalid warn leaves it out."
 
 
 @dataclass(frozen=True)
 class Inputs:
-    """The reading of input files.
+    """A reader of input files for a verb, with the settings of its options.
 
     Parameters
     ----------
@@ -47,15 +47,15 @@ class Inputs:
     suffix : str
         The suffix of the format of standard input, and of files whose own suffix names no format.
     unit : str or None
-        The unit of files that state none; None if the user gave none either.
+        The unit of files that state none; None if the user did not give it.
     winding : str
     pitch : int or None
     on_invalid : {"error", "warn", "repair"} or None
-        The treatment of a file that is not closed; None if the verb leaves no choice.
+        The treatment of a file that is not closed; None if the verb has no such option.
     noticed : list of Finding
-        The findings about the solids so far, which the results repeat.
+        The findings about solids that have been read; results repeat them.
     objects : ObjectNames
-        The objects to which the solids' triangles belong.
+        The named objects to which the triangles of the read solids belong.
     """
 
     out: Output
@@ -69,13 +69,13 @@ class Inputs:
 
     @classmethod
     def of(cls, out: Output, settings: dict[str, Any]) -> "Inputs":
-        """Return the inputs that the options of a verb describe."""
+        """Return the reader for the options of a verb, given by name."""
         names = ("unit", "winding", "pitch", "on_invalid")
         found = {name: settings[name] for name in names if settings.get(name) is not None}
         return cls(out, settings.get("from_format") or "", **found)
 
     def refuse_early(self, paths: Sequence[Path]) -> None:
-        """Refuse what can be known to fail before anything is read."""
+        """Raise an error if reading one of the files is certain to fail, before any is read."""
         from ...formats.files import format_of
         from ...formats.registry import FORMATS
 
@@ -101,7 +101,7 @@ class Inputs:
                 format_of(path)
 
     def _refuse_programs(self, path: Path) -> None:
-        """Refuse a script without a suffix of its own if another program has to read it by name."""
+        """Raise a usage error if ``--from`` names a language whose scripts need a file suffix."""
         if self.suffix not in STREAMED:
             message = (
                 f"{shown(path)}: {self.suffix} scripts cannot be read from standard input or a"
@@ -110,7 +110,7 @@ class Inputs:
             raise click.UsageError(message)
 
     def tell_units(self, pairs: Iterable[tuple[Path, "Target"]]) -> None:
-        """Print once which inputs have no unit although their outputs state one."""
+        """Print a note if inputs have no unit and their output formats state one."""
         from ...formats.registry import FORMATS
 
         unknown = [
@@ -127,24 +127,27 @@ class Inputs:
             )
 
     def suffix_of(self, path: Path) -> str:
-        """Return the suffix of the format that a file is read as."""
+        """Return the suffix of the format in which a file is read: its own or ``--from``'s."""
         from ...formats.registry import FORMATS
 
         own = path.suffix.lower()
         return own if own in FORMATS or own in SUFFIXES or not self.suffix else self.suffix
 
     def is_script(self, path: Path) -> bool:
-        """Return whether a file is read as a script."""
+        """Say whether a file is read as a script, by its own suffix or that of ``--from``."""
         return self.suffix_of(path) in SUFFIXES
 
     def up_of(self, path: Path) -> str:
-        """Return the axis that is up in a file, as is usual for its format."""
+        """Return the axis, "y" or "z", that points upwards in files of a file's format."""
         from ...formats.registry import FORMATS
 
         return "z" if self.is_script(path) else FORMATS[self.suffix_of(path)].up
 
     def raw(self, path: Path) -> "RawMesh":
-        """Read a mesh or evaluate a script; in millimetres if the unit is known or given."""
+        """Read a mesh or evaluate a script, without requiring that it is closed.
+
+        The result is in millimetres if the format states a unit or ``--unit`` was given.
+        """
         from ...formats.files import decoded, read_as
         from ...formats.placing import rescaled
 
@@ -159,7 +162,7 @@ class Inputs:
         return replace(rescaled(raw, MILLIMETRES[self.unit]), unit="mm")
 
     def _made_by(self, path: Path) -> "Solid":
-        """Return the solid of a script; read its text first if its suffix names no language."""
+        """Return the solid that a script makes, in the language of its suffix or of ``--from``."""
         if path.suffix.lower() in SUFFIXES:
             return made_by(path, self.out)
         return made_by(path, self.out, _text_of(path), self.suffix)
@@ -172,7 +175,7 @@ class Inputs:
         return replace(raw, name=path.stem, is_empty_set=not len(mesh.faces))
 
     def solid(self, path: Path) -> "Solid":
-        """Read a solid or evaluate a script, and print the findings about the file."""
+        """Read a mesh as a solid, or evaluate a script, and print the findings about the file."""
         if self.is_script(path):
             made = self._made_by(path)
             return made if self.unit is None else made.scale(MILLIMETRES[self.unit])
@@ -185,7 +188,7 @@ class Inputs:
         return solid
 
     def as_solid(self, raw: "RawMesh", path: Path) -> "Solid":
-        """Return the solid of a mesh; treat one that is not closed as the user asked for."""
+        """Return the solid of a mesh; treat a mesh that is not closed as ``--on-invalid`` says."""
         try:
             return self._solid_of(raw, path)
         except InvalidMeshError as error:
@@ -234,13 +237,13 @@ class Inputs:
         return solid
 
     def tell(self, path: Path, findings: Sequence[Finding]) -> None:
-        """Print the findings about a file."""
+        """Print findings about a file on standard error."""
         for finding in findings:
             self.out.finding(shown(path), finding)
 
 
 def repair_command(path: Path) -> str:
-    """Return the shell command that repairs a file that is not closed."""
+    """Return the shell command that repairs a file and writes it under a name with “-fixed”."""
     source = "open.stl" if str(path) == STREAM else str(path)
     target = Path(source).with_name(f"{Path(source).stem}-fixed{Path(source).suffix}")
     return f"bspcsg repair {shlex.quote(source)} -o {shlex.quote(str(target))}"
@@ -248,19 +251,19 @@ def repair_command(path: Path) -> str:
 
 @dataclass(frozen=True)
 class Target:
-    """The file or stream that takes an output.
+    """The file or stream to which a mesh is written, and the form of the output.
 
     Parameters
     ----------
     path : Path
     suffix : str
-        Of the format.
+        The suffix of the format.
     text : bool
         True for the text form of the format.
     overwrite : bool
         True if an existing file may be replaced.
     digits : int or None
-        Significant digits of coordinates, if they are to be rounded.
+        The number of significant digits to which coordinates are rounded; None for no rounding.
     """
 
     path: Path
@@ -271,17 +274,17 @@ class Target:
 
     @classmethod
     def of(cls, path: Path, settings: dict[str, Any]) -> "Target":
-        """Return the target that the options of a verb describe."""
+        """Return the target for an output path and the options of a verb, given by name."""
         suffix = settings.get("to_format") or path.suffix or (_ANY if is_dropped(path) else "")
         return cls(path, suffix, settings["text"], settings["overwrite"], settings["digits"])
 
     @property
     def is_stream(self) -> bool:
-        """True if it is standard output."""
+        """True if the target is standard output."""
         return str(self.path) == STREAM
 
     def refuse_early(self, as_json: bool = False) -> None:
-        """Refuse what can be known to fail before anything is read.
+        """Raise an error if writing is certain to fail, before anything is read.
 
         Raises
         ------
@@ -307,26 +310,26 @@ class Target:
 
     @property
     def names_objects(self) -> bool:
-        """True if files of this form have named objects."""
+        """True if the output's format can store named objects."""
         from ...formats.files import form_of
 
         return form_of(f"mesh{self.suffix}", self.text).called is not None
 
     @property
     def is_single(self) -> bool:
-        """True if files of this form hold single precision only."""
+        """True if the output's format stores single precision only."""
         from ...formats.files import form_of
 
         return form_of(f"mesh{self.suffix}", self.text).is_single
 
     def rounded(self, mesh: "_Kind") -> "tuple[_Kind, tuple[Finding, ...]]":
-        """Return the mesh with coordinates rounded to the requested digits, and the findings."""
+        """Return the mesh with coordinates rounded to ``--digits``, if given, and the findings."""
         from ...formats.rounding import rounded
 
         return (mesh, ()) if self.digits is None else rounded(mesh, self.digits)
 
     def write(self, mesh: "Mesh | RawMesh") -> tuple[Finding, ...]:
-        """Write a mesh, and return findings about losses by the format or the number of digits."""
+        """Write a mesh, and return findings about losses by the format and by ``--digits``."""
         from ...formats.files import encoded
 
         shortened, moved = self.rounded(mesh)
@@ -335,7 +338,10 @@ class Target:
         return moved + made.findings
 
     def put(self, made: "Encoded", prove: Callable[[BinaryIO], None]) -> None:
-        """Write a file and its companion files; a stream has none."""
+        """Write the bytes of a file, checked by `prove`, and its companion files.
+
+        Companion files are not written for a stream or the null device.
+        """
         from ...formats.files import places_beside, write_beside
 
         files = {} if self.is_stream or is_dropped(self.path) else made.files
@@ -357,7 +363,7 @@ def put(
 ) -> None:
     """Write bytes to a file, which appears complete or not at all, or to standard output.
 
-    Nothing is written if `prove` raises an error.
+    `prove` checks the written content: if it raises an error, no file appears.
     """
     from ...formats.atomic import write_file
 
@@ -381,7 +387,7 @@ def stream_text() -> str:
     Raises
     ------
     FormatError
-        If it is not UTF-8, or a pointer of Git LFS.
+        If the input is not UTF-8, or a pointer of Git LFS.
     """
     from ...formats.source import present
 
@@ -409,7 +415,10 @@ def _decoded(data: bytes, name: str) -> str:
 
 
 def refuse_unwritable(path: Path, overwrite: bool = True) -> None:
-    """Raise an error if a file must not be replaced, or its folder is missing or not writable."""
+    """Raise a `FormatError` if a file exists and `overwrite` is false, or its folder is unusable.
+
+    A folder is unusable if it is missing or not writable.
+    """
     if str(path) == STREAM:
         return
     if not overwrite and os.path.lexists(path) and not is_dropped(path):
@@ -419,7 +428,7 @@ def refuse_unwritable(path: Path, overwrite: bool = True) -> None:
 
 
 def refuse_folder(path: Path) -> None:
-    """Raise an error if the folder of a file is missing or not writable."""
+    """Raise a `FormatError` if the folder of a file is missing or not writable."""
     if is_dropped(path):
         return
     folder = path.parent
@@ -429,7 +438,7 @@ def refuse_folder(path: Path) -> None:
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder for files, and its parent folders."""
+    """Make a folder and its parent folders; an existing one is left unchanged."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -438,17 +447,17 @@ def make_folder(folder: Path) -> None:
 
 
 def is_dropped(path: Path) -> bool:
-    """Say whether a path is the null device, which keeps nothing."""
+    """Say whether a path is the null device, which drops all output."""
     return str(path) == os.devnull
 
 
 def is_among(path: Path, others: Iterable[Path]) -> bool:
-    """Say whether a file exists and is the same file as one of others, under any name."""
+    """Say whether a path and one of `others` are the same existing file, under any name."""
     return any(path.exists() and other.exists() and path.samefile(other) for other in others)
 
 
 def refuse_inputs(file: Path, targets: Iterable[Path], inputs: Sequence[Path]) -> None:
-    """Raise an error if an output of a file would replace an input."""
+    """Raise a usage error if one of the outputs `targets` of a file would replace an input."""
     for number, where in enumerate(targets, 1):
         if not is_dropped(where) and is_among(where, inputs):
             message = f"part {number} of {shown(file)} would overwrite {where}, which is also an"
@@ -456,12 +465,15 @@ def refuse_inputs(file: Path, targets: Iterable[Path], inputs: Sequence[Path]) -
 
 
 def shown(path: Path) -> str:
-    """Return the name of a file for messages."""
+    """Return the name of a file for messages; “-” for standard input or output."""
     return "-" if str(path) == STREAM else str(path)
 
 
 def expanded(pattern: Path, replacement: str) -> Path:
-    """Return a path with each ``%`` of its name replaced, or with the text before its suffix."""
+    """Replace each ``%`` in the name of a path; without ``%``, add “-” and the text to the stem.
+
+    The null device stays unchanged.
+    """
     if is_dropped(pattern):
         return pattern
     if "%" in pattern.name:

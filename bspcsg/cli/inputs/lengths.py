@@ -1,4 +1,4 @@
-"""Lengths with units, for options."""
+"""Parsing of options that are lengths with a unit, such as 0.01mm."""
 
 import math
 
@@ -9,7 +9,7 @@ MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, "ft": 304.8, "um"
 
 
 def as_length(context: click.Context, option: click.Parameter, value: str | None) -> float | None:
-    """Return a length in millimetres, which is the unit if none is given."""
+    """Convert a text such as “2in” to millimetres; without a unit it is in millimetres."""
     if value is None:
         return None
     text = value.strip().lower()

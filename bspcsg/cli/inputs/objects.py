@@ -1,7 +1,7 @@
-"""Names of objects in the results of set operations: the rest of an object keeps its name.
+"""Names of objects in the results of set operations.
 
-A result is one set of points, which a file divides into connected parts. Each part is named after
-the objects that its surface comes from.
+A result is one set of points; it is written as connected parts. Each part is named after the
+objects of the input files from which its surface comes.
 """
 
 from collections.abc import Sequence
@@ -13,21 +13,21 @@ if TYPE_CHECKING:
     from ...mesh.mesh import Mesh
     from ...solid.solid import Solid
 
-#: What separates the names of objects that became one part, and the largest number of names that
-#: are shown.
+#: The text between the names of objects that form one part, and the largest number of such names.
 _NAME_SEPARATOR, _MAX_NAMES_SHOWN = " + ", 3
 
 
 class ObjectNames:
-    """The objects that the triangles of input meshes belong to."""
+    """A record of the objects to which the triangles of input meshes belong."""
 
     def __init__(self) -> None:
-        #: By the identity of a mesh: names, and the first triangle behind each object.
+        #: For the number of an input mesh: the names of its objects, and each object's end among
+        #: the triangles.
         self._known: dict[int, tuple[list[str], list[int]]] = {}
         self._has_names = False
 
     def note(self, solid: "Solid", raw: "RawMesh", stem: str) -> None:
-        """Remember the objects of a file that became a solid; an unnamed one is called `stem`."""
+        """Record the objects of a file that was read as a solid; unnamed ones are called `stem`."""
         import numpy as np
 
         names = [name or stem for name, _ in raw.objects] or [stem]
@@ -45,14 +45,14 @@ class ObjectNames:
         ----------
         result : Solid
         cutters : sequence of Solid
-            The subtracted solids, whose objects give no names.
+            The subtracted solids; the names of their objects are not used.
         in_single : bool
             True to round the parts to single precision.
 
         Returns
         -------
         tuple of RawMesh and findings, or None
-            None if no named object of the files is left.
+            None if no part of the result comes from a named object.
         """
         from ...formats.raw import joined
         from ...operations.parts import connected_parts
@@ -96,5 +96,5 @@ def _settled(part: "Mesh") -> "tuple[Mesh, tuple[Finding, ...]]":
 
     try:
         return settled(part)
-    except OverflowError:  # which the writer refuses with the name of the file
+    except OverflowError:  # the writer raises an error that names the file
         return part, ()

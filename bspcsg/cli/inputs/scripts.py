@@ -1,4 +1,4 @@
-"""Scripts as inputs in place of meshes: they are evaluated first."""
+"""Evaluation of scripts that are given as inputs in place of meshes."""
 
 import warnings
 from pathlib import Path
@@ -10,33 +10,33 @@ from ..console.output import Output
 if TYPE_CHECKING:
     from ...solid.solid import Solid
 
-#: OpenSCAD's tree and its JSON form, its language, and Python.
+#: Suffixes of scripts: OpenSCAD's tree, its JSON form, OpenSCAD's language, and Python.
 SUFFIXES = (".csg", ".json", ".scad", ".py")
 
-#: Those that may come from standard input; the others are run by programs that read files.
+#: Suffixes of scripts that standard input can be; scripts in OpenSCAD and Python are run by name.
 STREAMED = (".csg", ".json")
 
 
 def made_by(
     path: Path, out: Output, text: str | None = None, suffix: str | None = None, **options: Any
 ) -> "Solid":
-    """Return the solid that a script makes, and print what was left out.
+    """Return the solid that a script makes; print warnings about parts of it that are ignored.
 
     Parameters
     ----------
     path : Path
     out : Output
     text : str, optional
-        The text of the script, if it has been read.
+        The text of the script; if absent, it is read from the file.
     suffix : str, optional
-        The suffix of its language, if its name has another.
+        The suffix of the script's language; if absent, that of `path`.
     **options
         As for `run_script` or `csg.load`.
     """
     if (suffix or path.suffix.lower()) == ".py":
         from ...script.run import run_script
 
-        # The script's own output gets the terminal.
+        # End the status line, since the script may print to the terminal.
         status.end()
         return run_script(path, **options)
     from ... import csg
@@ -49,6 +49,6 @@ def made_by(
             form: Literal["csg", "json"] = "json" if suffix == ".json" else "csg"
             return csg.loads(text, name=str(path), form=form, **options)
         finally:
-            # The things left out may be the reason why the script fails.
+            # Print warnings even after an error: ignored parts may be its cause.
             for said in caught:
                 out.warning(str(said.message))

@@ -1,4 +1,4 @@
-"""Options for the point of view, and the camera that they make."""
+"""Options for the point of view of a picture, and the camera that they describe."""
 
 import math
 from collections.abc import Callable
@@ -17,17 +17,17 @@ _Command = TypeVar("_Command", bound=Callable[..., Any])
 
 _VIEWS = ("iso", "front", "back", "left", "right", "top", "bottom")
 
-#: Of "iso", in degrees: to the right of the front, and from above.
+#: The direction of the view "iso", in degrees: to the right of the front, and from above.
 _AZIMUTH, _ELEVATION = 45.0, math.degrees(math.atan(math.sqrt(0.5)))
 
-#: Degrees between the top and the bottom of a perspective, unless they are said.
+#: The default angle between the top and the bottom of a perspective picture, in degrees.
 _FIELD_OF_VIEW = 35.0
 
 
 def _as_point(
     context: click.Context, option: click.Parameter, value: str | None
 ) -> tuple[float, ...] | None:
-    """Return three finite numbers."""
+    """Convert a text such as “10,-20,15” to three finite numbers."""
     if value is None:
         return None
     found = finite_numbers(value, 3)
@@ -69,7 +69,7 @@ _SEEING = [
         "--up",
         metavar="X,Y,Z",
         callback=numbers("direction", "x,y,z", "0,0,1"),
-        help="What is upwards in the picture; by default z.",
+        help="Direction that is upwards in the picture; by default z.",
     ),
     further(
         "--perspective",
@@ -78,21 +78,21 @@ _SEEING = [
         is_flag=False,
         flag_value=_FIELD_OF_VIEW,
         type=FiniteRange(0, 180, min_open=True, max_open=True),
-        help="Near things are larger, in a field of view of so many degrees, or 35; what --eye does"
-        " by itself.",
+        help="Draw in perspective, with a field of view of 35 or this number of degrees; implied by"
+        " --eye.",
     ),
 ]
 
 
 def seeing(command: _Command) -> _Command:
-    """Add the options for the point of view."""
+    """Add the options for the point of view to a command."""
     for option in reversed(_SEEING):
         command = option(command)
     return command
 
 
 def refuse_contradictions(settings: dict[str, Any]) -> None:
-    """Raise an error if options give two different points of view."""
+    """Raise a usage error if options for the point of view contradict each other."""
     angles = [name for name in ("azimuth", "elevation") if settings[name] is not None]
     given = ["eye"] if settings["eye"] is not None else []
     view = settings["view"] != "iso"
@@ -112,7 +112,7 @@ def refuse_contradictions(settings: dict[str, Any]) -> None:
 def camera_of(
     settings: dict[str, Any], points: "FloatArray", aspect: float, turn: float = 0.0
 ) -> "Camera":
-    """Return the camera of the options; without an eye point it sees all points.
+    """Return the camera that the options describe; without ``--eye`` all points are in the picture.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def camera_of(
     aspect : float
         Width of the picture divided by its height.
     turn : float
-        Degrees by which the camera is turned further about z.
+        Degrees by which the camera is also rotated about z.
     """
     from ...bsp import Camera
 
@@ -153,7 +153,7 @@ def _from_eye(settings: dict[str, Any], points: "FloatArray", turn: float) -> "C
 
 
 def _direction(settings: dict[str, Any], turn: float) -> tuple[float, float, float]:
-    """Return the direction of view, away from the viewer."""
+    """Return the direction of view as a vector from the viewer to the model."""
     angles = settings["azimuth"], settings["elevation"]
     if angles == (None, None):
         azimuth, elevation = _SIDES[settings["view"]]
@@ -165,7 +165,7 @@ def _direction(settings: dict[str, Any], turn: float) -> tuple[float, float, flo
     return (-level * math.sin(around), level * math.cos(around), -math.sin(above))
 
 
-#: Azimuth and elevation of the views.
+#: Azimuth and elevation, in degrees, of each value of ``--view``.
 _SIDES = {
     "iso": (_AZIMUTH, _ELEVATION),
     "front": (0.0, 0.0),

@@ -1,4 +1,4 @@
-"""Parsing of the options of crosscheck."""
+"""Parsing of the options of the verb crosscheck."""
 
 import click
 
@@ -11,7 +11,7 @@ _SUFFIXES = {"": 1, "K": 10**3, "M": 10**6, "G": 10**9, "T": 10**12}
 def as_engines(
     context: click.Context, option: click.Parameter, value: str | None
 ) -> tuple[str, ...]:
-    """Return the engine names of a list with commas."""
+    """Convert names of engines, separated by commas, to a tuple."""
     names = tuple(name.strip() for name in (value or "").split(",") if name.strip())
     for name in names:
         if name not in ENGINES:
@@ -23,7 +23,7 @@ def as_engines(
 
 
 def as_bytes(context: click.Context, option: click.Parameter, value: str) -> int | None:
-    """Return a size in bytes, or None for no limit."""
+    """Convert a text such as “4G” to a number of bytes; 0 becomes None, which means no limit."""
     text = value.strip().upper().removesuffix("B")
     suffix = text[-1:] if text[-1:] in _SUFFIXES and not text[-1:].isdecimal() else ""
     try:
@@ -39,7 +39,7 @@ def as_bytes(context: click.Context, option: click.Parameter, value: str) -> int
 def as_shard(
     context: click.Context, option: click.Parameter, value: str | None
 ) -> tuple[int, int] | None:
-    """Return the number of a shard and the number of shards."""
+    """Convert a text such as “2/8” to the number of a shard and the count of shards."""
     if value is None:
         return None
     number, _, count = value.partition("/")
@@ -52,7 +52,10 @@ def as_shard(
 def as_poses(
     context: click.Context, option: click.Parameter, values: tuple[str, ...]
 ) -> tuple[tuple[str, int | None], ...]:
-    """Return the names of poses, each with the number of its draw; each pose once."""
+    """Convert texts such as “random:17” to a pose's name and the number of its draw or None.
+
+    Repeated poses are dropped.
+    """
     return tuple(dict.fromkeys(_pose(context, option, value) for value in values))
 
 
@@ -69,7 +72,7 @@ def _pose(context: click.Context, option: click.Parameter, value: str) -> tuple[
 
 
 def as_keep(context: click.Context, option: click.Parameter, value: str) -> str:
-    """Return which cases keep their meshes."""
+    """Return the value of ``--keep-meshes``, checked: a word or the number of cases to store."""
     if value not in ("interesting", "all", "none") and not value.isdecimal():
         message = f"{value!r} is not valid here; give interesting, all, none, or a number."
         raise click.BadParameter(message, context, option)

@@ -1,8 +1,8 @@
-"""Set formulas over file names, such as ``(a.stl - b.stl) | "my part.stl"``.
+"""Parsing of set formulas over file names, such as ``(a.stl - b.stl) | "my part.stl"``.
 
-Operators bind as Python's do: ``~`` before ``+ -`` before ``&`` before ``^`` before ``|``. A bare
-name ends at a blank, a parenthesis, a quote or one of ``| & ^``; it may contain ``+ - ~``, which
-are operators only where a name could begin.
+Operators bind as Python's do: ``~`` before ``+ -`` before ``&`` before ``^`` before ``|``. A name
+without quotes ends at a blank, a parenthesis, a quote or one of ``| & ^``; it may contain
+``+ - ~``, which are operators only where a name could begin.
 """
 
 from collections.abc import Callable
@@ -11,11 +11,12 @@ from typing import TypeAlias, TypeVar
 
 _Value = TypeVar("_Value")
 
-#: The characters that end a bare name, and operators only where a name could begin.
+#: The characters that end a name without quotes, and those that are operators only where a name
+#: could begin.
 _ENDS = "|&^()\"'"
 _SIGNS = "+-~"
 
-#: Binary operators from the loosest, each with what it stands for.
+#: Binary operators by precedence, the lowest first, each with the name of its operation.
 _LEVELS: tuple[dict[str, str], ...] = (
     {"|": "union"},
     {"^": "xor"},
@@ -23,12 +24,12 @@ _LEVELS: tuple[dict[str, str], ...] = (
     {"+": "union", "-": "difference"},
 )
 
-#: The largest number of parentheses and complements inside one another.
+#: The largest depth of nested parentheses and complements.
 _MAX_DEPTH = 100
 
 
 class FormulaError(Exception):
-    """A formula that cannot be read.
+    """An error: a text is no valid formula.
 
     Parameters
     ----------
@@ -45,7 +46,7 @@ class FormulaError(Exception):
 
 @dataclass(frozen=True)
 class File:
-    """A file name and its column in the formula."""
+    """A file name in a formula, and its column, counted from 0."""
 
     name: str
     column: int
@@ -53,7 +54,7 @@ class File:
 
 @dataclass(frozen=True)
 class NamedOperation:
-    """An operation by its name: union, difference, intersection, xor or complement."""
+    """An operation of a formula: union, difference, intersection, xor or complement."""
 
     name: str
     operands: "tuple[Formula, ...]"
@@ -64,7 +65,7 @@ Formula: TypeAlias = File | NamedOperation
 
 @dataclass(frozen=True)
 class _Token:
-    """An operator or parenthesis, a file name, or the end."""
+    """A token of a formula: an operator or parenthesis, a file name, or the end."""
 
     kind: str
     text: str
@@ -72,7 +73,7 @@ class _Token:
 
 
 def parse(text: str) -> Formula:
-    """Parse a formula.
+    """Parse a set formula over file names.
 
     Raises
     ------
@@ -90,7 +91,7 @@ def parse(text: str) -> Formula:
 
 
 def files_of(formula: Formula) -> list[File]:
-    """Return the different files of a formula, in the order in which they first occur."""
+    """Return the files of a formula, each once, in the order of their first occurrence."""
     found: dict[str, File] = {}
     waiting = [formula]
     while waiting:
@@ -103,7 +104,7 @@ def files_of(formula: Formula) -> list[File]:
 
 
 def subtracted(formula: Formula) -> set[str]:
-    """Return the names of files that are only subtracted or complemented."""
+    """Return the names of files that the formula subtracts or complements at every occurrence."""
     signs: dict[str, set[bool]] = {}
     waiting = [(formula, True)]
     while waiting:
@@ -122,8 +123,8 @@ def evaluated(
     leaf: Callable[[File], _Value],
     combine: Callable[[str, list[_Value]], _Value],
 ) -> _Value:
-    """Evaluate a formula, given functions for its files and its operations."""
-    # Chains are nested on the left, and may be deeper than the limit of recursion.
+    """Evaluate a formula: `leaf` returns a file's value, `combine` an operation's value."""
+    # Chains such as a - b - c are nested on the left, maybe deeper than the limit of recursion.
     leaning: list[NamedOperation] = []
     while isinstance(formula, NamedOperation):
         leaning.append(formula)
@@ -168,14 +169,17 @@ def _end_of_name(text: str, start: int) -> int:
 
 
 class _Parser:
-    """Reads tokens from the left, one level of operators for each depth of the call."""
+    """A recursive-descent parser of a formula's tokens."""
 
     def __init__(self, tokens: list[_Token]) -> None:
         self._tokens = tokens
         self._next = 0
 
     def level(self, number: int, depth: int) -> Formula:
-        """Return the operands joined by operators of this level or tighter ones."""
+        """Parse operands joined by operators of `_LEVELS[number]` or of higher precedence.
+
+        `depth` is the number of parentheses and complements around them.
+        """
         if number == len(_LEVELS):
             return self._operand(depth)
         found = self.level(number + 1, depth)
@@ -185,7 +189,7 @@ class _Parser:
         return found
 
     def expect(self, kind: str, wanted: str) -> _Token:
-        """Consume a token of a kind, or raise an error that names the token found instead."""
+        """Consume a token of a kind; raise an error that says `wanted` for any other token."""
         token = self._peek()
         if token.kind != kind:
             raise FormulaError(f"expected {wanted}, found {_called(token)}.", token.column)

@@ -1,4 +1,4 @@
-"""Files of arguments: names, folders, and patterns that the shell did not expand.
+"""The files that a verb's arguments mean: names, folders, and patterns that the shell has left.
 
 Files that accompany meshes, such as textures, are skipped and counted, unless the user names them.
 """
@@ -16,20 +16,20 @@ from ...errors import FormatError
 from ..console import terminal
 from .shared import PATH
 
-#: Endings of what goes beside meshes: materials, pictures, data of glTF, words about them.
+#: Suffixes of files that accompany meshes: materials, pictures, data of glTF, texts about them.
 _BESIDE = frozenset(
     [".mtl", ".bin", ".txt", ".md", ".html", ".pdf", ".xml", ".csv", ".svg"]
     + [".png", ".jpg", ".jpeg", ".webp", ".gif", ".bmp", ".tga", ".tif", ".tiff", ".dds", ".ktx2"]
 )
 
-#: Where a context keeps how many files of which ending were skipped.
+#: The key in click's context of the count of skipped files by suffix.
 _SKIPPED = "bspcsg.skipped"
 
 
 def files_argument(
     metavar: str, name: str = "files", *, opens: bool = True, also: Collection[str] = ()
 ) -> Callable[..., Any]:
-    """Return the argument for one or more files, folders of them, or patterns.
+    """Return a click argument for one or more files, folders of files, or patterns.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def files_argument(
     opens : bool
         True to replace a folder by the meshes in it; else the folder itself is returned.
     also : collection of str
-        Suffixes of other files that folders and patterns include.
+        Suffixes, besides those of meshes, of files that folders and patterns include.
     """
 
     def found(
@@ -56,12 +56,12 @@ def files_argument(
 
 
 def skipped_files() -> dict[str, int]:
-    """Return how many files of each suffix the running verb skipped."""
+    """Return the number of files that the running verb has skipped, by suffix."""
     return dict(click.get_current_context().meta.get(_SKIPPED, {}))
 
 
 def file_argument(metavar: str = "FILE", name: str = "file") -> Callable[..., Any]:
-    """Return the argument for one file, or a pattern that one matches."""
+    """Return a click argument for one file, or for a pattern that exactly one file matches."""
     return click.argument(name, type=PATH, metavar=metavar, callback=_only_match)
 
 
@@ -74,14 +74,14 @@ def files_of(
 ) -> list[Path]:
     """Return the files that names, folders and patterns mean; count skipped files by suffix.
 
-    A folder means the meshes in it and its subfolders, without hidden ones. A pattern with an open
-    suffix means meshes. A name means itself; but a companion file, such as a texture, is skipped if
-    other files are named too, as by a pattern that the shell expanded.
+    A folder means the meshes in it and its subfolders, without hidden files. A pattern without a
+    fixed suffix means meshes. A name means itself; but a companion file, such as a texture, is
+    skipped if other files are named too, as by a pattern that the shell expanded.
 
     Raises
     ------
     FormatError
-        If no file is left; code ``"unreadable"``.
+        If the arguments mean no file; code ``"unreadable"``.
     """
     files: list[Path] = []
     for value in values:
@@ -99,7 +99,11 @@ def files_of(
 
 
 def _is_meant(path: Path, value: Path, also: Collection[str], *, alone: bool) -> bool:
-    """Say whether an argument that matches a file is meant to include it."""
+    """Say whether a file that an argument `value` matches is to be processed, not skipped.
+
+    True for meshes and suffixes in `also`; for a named file unless it accompanies meshes and is not
+    `alone`; for a pattern with a fixed suffix.
+    """
     from ...formats.registry import FORMATS
 
     suffix = path.suffix.lower()
@@ -111,7 +115,7 @@ def _is_meant(path: Path, value: Path, also: Collection[str], *, alone: bool) ->
 
 
 def _inside(path: Path) -> Iterator[Path]:
-    """Yield the files in a folder and its folders, by name; a file is itself."""
+    """Yield the files in a folder and its subfolders, sorted; for a file, the file itself."""
     if not path.is_dir():
         yield path
         return
@@ -122,7 +126,7 @@ def _inside(path: Path) -> Iterator[Path]:
 
 
 def _counted(skipped: Counter[str]) -> str:
-    """Return a text on how many files of each suffix are no meshes."""
+    """Return a text with the number of skipped files, in total and by suffix."""
     kinds = ", ".join(
         f"{count} {suffix or 'without an ending'}" for suffix, count in sorted(skipped.items())
     )
@@ -135,7 +139,7 @@ def _counted(skipped: Counter[str]) -> str:
 
 
 def matches(path: Path) -> list[Path]:
-    """Return the files that a pattern such as ``parts/*.stl`` means, by name; a name is itself.
+    """Return the files that match a pattern such as ``parts/*.stl``, sorted; for a name, itself.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Options that several verbs share."""
+"""Options and option types that several verbs of the command line share."""
 
 import math
 from collections.abc import Callable
@@ -24,14 +24,14 @@ else:
 
 
 class Further(click.Option):
-    """A rarely used option, which the help lists in its second part."""
+    """A rarely used option, which the help lists under “More options”."""
 
 
 class Verb(click.Command):
-    """A verb whose help has its options in two parts."""
+    """A command whose help lists its options under “Options” and “More options”."""
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the common options first, then the others."""
+        """Write the help of the common options, then of the rarely used ones."""
         options = [one for one in self.get_params(ctx) if isinstance(one, click.Option)]
         for title, is_further in (("Options", False), ("More options", True)):
             chosen = [one for one in options if isinstance(one, Further) == is_further]
@@ -42,41 +42,42 @@ class Verb(click.Command):
 
 
 def verb(name: str, **settings: Any) -> Callable[[Callable[..., Any]], Verb]:
-    """Make a verb of a function, as `click.command` does."""
+    """Return a decorator that makes a `Verb` of a function, as `click.command` does."""
     return click.command(name, cls=Verb, **settings)
 
 
-#: Makes an option that few need.
+#: Makes an option that the help lists under “More options”.
 further = partial(click.option, cls=Further)
 
 
 class FilePath(click.Path):
-    """Names of files or folders, for which shells offer completion.
+    """The click type of options and arguments that are names of files or folders.
 
-    Readability is not checked here: click would report an unreadable file as wrong usage.
+    It does not check whether a file can be read: click would report an unreadable file as wrong
+    usage.
     """
 
     def __init__(self, *, readable: bool = False, **kinds: bool) -> None:
         super().__init__(path_type=Path, readable=readable, **kinds)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the path of a text; refuse the empty text, which would be the current folder."""
+        """Convert a text to a path; the empty text is an error, not the current folder."""
         if value == "":
             self.fail("the file name is empty; perhaps a shell variable is not set.", param, ctx)
         return super().convert(value, param, ctx)
 
 
-#: A file, or "-" for a stream.
+#: The type of an option or argument that is a file name, or "-" for a stream.
 PATH = FilePath(allow_dash=True)
 
 
 class FiniteRange(click.FloatRange):
-    """Finite numbers within bounds."""
+    """The click type of options that are finite numbers within bounds."""
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> float:
-        """Return the number of a text."""
+        """Convert a text to a number; an infinite one or NaN is an error."""
         number = float(super().convert(value, param, ctx))
         if not math.isfinite(number):
             self.fail(f"{number} is not a finite number.", param, ctx)
@@ -84,13 +85,14 @@ class FiniteRange(click.FloatRange):
 
 
 class Renamed(click.Option):
-    """An option with one value that also accepts its old name, which the help leaves out.
+    """An option with one value that also accepts an old name, which the help does not list.
 
     Parameters
     ----------
     *given, **options
-        As for any option.
+        As for `click.Option`.
     old : str
+        The old name, such as ``--tol``.
     """
 
     def __init__(self, *given: Any, old: str, **options: Any) -> None:
@@ -98,16 +100,16 @@ class Renamed(click.Option):
         self._old = old
 
     def add_to_parser(self, parser: Any, ctx: click.Context) -> None:
-        """Let the parser know both names."""
+        """Add the option to the parser under both names."""
         super().add_to_parser(parser, ctx)
         parser.add_option(obj=self, opts=[self._old], dest=self.name, nargs=self.nargs)
 
 
 class Words(_Choice):
-    """A choice of words; an error suggests the nearest one."""
+    """The click type of options that are one of several words; an error suggests the nearest."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
-        """Return the word of a text."""
+        """Return a text if it is one of the words; else raise an error with a suggestion."""
         try:
             return super().convert(value, param, ctx)
         except click.BadParameter as error:
@@ -117,7 +119,7 @@ class Words(_Choice):
 
 SECONDS = FiniteRange(0, MAX_SECONDS, min_open=True)
 
-#: Numbers of points to measure distances from; ten million take some seconds and a gigabyte.
+#: The type of options that are counts of sample points; ten million take seconds and a gigabyte.
 SAMPLES = click.IntRange(0, 10_000_000)
 
 _THREADS = further(
@@ -141,7 +143,7 @@ _COMMON = [
 
 
 def _formats(context: click.Context, option: click.Parameter, begun: str) -> list[str]:
-    """Return the formats whose names begin so, for shell completion."""
+    """Return the names of formats that begin with a text, for shell completion."""
     from ...formats.registry import FORMATS
 
     known = (*FORMATS, *(STREAMED if option.name == "from_format" else ()))
@@ -150,13 +152,13 @@ def _formats(context: click.Context, option: click.Parameter, begun: str) -> lis
 
 
 def _as_source(context: click.Context, option: click.Parameter, value: str | None) -> str | None:
-    """Return the suffix of a format or of a script's language, with or without its dot."""
+    """Convert the name of a mesh format or of a script's language to a suffix with a dot."""
     suffix = "" if value is None else f".{value.lower().lstrip('.')}"
     return suffix if suffix in SUFFIXES else _as_suffix(context, option, value)
 
 
 def _as_suffix(context: click.Context, option: click.Parameter, value: str | None) -> str | None:
-    """Return the suffix of a format given with or without its dot."""
+    """Convert the name of a mesh format, such as “stl” or “.stl”, to a suffix with a dot."""
     from ...formats.registry import FORMATS
 
     if value is None:
@@ -182,7 +184,7 @@ _READING = [
     click.option(
         "--unit",
         type=click.Choice(list(MILLIMETRES)),
-        help="What inputs that do not say are in; they become millimetres.",
+        help="Unit of inputs that do not state one; they are converted to millimetres.",
     ),
 ]
 
@@ -278,12 +280,12 @@ OVERWRITE = _WRITING[-1]
 
 ALLOW_EMPTY = further("--allow-empty", is_flag=True, help="Write a file even if nothing is left.")
 
-#: The depths to which the result is compared with manifold3d's.
+#: The values of ``--validate``: how thoroughly a result is compared with manifold3d's.
 _CHECKS = ("quick", "full", "off")
 
 
 def check_depth(command: _Command) -> _Command:
-    """Add the options for the comparison with manifold3d."""
+    """Add the options for the comparison with manifold3d to a command."""
     leave_out = further(
         "--no-validate", "--no-check", "check", flag_value="off", help="The same as --check=off."
     )
@@ -322,18 +324,18 @@ PORT = further(
     metavar="N",
     type=click.IntRange(0, 65535),
     default=0,
-    help="Where a page that is served is found; by default one that is free.",
+    help="Port of a page that is served; by default any free one.",
 )
 
 
 def is_given(name: str) -> bool:
-    """Say whether the user gave an option."""
+    """Say whether the user gave an option of the running verb, by its parameter name."""
     context = click.get_current_context()
     return context.get_parameter_source(name) is not ParameterSource.DEFAULT
 
 
 def finite_numbers(text: str, count: int) -> tuple[float, ...] | None:
-    """Return the given count of finite numbers of a list with commas; None for anything else."""
+    """Convert numbers separated by commas; return None unless they are `count` finite numbers."""
     try:
         found = tuple(float(word) for word in text.split(","))
     except ValueError:
@@ -341,21 +343,22 @@ def finite_numbers(text: str, count: int) -> tuple[float, ...] | None:
     return found if len(found) == count and all(map(math.isfinite, found)) else None
 
 
-#: The axes as directions.
+#: The texts that replace the names of axes in options that are directions.
 _DIRECTIONS = {"x": "1,0,0", "y": "0,1,0", "z": "0,0,1"}
 
 
 def numbers(what: str, names: str, example: str) -> Callable[..., tuple[float, ...] | None]:
-    """Return the callback of an option that takes a direction, optionally followed by more numbers.
+    """Return the click callback of an option that is a direction, or a direction and a number.
 
     Parameters
     ----------
     what : str
         The name of the value in errors, such as ``"normal"``.
     names : str
-        Names of the numbers, with commas. The first three must not all be 0; an axis may replace
-        them.
+        Names of three or four numbers, separated by commas. The first three must not all be 0; the
+        name of an axis may replace them.
     example : str
+        A valid value, for errors.
     """
     count = names.count(",") + 1
     spoken = {3: "three", 4: "four"}[count]
@@ -379,52 +382,52 @@ def numbers(what: str, names: str, example: str) -> Callable[..., tuple[float, .
 
 
 def common(command: _Command) -> _Command:
-    """Add the options that every verb has."""
+    """Add the options that every verb has to a command."""
     return _with(_COMMON, command)
 
 
 def telling(command: _Command) -> _Command:
-    """Add the common options for verbs that have a `-j` of their own."""
+    """Add the options that every verb has, except ``-j``, to a command."""
     return _with([option for option in _COMMON if option is not _THREADS], command)
 
 
 def reading(command: _Command) -> _Command:
-    """Add the options of verbs that read meshes."""
+    """Add the options for reading meshes to a command."""
     return _with(_READING, command)
 
 
 def sets(command: _Command) -> _Command:
-    """Add the options of verbs that take meshes as sets."""
+    """Add the options for turning meshes into sets of points to a command."""
     return _with(_SETS, command)
 
 
 def writing(command: _Command) -> _Command:
-    """Add the options of verbs that write meshes."""
+    """Add the options for writing meshes to a command."""
     return _with(_WRITING, command)
 
 
 def one_by_one(command: _Command) -> _Command:
-    """Add the options of verbs that write one file for each input."""
+    """Add the options for writing one file for each input to a command."""
     return _with(_ONE_BY_ONE, command)
 
 
 def drawing(command: _Command) -> _Command:
-    """Add the options of verbs that write a drawing."""
+    """Add the options for writing a drawing to a command."""
     return _with(_DRAWING, command)
 
 
 def making(command: _Command) -> _Command:
-    """Add the options of verbs that make one solid and write it."""
+    """Add the options for making one solid and writing it to a command; ``-o`` is required."""
     return _with([OUTPUT, writing, SIMPLIFY, ALLOW_EMPTY, check_depth], command)
 
 
 def making_or_showing(command: _Command) -> _Command:
-    """Add the options of verbs that make one solid and write or only show it."""
+    """Add the options for making one solid and writing or only showing it; ``-o`` is optional."""
     return _with([_MAYBE_OUTPUT, writing, SIMPLIFY, ALLOW_EMPTY, check_depth], command)
 
 
 def from_files(command: _Command) -> _Command:
-    """Add the options of verbs that make one solid from files."""
+    """Add the options for making one solid from mesh files to a command."""
     return _with([making, reading, sets, common], command)
 
 

@@ -1,1 +1,1 @@
-"""Pages that verbs write or serve."""
+"""HTML pages that verbs of the command line write or serve."""

@@ -1,4 +1,4 @@
-"""A local server whose pages reload when their content changes."""
+"""A local web server whose pages reload in the browser when their content changes."""
 
 import contextlib
 import os
@@ -13,17 +13,17 @@ from urllib.parse import urlsplit
 
 from ...errors import FormatError
 
-#: The only address that is listened at.
+#: The only address at which the server listens: that of this machine for itself.
 _HERE = "127.0.0.1"
 
-#: Names that a browser on this machine uses; any other may be a page elsewhere that was tricked
-#: into asking here.
+#: The host names of valid requests; a request for another name may come from a foreign web page
+#: whose name was made to resolve to this machine (DNS rebinding).
 _OWN_NAMES = (_HERE, "localhost")
 
-#: The largest number of requests that are answered at the same time; a browser sends six.
+#: The largest number of requests that are answered at the same time; a browser sends up to six.
 _MAX_CONCURRENT_REQUESTS = 8
 
-#: A connection that is silent for so many seconds is closed.
+#: The number of seconds after which a connection without data is closed.
 _IDLE_TIMEOUT = 30
 
 #: The largest number of files that are watched for changes.
@@ -35,14 +35,14 @@ _POLL_INTERVAL = 0.2
 
 @dataclass(frozen=True)
 class Site:
-    """The pages that a server shows.
+    """The pages that a live server shows.
 
     Parameters
     ----------
     page : callable
-        Returns the page at a path, or None if there is none.
+        Returns the HTML page at a path, or None if there is none.
     state : callable
-        Returns a text that changes when pages do.
+        Returns a text that changes whenever the content of a page changes.
     """
 
     page: Callable[[str], str | None]
@@ -50,13 +50,13 @@ class Site:
 
 
 class LiveServer(ThreadingHTTPServer):
-    """A server that ends with the process, without waiting for connections.
+    """A local web server that ends with the process, without waiting for connections.
 
     Parameters
     ----------
     site : Site
     port : int
-        0 for any free port.
+        The port; 0 for any free one.
 
     Raises
     ------
@@ -82,27 +82,27 @@ class LiveServer(ThreadingHTTPServer):
 
     @property
     def address(self) -> str:
-        """The address that a browser is to open."""
+        """The address of the server, which a browser can open."""
         return f"http://{_HERE}:{self.server_port}/"
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """Ignore errors: a browser that closes a connection early is none."""
+        """Ignore errors of requests, such as that the browser has closed the connection."""
 
     def serve(self) -> None:
-        """Answer until Ctrl-C."""
+        """Answer requests until Ctrl-C, then close the server."""
         with contextlib.suppress(KeyboardInterrupt):
             self.serve_forever(_POLL_INTERVAL)
         self.server_close()
 
 
 class _Handler(BaseHTTPRequestHandler):
-    """One connection."""
+    """The handler of one connection to a live server."""
 
     timeout = _IDLE_TIMEOUT
     server: LiveServer
 
     def do_GET(self) -> None:
-        """Answer with a page, or with the state."""
+        """Answer a request with the page at its path, or “/changes” with the state of the site."""
         host = urlsplit(f"//{self.headers.get('Host', '')}").hostname
         if host not in _OWN_NAMES:
             self._send(
@@ -133,11 +133,11 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(data)
 
     def log_message(self, *args: Any) -> None:
-        """Log no requests."""
+        """Do not log requests."""
 
 
 def stamp(paths: Iterable[Path]) -> str:
-    """Return a text that changes whenever a file changes or a folder gains or loses one."""
+    """Return a text that changes whenever a named file, or a file in a named folder, changes."""
     marks = []
     for path in _files(paths):
         try:
@@ -150,7 +150,7 @@ def stamp(paths: Iterable[Path]) -> str:
 
 
 def _files(paths: Iterable[Path]) -> list[Path]:
-    """Return the named files and the files of named folders, up to the limit."""
+    """Return the named files and the files of named folders, at most `_MAX_FILES_WATCHED`."""
     found: list[Path] = []
     for path in paths:
         if path.is_dir():

@@ -1,4 +1,4 @@
-"""Files as layers of a view."""
+"""Reading of files as layers of a 3D view."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 def layers_of(
     inputs: Inputs, files: Iterable[Path], section: Sequence[float] | None = None
 ) -> "tuple[list[Layer], str]":
-    """Return a layer for each object of each file, and the unit if all files have it.
+    """Return a layer for each object of each file, and the unit if it is the same in all files.
 
-    Findings about the files are printed. Meshes need not be closed, unless a section is given: then
-    only the part with nx x + ny y + nz z <= d is shown.
+    Findings about the files are printed. Meshes need not be closed, unless a section (nx, ny, nz,
+    d) is given: then only the part with nx x + ny y + nz z <= d is shown.
     """
     from ...report.viewer.parts import told_apart
 

@@ -1,4 +1,4 @@
-"""Pages that a live server shows: files together, or a folder with a page for each file."""
+"""The pages that a live server shows: one page of several files, or a page for each of a folder."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -12,14 +12,14 @@ from .live import Site, stamp
 if TYPE_CHECKING:
     from ...report.viewer.layer import Layer
 
-#: The view of some files, made anew whenever it is asked for: layers and their unit.
+#: A function that reads files, and returns the layers of a view and their unit.
 Showing: TypeAlias = Callable[[Sequence[Path]], "tuple[list[Layer], str]"]
 
 _PART = "/part/"
 
 
 def page_of(files: Sequence[Path], scene: Showing) -> str:
-    """Return the page of some files, which reloads when they change, or a page with the error."""
+    """Return a page that shows files and reloads when they change, or a page with the error."""
     from ...report.assets import rendered
     from ...report.viewer.view import view_page
 
@@ -32,7 +32,7 @@ def page_of(files: Sequence[Path], scene: Showing) -> str:
 
 
 def site_of_files(files: Sequence[Path], scene: Showing) -> Site:
-    """Return a site of one page that shows some files together."""
+    """Return a site of one page that shows all files together."""
     kept = _PageCache(lambda: stamp(files), lambda: stamp(folders_of(files)))
 
     def page(path: str) -> str | None:
@@ -42,7 +42,7 @@ def site_of_files(files: Sequence[Path], scene: Showing) -> Site:
 
 
 def site_of_folder(folder: Path, scene: Showing) -> Site:
-    """Return a site with a list of the files in a folder that can be seen, and a page for each."""
+    """Return a site with a list of the meshes and scripts in a folder, and a page for each."""
     kept = _PageCache(lambda: stamp([folder]), str)
 
     def page(path: str) -> str | None:
@@ -58,7 +58,7 @@ def site_of_folder(folder: Path, scene: Showing) -> Site:
 
 
 def seen_in(folder: Path) -> list[str]:
-    """Return the names of the viewable files of a folder."""
+    """Return the names of the meshes and scripts in a folder, sorted."""
     from ...formats.registry import FORMATS
 
     try:
@@ -69,7 +69,7 @@ def seen_in(folder: Path) -> list[str]:
 
 
 def folders_of(files: Sequence[Path]) -> list[Path]:
-    """Return the folders of the scripts among files: a script may read the files beside it."""
+    """Return the folders of the scripts among `files`, since a script may read files beside it."""
     return sorted({path.parent for path in files if path.suffix.lower() in SUFFIXES})
 
 
@@ -82,13 +82,13 @@ def _list(folder: Path, names: Sequence[str]) -> str:
 
 
 class _PageCache:
-    """The page that was made last, as long as nothing has changed.
+    """A cache of the page that was made last, which is valid until a file changes.
 
     Parameters
     ----------
     own, around : callable
-        The state of the files that are shown, and of the files beside them. The latter may change
-        while a page is made, since a script may write there; that is no reason to run it again.
+        Return the state of the files that are shown, and of the folders of scripts. A script may
+        write files into its folder; such changes while a page is made do not make it invalid.
     """
 
     def __init__(self, own: Callable[[], str], around: Callable[[], str]) -> None:
@@ -98,11 +98,11 @@ class _PageCache:
         self._pages: dict[str, str] = {}
 
     def state(self) -> str:
-        """Return a text that changes when pages do."""
+        """Return a text that changes whenever a file that pages depend on changes."""
         return "".join((self._own(), self._around()))
 
     def page(self, path: str, make: Callable[[], str]) -> str:
-        """Return the page at a path."""
+        """Return the page at a path from the cache, or made by `make` if a file has changed."""
         if self._made_of != (self._own(), self._around()):
             self._pages.clear()
         if path not in self._pages:

@@ -1,4 +1,4 @@
-"""A script that runs again whenever it changes, and the page of its result."""
+"""Running a script again whenever it changes, and serving a page with its result."""
 
 import os
 import threading
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from ...report.viewer.layer import Layer
     from ...solid.solid import Solid
 
-#: The time between two looks at the files, in seconds.
+#: The time between two checks whether files have changed, in seconds.
 _POLL_INTERVAL = 0.2
 
 
 class Watching:
-    """A watched script, with a new job for each run.
+    """A script that is run again when it changes, with a new job for each run.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class Watching:
         Parameters
         ----------
         port : int, optional
-            The port at which a page of the result is served; none by default.
+            The port at which a page with the result is served, 0 for any; None for no page.
         opens : bool
             True to open the page in a browser.
         """
@@ -83,7 +83,7 @@ class Watching:
         except BspcsgError as error:
             self._code = output.tell_error(error, self._out.as_json)
             self._made = error
-        # Files that the script itself writes do not trigger another run.
+        # Take the state after the run, so that files which the script writes cause no new run.
         self._around = stamp(folders_of([self._script]))
         self._runs += 1
 
@@ -116,5 +116,5 @@ class Watching:
         return told_apart(layers_of_solid(self._made, self._script.name)), ""
 
 
-#: The path of a result that is only looked at.
+#: The output path of a result that is shown, but not written.
 NOWHERE = Path(os.devnull)

@@ -1,4 +1,4 @@
-"""Pages that verbs write in addition to their printed results."""
+"""Writing of HTML pages by verbs, in addition to their printed results."""
 
 from pathlib import Path
 
@@ -27,7 +27,7 @@ def refuse_page(path: Path, *others: str) -> None:
     Raises
     ------
     FormatError
-        If the name has another suffix, or its folder is not writable.
+        If the name has no suffix of a page or of `others`, or its folder is not writable.
     """
     if is_dropped(path):
         return
@@ -41,7 +41,7 @@ def refuse_page(path: Path, *others: str) -> None:
 
 
 def write_page(path: Path, text: str) -> int:
-    """Write a page, and return how many bytes it has."""
+    """Write a page as UTF-8, and return the number of its bytes."""
     from ...formats.atomic import write_file
 
     # File names need not be valid Unicode.

@@ -1,1 +1,1 @@
-"""The verbs of the command line, a module for each."""
+"""The verbs of the command line, such as `union` and `check`, one or more in each module."""

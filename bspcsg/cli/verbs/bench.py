@@ -1,4 +1,4 @@
-"""The verb that measures: bench."""
+"""The verb `bench`, which times set operations of this package and of other engines."""
 
 import json
 import sys
@@ -37,7 +37,10 @@ _MAX_MEMORY_GIB = 2**20
 def _as_engines(
     context: click.Context, option: click.Parameter, value: str | None
 ) -> list[str] | None:
-    """Return names of installed engines, ours first."""
+    """Convert names of engines, separated by commas, to a list with our engine first.
+
+    Without names, return all installed engines.
+    """
     from ...bench.engines import ENGINES, installed
 
     if value is None:
@@ -57,14 +60,14 @@ def _as_engines(
 
 
 def _cases_from(context: click.Context, option: click.Parameter, begun: str) -> list[str]:
-    """Return the case names that begin so, for shell completion."""
+    """Return the names of cases that begin with a text, for shell completion."""
     from ...bench.cases import CASES
 
     return [name for name in CASES if name.startswith(begun)]
 
 
 def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str, ...]) -> list[str]:
-    """Return names of cases, each once."""
+    """Return names of cases without repetitions; raise a usage error for an unknown name."""
     from ...bench.cases import CASES
 
     for name in value:
@@ -171,14 +174,14 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
 def bench(
     cases: list[str], listed: bool, everything: bool, cliffs: bool, continued: bool, **given: Any
 ) -> int:
-    """Time set operations beside other engines, and check each answer.
+    """Time set operations of bspcsg and of other engines, and compare their results.
 
-    Without names, a few cases are measured that take a minute or two. Engines take turns in one
-    process, and the tables show medians. A call that takes longer than the limit is stopped, and an
-    engine that crashes is left out; the others go on.
+    Without names, only cases are measured that take a minute or two in all. Engines take turns in
+    one process, and the tables show medians. A call that takes longer than the limit is stopped,
+    and an engine that crashes is left out of that case; all other engines go on.
 
-    The exit code is 1 if an answer differs from ours by more than rounding explains, if we fail, or
-    if our cost in a dense place grows faster than input and answer.
+    The exit code is 1 if a result differs from that of bspcsg by more than rounding explains, if
+    bspcsg fails, or if its cost where faces are dense grows faster than input and result.
     """
     wanted = _wanted(cases, listed or everything, cliffs)
     if listed:
@@ -205,7 +208,7 @@ def bench(
 
 
 def _wanted(cases: list[str], everything: bool, cliffs: bool) -> list[str]:
-    """Return the cases that names and options select."""
+    """Return the names of the cases that arguments and options select."""
     from ...bench.cases import CASES, SHORT
 
     if cliffs:
@@ -214,7 +217,7 @@ def _wanted(cases: list[str], everything: bool, cliffs: bool) -> list[str]:
 
 
 def _kept(path: Path | None) -> list[dict[str, Any]]:
-    """Return the rows of the record to continue; none if there is no record yet."""
+    """Return the rows of the record that ``--continue`` names; none if the file does not exist."""
     from ...bench import record as records
     from ...bench.cases import CASES
 
@@ -236,13 +239,13 @@ def _kept(path: Path | None) -> list[dict[str, Any]]:
 
 
 def _missing(wanted: list[str], named: list[str], kept: list[dict[str, Any]]) -> list[str]:
-    """Return the cases to measure: the named ones, and the ones missing in the record."""
+    """Return the cases to measure: those named as arguments, and those missing in the record."""
     there = {row["case"] for row in kept}
     return [name for name in wanted if name in named or name not in there]
 
 
 def _dense(cases: list[str]) -> list[str]:
-    """Return the cases that have dense places."""
+    """Return the cases that have a bound on the growth of cost where faces are close together."""
     from ...bench.cliffs import CLIFFS
 
     found = [name for name in cases if name in CLIFFS]
@@ -254,7 +257,7 @@ def _dense(cases: list[str]) -> list[str]:
 
 
 def _refuse_early(given: dict[str, Any]) -> None:
-    """Raise errors before the measurement that would otherwise come after it."""
+    """Raise errors about output files and the core's file before anything is measured."""
     for path in (given["record_path"], given["plot_path"]):
         if path and str(path) == STREAM:
             raise click.UsageError(
@@ -294,7 +297,7 @@ def _tell_cases(cases: list[str], as_json: bool) -> None:
 def _measured(
     cases: list[str], kept: list[dict[str, Any]], given: dict[str, Any]
 ) -> dict[str, Any]:
-    """Measure cases, and return a record of them and of the kept rows."""
+    """Measure cases, and return a record of their rows and of the rows `kept`."""
     from ...bench import record as records
     from ...bench.runner import run_case
 
@@ -306,14 +309,14 @@ def _measured(
         rows[name] = run_case(name, settings, told)
         rows = _sorted(rows) if kept else rows
         if given["record_path"]:
-            # Keep each measurement, even if a later one fails.
+            # Write the record after each case, since a later one may fail.
             records.write(_record(rows, given), given["record_path"])
     _tell("") if not given["quiet"] else None
     return _record(rows, given)
 
 
 def _sorted(rows: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
-    """Return rows in the order of the cases."""
+    """Return the rows of a record, by case name, in the order of `CASES`."""
     from ...bench.cases import CASES
 
     return {name: rows[name] for name in CASES if name in rows}
@@ -344,11 +347,11 @@ def _settings(given: dict[str, Any]) -> "Settings":
 
 
 def _silence(line: str) -> None:
-    """Print nothing."""
+    """Print nothing: the replacement of `_tell` with ``--quiet``."""
 
 
 def _tell(line: str) -> None:
-    """Print the current step; on a terminal it replaces the previous one."""
+    """Replace the last line on standard error by the current step, if it is a terminal."""
     if sys.stderr.isatty():
         click.echo(f"\r\033[K{line}", nl=False, err=True)
 
@@ -402,7 +405,7 @@ def _write(
 
 
 def _is_wrong(record: dict[str, Any]) -> bool:
-    """Say whether an engine's answer differs from ours, or we have none."""
+    """Say whether in a record an engine's result differs from ours, or ours failed or is open."""
     from ...bench.targets import OURS, result_of
 
     for row in record["cases"]:
@@ -417,7 +420,7 @@ def _is_wrong(record: dict[str, Any]) -> bool:
 
 
 def _has_cliff(record: dict[str, Any]) -> bool:
-    """Say whether our cost grows too fast in a full-size row that has a bound on growth."""
+    """Say whether in any row of a record our cost grows faster than its bound allows."""
     from ...bench.table import has_cliff
 
     return any(has_cliff(row) for row in record["cases"])

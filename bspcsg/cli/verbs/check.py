@@ -1,4 +1,4 @@
-"""The verb that looks at files: check."""
+"""The verb `check`, which finds the defects of mesh files."""
 
 import json
 from collections.abc import Iterator, Sequence
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from ...report.examined import CheckPage
     from ...report.junit import JUnitCase
 
-#: Relative difference up to which two volumes are told as one.
+#: The relative difference up to which volume and signed volume are printed as one.
 _SAME = 1e-6
 
-#: Endings of reports besides pages.
+#: Suffixes of reports besides pages.
 _JSON, _JUNIT = ".json", ".xml"
 
 _EPILOG = """\b
@@ -69,11 +69,10 @@ def check(
 ) -> int:
     """Say what is wrong with each file, and whether it is a solid.
 
-    Names open edges, triangles turned round, edges with more than two triangles, triangles without
-    area or over the same corners, faces that cross or overlap, and meshes that are inside out,
-    with places. A file that overlaps itself still is a solid, and a warning says so. Of a file with
-    several objects each is judged by itself; those that touch are solids that touch, and those that
-    clash are told.
+    Finds open edges, reversed triangles, edges with more than two triangles, triangles without area
+    or over the same corners, faces that cross or overlap, and meshes that are inside out, and
+    prints where. A file that overlaps itself is a solid, with a warning. Each object of a file with
+    several objects is checked by itself; objects may touch, and a warning names those that clash.
     """
     from ...parameters import set_threads
 
@@ -83,7 +82,7 @@ def check(
 
 @dataclass(frozen=True)
 class _Checked:
-    """A file with the findings about it and each of its objects."""
+    """A file with the diagnosis of it and of each of its objects, or the error of reading it."""
 
     path: Path
     found: "Diagnosis | BspcsgError"
@@ -103,7 +102,7 @@ class _Checked:
 
 
 class _Checking:
-    """Some files, and the reports on them."""
+    """The work of the verb `check`: it diagnoses files and writes reports."""
 
     def __init__(
         self,
@@ -199,7 +198,7 @@ def _fails(found: "Diagnosis", strict: bool) -> bool:
 
 
 def _junit(results: Sequence[_Checked], strict: bool) -> str:
-    """Return a suite for each file, with a test case for each object of it."""
+    """Return JUnit XML with a suite for each file and a test case for each of its objects."""
     from ...report.junit import junit_of
 
     suites = {str(one.path): list(_cases(one, strict)) for one in results}
@@ -220,7 +219,7 @@ def _cases(one: _Checked, strict: bool) -> "Iterator[JUnitCase]":
         reason, details = "".join(lines[:1]), "\n".join(lines)
         yield JUnitCase(group, name, found.verdict, element, reason, details, _measures(found))
     for clash in (finding for finding in one.found.findings if finding.code == "clash"):
-        # Findings about several objects belong to none of them.
+        # A clash is a finding about two objects, so it is a test case of its own.
         element = "failure" if strict else ""
         yield JUnitCase(group, "objects together", "clash", element, _line(clash), _line(clash))
 
@@ -234,7 +233,7 @@ def _named(path: Path, error: BspcsgError) -> str:
 
 
 def _text(results: Sequence[_Checked], out: Output) -> str:
-    """Return the findings of each file as text, after a table if there are several files."""
+    """Return a text with the findings of each file; for several files, a table comes first."""
     read = [(one, one.found) for one in results if not isinstance(one.found, BspcsgError)]
     blocks = [_table(read)] if len(read) > 1 else []
     blocks += [_details(one, found, out) for one, found in read]

@@ -1,4 +1,4 @@
-"""The verb that looks for parts in each other's way: clash."""
+"""The verb `clash`, which finds pairs of parts with common volume or too little clearance."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ...assembly.clashes import Clash
     from ...assembly.tree import Assembly
 
-#: The other form of its operands, for messages.
+#: The end of messages about missing operands: the second form in which they can be given.
 _ONE = ", or one mesh or .csg file that contains several closed objects."
 
 _EPILOG = """\b
@@ -45,9 +45,9 @@ Examples:
 def clash(files: tuple[Path, ...], clearance: float | None, **given: Any) -> int:
     """Say which pairs of files have volume in common, how much and where.
 
-    Of one file alone, such as 3MF, GLB, OBJ or a script, its objects are the pairs. It is decided
-    exactly; what only touches does not clash. Exits with 1 if a pair does, or if it is nearer than
-    the clearance.
+    If only one file is given, such as 3MF, GLB, OBJ or a script, pairs of its objects are examined.
+    The decision is exact; solids that only touch do not clash. The exit code is 1 if a pair
+    clashes, or is nearer than the clearance.
     """
     from ...parameters import set_threads
 
@@ -65,14 +65,14 @@ def clash(files: tuple[Path, ...], clearance: float | None, **given: Any) -> int
 
 
 def _files(inputs: Inputs, files: "Sequence[Path]") -> "Assembly":
-    """Return files as parts."""
+    """Return an assembly in which each file is a part."""
     from ...assembly.tree import Assembly
 
     return Assembly("", [Assembly(shown(path), inputs.solid(path)) for path in files])
 
 
 def _objects(inputs: Inputs, path: Path) -> "Assembly":
-    """Return the objects of one file as parts."""
+    """Return an assembly in which each object of one file is a part."""
     from ...assembly.files import load_as
     from ...formats.registry import FORMATS
 
@@ -97,7 +97,7 @@ def _objects(inputs: Inputs, path: Path) -> "Assembly":
 
 
 def _values(one: "Clash", kind: str) -> dict[str, Any]:
-    """Return the values of a clash for the JSON document."""
+    """Return a clash as JSON values; `kind` is the key of the pair's names."""
     pair = {kind: [one.first, one.second], "volume": one.volume}
     return {**pair, "gap": one.gap, "place": one.place.tolist()}
 

@@ -1,4 +1,4 @@
-"""The verbs that combine files: union, difference, intersection, xor."""
+"""The verbs `union`, `difference`, `intersection` and `xor`, which combine files."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -30,7 +30,7 @@ _EXAMPLES = {
 
 
 def _verb(op: str) -> click.Command:
-    """Return the command of an operation."""
+    """Return the command of a set operation."""
 
     @files_argument("A B [C ...]")
     @from_files
@@ -42,7 +42,7 @@ def _verb(op: str) -> click.Command:
 
 
 class _Named(Job):
-    """A named operation on any number of files."""
+    """A named set operation on two or more files."""
 
     def __init__(self, op: str, files: tuple[Path, ...], **settings: Any) -> None:
         if len(files) < 2:

@@ -1,4 +1,4 @@
-"""The verb that compares two files as sets: compare."""
+"""The verb `compare`, which compares two files as sets of points."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -44,7 +44,7 @@ Examples:
     help="Points on the difference to measure distances from; 0 for none.",
 )
 @click.option(
-    "--seed", metavar="N", type=click.IntRange(min=0), default=0, help="Of the random points."
+    "--seed", metavar="N", type=click.IntRange(min=0), default=0, help="Seed of the random points."
 )
 @PAGE
 @reading
@@ -59,10 +59,11 @@ def compare(
     page: Path | None,
     **given: Any,
 ) -> int:
-    """Say whether two files hold the same set of points, and how they differ.
+    """Say whether two files describe the same set of points, and how they differ.
 
-    Triangles do not matter, only what is inside. Equality is decided exactly; the distance of the
-    surfaces is estimated from points of their difference. Exits with 1 if the sets differ.
+    Only the points inside matter, not the triangles. Equality is decided exactly; the distance of
+    the surfaces is estimated from points of their difference. The exit code is 1 if the sets
+    differ.
     """
     from ...parameters import set_threads
     from ...verify.comparison import compare as compared
@@ -105,7 +106,7 @@ def _write_page(
 
 
 def _within(found: "SetComparison", tolerance: float) -> bool:
-    """Say whether the sampled distance of the surfaces is within the tolerance."""
+    """Say whether sampled distance and thickest difference of two sets are within a tolerance."""
     return found.hausdorff is not None and max(found.hausdorff, found.difference.thickness) <= (
         tolerance
     )

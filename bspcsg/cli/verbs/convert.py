@@ -1,4 +1,4 @@
-"""The verb that changes formats: convert."""
+"""The verb `convert`, which writes meshes in other formats."""
 
 import time
 from dataclasses import replace
@@ -55,15 +55,15 @@ def convert(files: tuple[Path, ...], **given: Any) -> int:
     """Write meshes in other formats, and say what was lost.
 
     Every file is read back and compared. Meshes need not be closed, unless they are to be
-    simplified; nothing is repaired. 3MF and GLB state their unit: what comes from other formats is
-    taken as millimetres unless --unit says otherwise, and GLB is written in metres with y upwards.
-    Where --up and --from-up differ, the model is turned by a quarter about x.
+    simplified; nothing is repaired. 3MF and GLB state their unit: meshes in other formats are taken
+    as millimetres unless --unit says otherwise, and GLB is written in metres with y upwards. Where
+    --up and --from-up differ, the model is rotated by a quarter turn about x.
     """
     return _Conversion(files, **given).run()
 
 
 class _Conversion:
-    """A conversion of files, each to its own output."""
+    """The work of the verb `convert`: it converts each file and compares it with the original."""
 
     def __init__(
         self, files: tuple[Path, ...], target: Path | None, outdir: Path | None, **settings: Any
@@ -95,7 +95,7 @@ class _Conversion:
         self._inputs.tell_units(self._pairs)
 
     def _refuse_unit(self, target: Target) -> None:
-        """Refuse a unit for files that state their own."""
+        """Raise a usage error if ``--to-unit`` is given for a format that states its unit."""
         from ...formats.registry import FORMATS
 
         known = FORMATS.get(target.suffix.lower())
@@ -106,7 +106,7 @@ class _Conversion:
             )
 
     def _converted(self, path: Path, target: Target) -> tuple[dict[str, Any], int]:
-        """Convert one file; return its document and the exit code."""
+        """Convert one file; return its JSON document and the exit code."""
         from ...formats.files import decoded, encoded
         from ...verify.roundtrip import losses_between
 
@@ -115,7 +115,7 @@ class _Conversion:
         self._inputs.tell(path, raw.findings)
         if self._settings["tolerance"]:
             raw = self._simplified(raw, path)
-            # Simplifying keeps only the shape; all other content of the file counts as lost.
+            # Simplifying loses everything but the shape: names, attributes and so on.
             meant = replace(meant, vertices=raw.vertices, faces=raw.faces)
         shortened, _ = target.rounded(raw)
         made = encoded(shortened, shown(target.path), target.suffix, target.text)
@@ -146,7 +146,10 @@ class _Conversion:
         return document, output.FOUND if is_bad else output.DONE
 
     def _simplified(self, raw: "RawMesh", path: Path) -> "RawMesh":
-        """Return a mesh without short edges and slivers, of one object and without attributes."""
+        """Return a mesh as one object without short edges, slivers and attributes.
+
+        If there is nothing to simplify, the mesh is returned unchanged.
+        """
         solid = self._inputs.as_solid(raw, path)
         simple = solid.simplify(self._settings["tolerance"])
         if simple is solid:
@@ -161,29 +164,29 @@ class _Conversion:
         return replace(bare, vertices=mesh.vertices, faces=mesh.faces)
 
     def _turned(self, path: Path, target: Target) -> "RawMesh":
-        """Read a file, and turn it so that the requested axis is up in the output."""
+        """Read a file, and rotate it so that the requested axis is up in the output."""
         from ...formats.registry import FORMATS
         from ...formats.turning import turned
 
         raw = self._inputs.raw(path)
         usual_in = self._inputs.up_of(path)
         usual_out = FORMATS[target.suffix.lower()].up
-        # Reading and writing already turn by the convention of each format; only the difference
-        # remains.
+        # Reading and writing already rotate by the convention of each format, so only the
+        # differences between the options and these conventions count.
         told_in = self._settings["from_up"] or usual_in
         told_out = self._settings["up"] or usual_out
         quarters = (told_in == "y") - (usual_in == "y") - (told_out == "y") + (usual_out == "y")
         return turned(self._in_unit(raw), quarters)
 
     def _in_unit(self, raw: "RawMesh") -> "RawMesh":
-        """Return a mesh in millimetres converted to the requested unit."""
+        """Convert a mesh from millimetres to the unit of ``--to-unit``."""
         from ...formats.placing import rescaled
 
         return rescaled(raw, 1, MILLIMETRES[self._settings["to_unit"] or "mm"])
 
     def _tell(self, target: Target, finding: Finding) -> None:
-        """Print a finding about a file; print only once what holds for all files of a format."""
-        if finding.code == "single_precision":  # its shift is reported with the losses, as measured
+        """Print a finding about an output; one about its format's unit is printed only once."""
+        if finding.code == "single_precision":  # reported with the losses, as measured
             return
         if finding.code == "unit" and finding.message in self._told:
             return

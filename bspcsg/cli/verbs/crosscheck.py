@@ -1,4 +1,4 @@
-"""The verb that compares many results with other engines': crosscheck."""
+"""The verb `crosscheck`, which compares many results with those of other engines."""
 
 import fnmatch
 import os
@@ -41,10 +41,10 @@ Examples:
   bspcsg crosscheck model.csg cases.json --against pymeshlab,openscad
 """
 
-#: The largest number of failures that are listed at the end; the results file has all.
+#: The largest number of failures that are printed at the end; the results file has all failures.
 _MAX_FAILURES_LISTED = 20
 
-#: The largest number of reasons for refusing operands that are listed without -v.
+#: The largest number of reasons for refusing operands that are printed.
 _MAX_REASONS_LISTED = 3
 
 _FILE = FilePath()
@@ -63,7 +63,7 @@ _FILE = FilePath()
     "--poses",
     metavar="N",
     type=click.IntRange(min=1),
-    help="Draw so many pairs, half in random and half in coincident poses.",
+    help="Draw this number of pairs, half in random and half in coincident poses.",
 )
 @further(
     "--pose",
@@ -71,10 +71,16 @@ _FILE = FilePath()
     multiple=True,
     metavar="NAME[:NUMBER]",
     callback=as_poses,
-    help=f"Place the second of each pair so ({', '.join(POSES)}); a number for one draw; may be"
+    help=f"Pose of the second of each pair ({', '.join(POSES)}); a number for one draw; may be"
     " repeated.",
 )
-@further("--seed", metavar="N", type=click.IntRange(min=0), default=0, help="Of the random draws.")
+@further(
+    "--seed",
+    metavar="N",
+    type=click.IntRange(min=0),
+    default=0,
+    help="Seed of the random draws.",
+)
 @further(
     "--max-triangles",
     metavar="N",
@@ -135,7 +141,8 @@ _FILE = FilePath()
     metavar="WHICH",
     default="interesting",
     callback=as_keep,
-    help="Meshes to keep beside the results: interesting (default), all, none, or so many more.",
+    help="Cases whose meshes are stored beside the results: interesting (default), all, none, or a"
+    " number of further ones.",
 )
 @further(
     "--samples",
@@ -152,18 +159,18 @@ _FILE = FilePath()
 )
 @telling
 def crosscheck(paths: tuple[Path, ...], **given: Any) -> int:
-    """Compare results with manifold3d's, as exact sets, and with further engines in doubt.
+    """Compare results with manifold3d's, as exact sets, and with other engines' in doubtful cases.
 
     CASES are mesh files (every pair of them), folders (every pair of meshes in them, and their
     .csg scripts), scripts (.csg, .scad) and .json files of cases. Each case runs in a process of
-    its own that is killed at the limits. Exits with 1 if engines disagree with us, a result is not
-    sound, or a case ran into a limit or crashed.
+    its own, which is killed if it exceeds a limit. The exit code is 1 if an engine disagrees with
+    bspcsg, a result of bspcsg fails a check of its own, or a case was killed or crashed.
     """
     return _Campaign(paths, given).run()
 
 
 class _Campaign:
-    """A campaign with the settings of the options."""
+    """The work of the verb `crosscheck`: it collects cases, runs them and writes reports."""
 
     def __init__(self, paths: tuple[Path, ...], settings: dict[str, Any]) -> None:
         self._paths, self._settings = paths, settings
@@ -269,7 +276,10 @@ class _Campaign:
         return cases
 
     def _usable(self, inputs: "CaseInputs", answering: "Answering") -> "CaseInputs":
-        """Drop meshes that are too large, and for random pairs also those that are no solids."""
+        """Drop meshes with too many triangles, and meshes that are no solids.
+
+        Without ``--max-triangles`` and ``--poses``, all inputs are returned unread.
+        """
         from dataclasses import replace
 
         from ...campaign.running.runner import survey
@@ -332,7 +342,7 @@ class _Campaign:
 
     @contextmanager
     def _progress(self, count: int) -> "Iterator[Callable[[CaseRecord], None]]":
-        """Yield a callback for each record, which moves a progress bar or prints a line."""
+        """Yield a function to call with each record: it moves a progress bar or prints a line."""
         if not sys.stderr.isatty() or self._out.verbosity < 0:
             yield lambda record: self._out.detail(_line(record))
             return
@@ -381,7 +391,7 @@ class _Campaign:
         self._out.result("" if self._out.as_json else self._text(records), document)
 
     def _tell_refused(self, records: "Sequence[CaseRecord]") -> None:
-        """Print why some cases were not compared, each reason once."""
+        """Print the reasons why cases were refused, each reason once."""
         refused = [record["reason"] for record in records if record["verdict"] == "refused"]
         reasons = list(dict.fromkeys(refused))
         for reason in reasons[:_MAX_REASONS_LISTED]:

@@ -1,4 +1,4 @@
-"""The verb that looks at the installation: doctor."""
+"""The verb `doctor`, which lists the installed and the missing parts of the installation."""
 
 import platform
 import shutil
@@ -33,7 +33,7 @@ _REQUIRED = {
     "uharfbuzz": "text",
 }
 
-#: Optional packages, what each is for, and the extra that brings it.
+#: Optional packages, the purpose of each, and the extra that installs it.
 _OPTIONAL = (
     ("ezdxf", "DXF files", "dxf"),
     ("pymeshlab", "repair", "repair"),
@@ -42,10 +42,10 @@ _OPTIONAL = (
     ("distributed", "crosscheck on a cluster", "cluster"),
 )
 
-#: Names under which packages are imported that are called otherwise.
+#: The names under which packages are imported, where they differ from the package's name.
 _MODULES = {"pillow": "PIL"}
 
-#: Optional programs, what each is for, and how to install it.
+#: Optional programs, the purpose of each, and the command that installs it.
 _PROGRAMS = (("openscad", ".scad files, crosscheck", "apt-get install openscad"),)
 
 #: The longest time for a program to print its version or load its plug-ins, in seconds.
@@ -56,16 +56,16 @@ _ASK_PLUGINS = "import pymeshlab; print('plugins', pymeshlab.plugin_number())"
 
 @dataclass(frozen=True)
 class _Part:
-    """One part of the installation.
+    """One part of the installation: a package or a program.
 
     Parameters
     ----------
     name, found : str
-        Its name, and its version; empty if it is missing.
+        The name of the part, and its version; empty if the part is missing.
     purpose : str
-        The features that need it.
+        The features that need the part.
     remedy : str
-        The line to type if it is missing or incomplete, else empty.
+        The command to type if the part is missing or incomplete, else empty.
     required : bool
     """
 
@@ -117,7 +117,7 @@ def _packages() -> list[_Part]:
 
 
 def _version_of(name: str) -> str:
-    """Return the version of an importable package, or the empty text."""
+    """Return the version of an installed package; an empty string if it cannot be imported."""
     try:
         return version(name) if find_spec(_MODULES.get(name, name)) is not None else ""
     except (PackageNotFoundError, ImportError, ValueError):
@@ -125,7 +125,10 @@ def _version_of(name: str) -> str:
 
 
 def _with_libraries(part: _Part) -> _Part:
-    """Check in a separate process whether pymeshlab finds the system libraries that it needs."""
+    """Return the part pymeshlab, with a remedy if a system library that it needs is missing.
+
+    pymeshlab is loaded in a separate process.
+    """
     from ...repair.child import PLUGINS
     from ...repair.repair import remedy
 
@@ -164,6 +167,6 @@ def _text(parts: list[_Part]) -> str:
 
 
 def _advice(part: _Part) -> str:
-    """Return which part is missing and the command that installs it."""
+    """Return a text on a missing or incomplete part, with the command that installs it."""
     state = "incomplete" if part.found else "missing"
     return f"{part.name} is {state}; it is needed for {part.purpose}. Try:\n  {part.remedy}"

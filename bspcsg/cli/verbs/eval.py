@@ -1,4 +1,4 @@
-"""The verb that evaluates a formula over files: eval."""
+"""The verb `eval`, which evaluates a set formula over files."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -37,12 +37,12 @@ Example:
 @click.argument("formula")
 @from_files
 def evaluate(formula: str, **given: Any) -> int:
-    """Work out a formula; its help is above, where it can keep its line breaks."""
+    """Evaluate a formula and write the result; the help of the verb is in `_HELP`."""
     return _Evaluation(formula, **given).run()
 
 
 class _Evaluation(Job):
-    """A formula; each of its files is read once."""
+    """The work of the verb `eval`: it evaluates a formula, reading each file once."""
 
     def __init__(self, formula: str, **settings: Any) -> None:
         self._text = formula
@@ -67,7 +67,7 @@ class _Evaluation(Job):
         return evaluated(self._formula, lambda file: solids[file.name], _combined)
 
     def _paths(self, file: File) -> list[Path]:
-        """Return the files that a name in the formula means."""
+        """Return the files that a name or a pattern in the formula means."""
         return matches(Path(file.name))
 
     def _loaded(self, file: File) -> "Solid":
@@ -92,7 +92,7 @@ def _combined(name: str, solids: list["Solid"]) -> "Solid":
 
 
 def _pointed(formula: str, message: str, column: int) -> str:
-    """Return a message, followed by the formula and a mark under the column."""
+    """Return a message, followed by the formula and a mark (^) under the column of an error."""
     if not formula.strip():
         return f"formula:{column + 1}: {message}"
     printed = "".join(" " if letter.isspace() else letter for letter in formula)

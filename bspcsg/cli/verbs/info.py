@@ -1,4 +1,4 @@
-"""The verb that measures files: info."""
+"""The verb `info`, which prints counts, measures and findings of mesh files."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -29,10 +29,10 @@ Examples:
 @reading
 @common
 def info(files: tuple[Path, ...], **given: Any) -> int:
-    """Say what is in each file: counts, size, volume, area, parts, unit and findings.
+    """Print what is in each file: counts, size, volume, area, objects, unit and findings.
 
-    A file that is no solid is described too; whether it is one is for bspcsg check to say with its
-    exit code.
+    A file that is no solid is described, too, and does not change the exit code; for that use
+    bspcsg check.
     """
     from ...parameters import set_threads
 
@@ -49,7 +49,7 @@ def info(files: tuple[Path, ...], **given: Any) -> int:
 
 
 class _Entry:
-    """The facts printed about one file."""
+    """One file's mesh and diagnosis, or the error of reading it."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""The verb that writes the interactive lecture: lecture."""
+"""The verb `lecture`, which writes the interactive lecture on partition trees."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""The verbs that make one solid by something other than a set operation: hull, simplify."""
+"""The verbs `hull` and `simplify`, which make one solid of files without a set operation."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -37,7 +37,8 @@ Example:
 def hull(files: tuple[Path, ...], **given: Any) -> int:
     """Write the convex hull of all files together, exactly.
 
-    Each of its corners is a corner of a file, and none lies outside but for rounding.
+    Each vertex of the hull is a vertex of a file, and but for rounding no vertex of a file is
+    outside the hull.
     """
     return _Hull(files, **given).run()
 
@@ -62,14 +63,14 @@ def hull(files: tuple[Path, ...], **given: Any) -> int:
 def simplify(file: Path, **given: Any) -> int:
     """Write a solid without short edges and slivers.
 
-    Every point of the old surface lies within the tolerance of the new one, and the other way
-    round. Nothing that changed crosses anything, and parts, handles and cavities stay.
+    Every point of the old surface is within the tolerance of the new one, and the other way round.
+    Changed triangles cross no others, and the numbers of parts, handles and cavities stay the same.
     """
     return _Simplified((file,), **given).run()
 
 
 class _OfFiles(Job):
-    """A job whose result is not compared with manifold3d."""
+    """A job that makes a solid of files, without comparing the result with manifold3d's."""
 
     def __init__(self, op: str, files: tuple[Path, ...], **settings: Any) -> None:
         super().__init__(op, check="off", **settings)
@@ -85,7 +86,7 @@ class _OfFiles(Job):
 
 
 class _Hull(_OfFiles):
-    """The hull of files."""
+    """The work of the verb `hull`: it makes the convex hull of all files together."""
 
     def __init__(self, files: tuple[Path, ...], **settings: Any) -> None:
         super().__init__("hull", files, **settings)
@@ -98,7 +99,7 @@ class _Hull(_OfFiles):
 
 
 class _Simplified(_OfFiles):
-    """A job without an operation: it simplifies one file, as it does any result."""
+    """The work of the verb `simplify`: the solid of one file, which `Job.run` simplifies."""
 
     def __init__(self, files: tuple[Path, ...], **settings: Any) -> None:
         super().__init__("simplify", files, **settings)

@@ -1,4 +1,4 @@
-"""The verb that draws the shadow of a solid: project."""
+"""The verb `project`, which draws the shadow of a solid on the plane z = 0."""
 
 from pathlib import Path
 from typing import Any
@@ -27,14 +27,14 @@ _SUFFIXES = (".svg", ".dxf")
 def project(file: Path, target: Path, **given: Any) -> int:
     """Write the shadow of a solid on the plane z = 0 as an SVG or DXF drawing.
 
-    It holds every point that lies below or above the solid, in coordinates (x, y). DXF needs the
-    extra bspcsg[dxf].
+    The shadow consists of the points (x, y) with a point of the solid above or below them. DXF
+    needs the extra bspcsg[dxf].
     """
     return _Projection(file, target, _SUFFIXES, **given).run()
 
 
 class _Projection(Drawing):
-    """One solid, seen from above."""
+    """The work of the verb `project`: it draws the region below and above a solid."""
 
     def drawn(self) -> tuple[bytes, str, dict[str, Any]]:
         region = self.inputs.solid(self.file).project()

@@ -1,4 +1,4 @@
-"""The verb that makes pictures: render."""
+"""The verb `render`, which draws pictures of meshes."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -31,7 +31,7 @@ Examples:
 _SUFFIXES = (".svg", ".png", ".gif")
 _STYLES = ("shaded", "hidden", "edges")
 
-#: The background that lets through what is behind the picture.
+#: The value of ``--background`` for a transparent picture.
 _TRANSPARENT = "none"
 
 _TEXTURES = (
@@ -39,18 +39,18 @@ _TEXTURES = (
     " view shows the full texture."
 )
 
-#: The largest number of pictures of one turn, and the number by default.
+#: The largest and the default number of pictures of one turn, in a GIF.
 _MAX_FRAMES, _DEFAULT_FRAMES = 360, 36
 
 #: The longest time for which a GIF can show a picture, in seconds: two bytes count hundredths.
 _MAX_FRAME_SECONDS = 655
 
-#: Points of the circle that a turning corner runs through.
+#: The number of points on the circle along which a corner of the bounding box turns.
 _AROUND = 72
 
 
 def _as_size(context: click.Context, option: click.Parameter, value: str) -> tuple[int, int]:
-    """Return width and height in pixels."""
+    """Convert a text such as “800x600” to width and height in pixels."""
     from ...bsp.painting.picture import checked_size
 
     words = value.lower().split("x")
@@ -66,7 +66,7 @@ def _as_size(context: click.Context, option: click.Parameter, value: str) -> tup
 
 
 def _as_colour(context: click.Context, option: click.Parameter, value: str) -> str | None:
-    """Return a colour that pictures take, or None for transparent."""
+    """Return a valid name or code of a colour unchanged; “none” becomes None, for transparent."""
     from ...bsp.painting.colours import colour
 
     if value == _TRANSPARENT:
@@ -80,7 +80,7 @@ def _as_colour(context: click.Context, option: click.Parameter, value: str) -> s
 
 
 def _as_colours(context: click.Context, option: click.Parameter, value: str | None) -> str | None:
-    """Return the name of a way to colour, or a colour."""
+    """Return the value of ``--colours``; raise a usage error for an invalid code such as “#12”."""
     from ...bsp.painting.colours import colour
 
     if value is None or not value.startswith("#"):
@@ -167,16 +167,16 @@ def _is_paint(word: str, layers: "list[Layer]") -> bool:
 @reading
 @common
 def render(files: tuple[Path, ...], target: Path, **given: Any) -> int:
-    """Write a picture of meshes as SVG or PNG, painted from back to front, or a turn as GIF.
+    """Write a picture of meshes as SVG or PNG, or pictures of one turn around z as GIF.
 
-    Meshes need not be closed, but for --section. PNG and GIF need Pillow; bspcsg doctor says
-    whether it is there.
+    Faces are painted from back to front. Meshes need not be closed, except for --section. PNG and
+    GIF need Pillow; bspcsg doctor says whether it is installed.
     """
     return _Rendering(files, target, _SUFFIXES, **given).run()
 
 
 class _Rendering(Drawing):
-    """Meshes, seen from somewhere."""
+    """The work of the verb `render`: it draws a picture of meshes, or several in a GIF."""
 
     def __init__(self, files: tuple[Path, ...], *paths: Any, **settings: Any) -> None:
         super().__init__(files[0], *paths, **settings)
@@ -218,7 +218,7 @@ class _Rendering(Drawing):
         return {**looks, "colors": self._colours(layers)}
 
     def _colours(self, layers: "list[Layer]") -> Any:
-        """Return a colour for each face, one for all, or None for the default."""
+        """Return a colour for each face, one colour for all faces, or None for the default."""
         from ...report.viewer.faces import are_textured, face_colours
 
         given = self.settings["colours"]
@@ -252,7 +252,7 @@ class _Rendering(Drawing):
 
         frames = self.settings["frames"]
         vertices, faces = joined(layers)
-        # One tree serves all points of view.
+        # One tree is enough for all points of view.
         tree = PartitionTree(vertices[faces], "random", top=16, degenerate="drop")
         pictures = self._turning(layers, tree, vertices[_used(faces)])
         data = gif(pictures, self.settings["seconds"])
@@ -279,7 +279,7 @@ def _used(faces: Any) -> Any:
 
 
 def _room_to_turn(points: "FloatArray") -> "FloatArray":
-    """Return points that enclose a box in all its positions while it turns about its middle."""
+    """Return points around the bounding box of `points` in all its rotations about its z axis."""
     import numpy as np
 
     if not len(points):

@@ -1,4 +1,4 @@
-"""The verb that closes meshes: repair."""
+"""The verb `repair`, which closes and orients meshes."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,7 +23,7 @@ Examples:
   bspcsg repair scans/ --outdir closed
 """
 
-#: Kinds of findings with what to call them in the table.
+#: The names, in the printed table, of findings by their codes.
 _DEFECTS = {
     "open_edges": "open edges",
     "orientation": "edges with faces turned round",
@@ -42,7 +42,7 @@ _DEFECTS = {
     metavar="STEPS",
     default="weld,dedup,drop,split,orient,fill",
     show_default=True,
-    help="Which steps to take, apart by commas.",
+    help="Steps to take, separated by commas.",
 )
 @click.option(
     "--weld",
@@ -65,18 +65,18 @@ _DEFECTS = {
 def repair(files: tuple[Path, ...], target: Path | None, outdir: Path | None, **given: Any) -> int:
     """Close and orient meshes with pymeshlab, and say what changed.
 
-    The steps: weld joins vertices; dedup drops repeated and flat triangles; drop takes away stray
-    fragments, which bound nothing, such as a loose triangle beside a closed shell; split takes
-    edges with more than two triangles apart; orient turns triangles the same way round; fill closes
-    holes. Of a file with several objects each is repaired by itself, if something is wrong with it.
-    The file is written even if it still is no solid; then the exit code is 1. Attributes, such as
-    colours, are lost, which is said.
+    The steps: weld joins vertices; dedup removes repeated and flat triangles; drop removes stray
+    fragments, which enclose nothing, such as a loose triangle beside a closed shell; split divides
+    edges with more than two triangles; orient gives triangles a common orientation; fill closes
+    holes. Each object of a file with several objects is repaired by itself, if it has a defect. The
+    file is written even if it is still no solid; then the exit code is 1. Attributes, such as
+    colours, are lost, with a warning.
     """
     return _Repairing(files, target, outdir, **given).run()
 
 
 class _Repairing:
-    """The repair of files, with the findings before and after."""
+    """The work of the verb `repair`: it repairs each file, with a diagnosis before and after."""
 
     def __init__(
         self, files: tuple[Path, ...], target: Path | None, outdir: Path | None, **settings: Any
@@ -112,7 +112,7 @@ class _Repairing:
         return code
 
     def _repaired(self, path: Path, target: Target, steps: list[str]) -> tuple[dict[str, Any], int]:
-        """Repair one file; return its document and the exit code."""
+        """Repair one file; return its JSON document and the exit code."""
         from ...assembly.examining import examine
         from ...assembly.mending import mended_as_found
 
@@ -160,7 +160,7 @@ class _Repairing:
 
 
 def _text(before: "Diagnosis", after: "Diagnosis", made: "Repair", target: Target) -> str:
-    """Return a table of the findings before and after."""
+    """Return a table of the measures and findings before and after a repair, and its result."""
     rows = [(name, *pair) for name, *pair in _rows(before, after)]
     lines = [table_text(("", "before", "after"), rows, right=("before", "after"))]
     if made.turned:
@@ -171,7 +171,7 @@ def _text(before: "Diagnosis", after: "Diagnosis", made: "Repair", target: Targe
 
 
 def _line(before: "Diagnosis", after: "Diagnosis", made: "Repair", target: Target) -> str:
-    """Return the same as one line."""
+    """Return one line on a repair: the output, the verdict, and the changes of triangles."""
     words = [f"{counted(before.triangles, 'triangle')} became {grouped(after.triangles)}"]
     words += [f"{grouped(made.turned)} reversed"] if made.turned else []
     words += [f"{grouped(made.dropped)} stray ones removed"] if made.dropped else []

@@ -1,4 +1,4 @@
-"""The verb that makes pages of results: report."""
+"""The verb `report`, which makes a page, or JUnit XML, of the results of `crosscheck`."""
 
 import sys
 from contextlib import contextmanager
@@ -25,7 +25,7 @@ Examples:
   bspcsg report results-*.jsonl -o - --format md >> "$GITHUB_STEP_SUMMARY"
 """
 
-#: The format that each suffix of an output names.
+#: The format of a report by the suffix of the output.
 _SUFFIXES = {".html": "html", ".htm": "html", ".md": "md", ".json": "json", ".xml": "junit"}
 _FORMATS = ("html", "md", "json", "junit")
 
@@ -56,7 +56,11 @@ _FORMATS = ("html", "md", "json", "junit")
     help="Cases shown with pictures and all numbers, failures first.",
 )
 @click.option(
-    "--title", metavar="TITLE", default="Validation report", show_default=True, help="Of the page."
+    "--title",
+    metavar="TITLE",
+    default="Validation report",
+    show_default=True,
+    help="Title of the page.",
 )
 @common
 def report(files: tuple[Path, ...], target: Path, **given: Any) -> int:
@@ -70,7 +74,7 @@ def report(files: tuple[Path, ...], target: Path, **given: Any) -> int:
 
 
 class _Reporting:
-    """Results files, and the report that is made of them."""
+    """The work of the verb `report`: it merges results files and writes a report."""
 
     def __init__(self, files: tuple[Path, ...], target: Path, **settings: Any) -> None:
         self._files = files
@@ -170,7 +174,7 @@ class _Reporting:
 
 @contextmanager
 def _progress(out: Output) -> "Iterator[Callable[[list[CaseRecord]], Iterable[CaseRecord]]]":
-    """Yield a callback that shows the drawn cards as a progress bar on the terminal."""
+    """Yield a function that iterates over cases, and shows a progress bar on a terminal."""
     if not sys.stderr.isatty() or out.verbosity < 0:
         yield iter
         return

@@ -1,4 +1,4 @@
-"""The verb that evaluates scripts: run."""
+"""The verb `run`, which evaluates an OpenSCAD or Python script."""
 
 import ast
 from collections.abc import Iterator, Sequence
@@ -33,13 +33,13 @@ if TYPE_CHECKING:
 
 
 def _is_plain_word(text: str) -> bool:
-    """Say whether a text is a word of any script, which needs no quotes, and no expression."""
+    """Say whether a text is one word, in any alphabet, which is a string without quotes."""
     starts = text[:1].isalpha() or text.startswith("_")
     return starts and all(c.isalnum() or c in "_.-" or category(c)[0] == "M" for c in text)
 
 
 def _list_nodes(context: click.Context, option: click.Parameter, wanted: bool) -> None:
-    """Print the names of the nodes that can be evaluated, and exit."""
+    """Print the names of the OpenSCAD nodes that can be evaluated, and exit."""
     if wanted and not context.resilient_parsing:
         from ...csg import node_names
 
@@ -50,7 +50,7 @@ def _list_nodes(context: click.Context, option: click.Parameter, wanted: bool) -
 def _as_texts(
     context: click.Context, option: click.Parameter, values: tuple[str, ...]
 ) -> dict[str, str]:
-    """Return the texts of variables, by name."""
+    """Convert texts such as “width=12.5” to a dictionary of text by name."""
     texts = {}
     for given in values:
         name, equals, text = given.partition("=")
@@ -63,7 +63,7 @@ def _as_texts(
 
 
 def _value(text: str) -> Any:
-    """Return the OpenSCAD value of a text; a plain word is a string."""
+    """Return the value of a text as an OpenSCAD expression; a single word is a string."""
     from ...csg import value_of
 
     try:
@@ -77,7 +77,7 @@ def _value(text: str) -> Any:
 
 
 def _python_value(text: str) -> Any:
-    """Return the Python value of a text, where 2 is an integer; else its OpenSCAD value."""
+    """Return the value of a text as a Python literal, or else as an OpenSCAD expression."""
     try:
         return ast.literal_eval(text)
     except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
@@ -91,7 +91,7 @@ Examples:
   bspcsg run part.py --watch --view
 """
 
-#: Options that make sense for some scripts only, by their names, with those that they are not for.
+#: The suffixes of scripts with which an option cannot be used, by the option's parameter name.
 _NOT_FOR = {
     "polish": (".py",),
     "on_invalid": (".py",),
@@ -101,7 +101,7 @@ _NOT_FOR = {
     "defines": (".csg", ".json"),
 }
 
-#: Options that are not spelled as their names are.
+#: How options are spelled, where that does not follow from the parameter name.
 _SPELLED = {"defines": "-D", "allow_paths": "--allow-path"}
 
 
@@ -177,9 +177,9 @@ def run(
     """Evaluate a script and write the solid it makes.
 
     A .csg file is read as OpenSCAD writes it, and so is standard input, for which - stands. A
-    .json file is the same tree (see bspcsg tree), a .scad file needs the program openscad. A .py
-    file leaves its solid in the variable result, or calls bspcsg.show; it runs with all your
-    rights, and what it prints goes to standard error.
+    .json file is the same tree (see bspcsg tree); a .scad file needs the program openscad. A .py
+    file assigns its solid to the variable result, or calls bspcsg.show; it runs with all your
+    rights, and its output goes to standard error.
     """
     if target is None and not shows:
         raise click.UsageError(
@@ -199,7 +199,7 @@ def run(
 
 
 class _Run(Job):
-    """One script."""
+    """The work of the verb `run`: it evaluates one script once."""
 
     def __init__(self, script: Path, **settings: Any) -> None:
         super().__init__("run", **settings)
@@ -255,7 +255,7 @@ class _Run(Job):
 
     @contextmanager
     def _advised(self) -> Iterator[None]:
-        """Add advice to the error about a mesh that is not closed."""
+        """Add advice on ``--on-invalid`` to an error about a mesh that is not closed."""
         try:
             yield
         except InvalidMeshError as error:

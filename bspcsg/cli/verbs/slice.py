@@ -1,4 +1,4 @@
-"""The verb that cuts a solid by a plane: slice."""
+"""The verb `slice`, which draws the section of a solid by a plane."""
 
 import math
 from pathlib import Path
@@ -26,7 +26,7 @@ _UPWARDS = (0.0, 0.0, 1.0)
 def _as_finite(
     context: click.Context, option: click.Parameter, value: float | None
 ) -> float | None:
-    """Return the number, which has to be finite."""
+    """Return a number unchanged; raise a usage error if it is infinite or NaN."""
     if value is not None and not math.isfinite(value):
         raise click.BadParameter(f"{value} is not a finite number.", context, option)
     return value
@@ -57,15 +57,15 @@ def _as_finite(
 def section(file: Path, target: Path, **given: Any) -> int:
     """Write the section of a solid by a plane as an SVG or DXF drawing.
 
-    It is seen from where the normal points: z gives the coordinates (x, y), x gives (y, z), y gives
-    (z, x). A face in the plane counts as above it, so a box standing on z = 0 is empty there and
-    full at its top. DXF needs the extra bspcsg[dxf].
+    The normal points towards the viewer: the drawing has the coordinates (x, y) for the normal z,
+    (y, z) for x, and (z, x) for y. A face in the plane counts as above it, so the section of a box
+    standing on z = 0 is empty at z = 0 and full at its top. DXF needs the extra bspcsg[dxf].
     """
     return _Section(file, target, _SUFFIXES, **given).run()
 
 
 class _Section(Drawing):
-    """One solid, and a plane."""
+    """The work of the verb `slice`: it draws the section of one solid by one plane."""
 
     def __init__(self, *paths: Any, **settings: Any) -> None:
         super().__init__(*paths, **settings)
@@ -92,7 +92,7 @@ class _Section(Drawing):
         return self.data(region), f"area {region.area:.9g}  {words}", values
 
     def _tell_of_plane(self, pitch: int) -> None:
-        """Print a note if the plane differs from the requested one."""
+        """Print a note if the plane on the lattice differs from the requested plane."""
         from ...geometry.hyperplane import Hyperplane
 
         plane = Hyperplane.from_numbers(self._normal, self._offset).on_lattice(pitch)
@@ -114,7 +114,7 @@ _PLANE = ("height", "normal", "offset")
 def _plane(
     height: float | None, normal: tuple[float, ...] | None, offset: float | None
 ) -> tuple[tuple[float, ...], float]:
-    """Return normal and offset of the plane that the options give."""
+    """Return normal and offset of the plane that the options describe."""
     if (height is None) == (normal is None):
         raise click.UsageError(
             "the cutting plane is missing, or given twice; give either --z HEIGHT or --normal"

@@ -1,4 +1,4 @@
-"""The verb that takes solids apart: split."""
+"""The verb `split`, which writes the connected parts of solids, or both sides of a cut."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -37,7 +37,7 @@ Examples:
   bspcsg split part.stl --by cutter.stl -o 'side-%.ply'
 """
 
-#: The former verb that named the parts of one file as those of several.
+#: The former verb that put the name of the file into the names of its parts, even for one file.
 _FORMER = "explode"
 
 
@@ -75,12 +75,12 @@ _FORMER = "explode"
 def split(context: click.Context, /, files: tuple[Path, ...], target: Path, **given: Any) -> int:
     """Write each connected component of solids to a file of its own, the largest first.
 
-    With --plane, number 1 is the side with nx x + ny y + nz z below d, number 2 the other. With
-    --by, number 1 is what is outside the other solid, number 2 what is inside. A cut closes both
-    sides, and together they are the whole again, exactly.
+    With --plane, part 1 is the side with nx x + ny y + nz z below d, part 2 the side above. With
+    --by, part 1 is outside the solid of --by, part 2 inside. Both sides of a cut are closed, and
+    their union is exactly the whole.
 
-    The parts of one file are 1, 2 and so on; those of several are called plates-1, plates-2 after
-    plates.stl. Without a % in it, -o gets this before its suffix.
+    The % in the name of -o stands for 1, 2 and so on, or with several files for plates-1, plates-2
+    after plates.stl. Without a %, this is added before the suffix.
     """
     if given["plane"] and given["cutter"]:
         raise click.UsageError("--plane and --by cannot be combined; give one of them.")
@@ -94,7 +94,7 @@ def split(context: click.Context, /, files: tuple[Path, ...], target: Path, **gi
 
 @dataclass
 class _Parts:
-    """The parts of a file, and the comparison of each with manifold3d if there is one."""
+    """The parts of a file, and the verdict of each one's comparison with manifold3d, if any."""
 
     file: Path
     meshes: "list[Mesh]"
@@ -102,7 +102,7 @@ class _Parts:
 
 
 class _Splitting:
-    """Solids, and the files for their parts."""
+    """The work of the verb `split`: it divides solids and writes their parts."""
 
     def __init__(
         self, files: tuple[Path, ...], pattern: Path, by_name: bool, settings: dict[str, Any]
@@ -115,7 +115,7 @@ class _Splitting:
         self._inputs = Inputs.of(self._out, settings)
 
     def run(self) -> int:
-        """Split the files, and return the exit code."""
+        """Split all files, write the parts, and return the exit code."""
         from ...parameters import set_threads
 
         set_threads(self._settings["threads"])
@@ -133,7 +133,7 @@ class _Splitting:
         return output.FOUND if "DISAGREE" in verdicts else output.DONE
 
     def _read(self) -> list[Path]:
-        """Return the files that are read."""
+        """Return the files that are read: the inputs, and the solid of ``--by``."""
         cutter = self._settings["cutter"]
         return [*self._files, cutter] if cutter else list(self._files)
 
@@ -170,7 +170,7 @@ class _Splitting:
         return _Parts(file, meshes, [str(s.validate(depth=depth).verdict) for s in checked])
 
     def _simplified(self, file: Path, solid: "Solid") -> "Solid":
-        """Return a solid, without short edges and slivers if the options ask for it."""
+        """Return a solid, without short edges and slivers if ``--simplify`` is given."""
         tolerance = self._settings["tolerance"]
         simple = solid.simplify(tolerance) if tolerance else solid
         if simple is not solid:
@@ -178,7 +178,7 @@ class _Splitting:
         return simple
 
     def _tell_of_plane(self, file: Path, side: "Solid") -> None:
-        """Print a note if the plane differs from the requested one."""
+        """Print a note if the plane on the lattice differs from the requested plane."""
         found = [Finding.from_core(finding) for finding in side.tree.findings]
         self._inputs.tell(file, [one for one in found if one not in self._inputs.noticed])
 
@@ -200,7 +200,7 @@ class _Splitting:
         self._out.result("", {**whole, "files": files, "parts": documents})
 
     def _written(self, parts: _Parts) -> Iterator[dict[str, Any]]:
-        """Write the parts of a file, and report the files."""
+        """Write the parts of a file, print a line for each, and yield their JSON documents."""
         for number, mesh in enumerate(parts.meshes, 1):
             target = self._target(parts.file, number)
             lost = target.write(mesh)

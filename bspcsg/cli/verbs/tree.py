@@ -1,4 +1,4 @@
-"""The verb that shows and converts scripts: tree."""
+"""The verb `tree`, which shows or converts the tree of an OpenSCAD script."""
 
 import sys
 from collections import Counter
@@ -25,7 +25,7 @@ Examples:
   bspcsg tree bracket.csg --to dot | dot -Tsvg -o bracket.svg
 """
 
-#: Suffixes of scripts that are read, and those that a target may have with what they stand for.
+#: Suffixes of scripts that are read, and the form of the output by its suffix.
 _READ = (".csg", ".json", ".scad")
 _FORMS = {
     ".csg": "csg",
@@ -66,17 +66,17 @@ _FORMS = {
 @TIMEOUT
 @common
 def tree(file: Path, **given: Any) -> int:
-    """Show the tree of a script, or write it in another form.
+    """Show the tree of an OpenSCAD script, or write it in another form.
 
     Reads .csg files, the same tree as .json, and .scad files through the program openscad. Nothing
-    is evaluated, and nodes that bspcsg cannot evaluate stay. --json tells the number of nodes of
+    is evaluated, and nodes that bspcsg cannot evaluate stay. --json prints the number of nodes of
     each kind.
     """
     return _Showing(file, **given).run()
 
 
 class _Showing:
-    """One script, and the output for its tree."""
+    """The work of the verb `tree`: it reads the tree of one script and writes it."""
 
     def __init__(
         self, file: Path, target: Path | None, form: str | None, source: str, **settings: Any
@@ -129,7 +129,7 @@ class _Showing:
         if self._target and self._to_file:
             put(self._target, [text.encode()], self._settings["overwrite"])
         elif not self._out.as_json:
-            # In pipes click would drop sequences that a terminal takes for colours.
+            # Without color=True, click would drop a terminal's control sequences from a pipe.
             said = harmless(text) if sys.stdout.isatty() else text
             click.echo(said, nl=False, color=True)
 
@@ -152,7 +152,7 @@ class _Showing:
 
 
 def _form_of(target: Path | None) -> str:
-    """Return the form of a suffix; text if there is none."""
+    """Return the form of the output by its suffix; text for standard output."""
     if target is None or str(target) == STREAM or is_dropped(target):
         return "text"
     suffix = target.suffix.lower()
@@ -184,7 +184,7 @@ def _written(tree: "CsgTree", form: str) -> str:
 
 
 def _kinds(tree: "CsgTree") -> "Counter[str]":
-    """Count the nodes of each name."""
+    """Return the number of nodes of a tree by name."""
     kinds: Counter[str] = Counter()
     waiting = list(tree.nodes)
     while waiting:

@@ -1,4 +1,4 @@
-"""The verb that shows files in a browser: view."""
+"""The verb `view`, which shows meshes in a browser."""
 
 import sys
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ Examples:
   bspcsg view parts/
 """
 
-#: The largest number of bytes of a page that browsers open at once; a longer one takes seconds.
+#: The largest number of bytes of a page that browsers open quickly; a longer one takes seconds.
 _MAX_QUICK_PAGE_BYTES = 20_000_000
 
 
@@ -54,20 +54,20 @@ _MAX_QUICK_PAGE_BYTES = 20_000_000
 @reading
 @common
 def view(files: tuple[Path, ...], target: Path | None, **given: Any) -> int:
-    """Show meshes in a browser: turn, zoom, cut, measure, see through, a button for each part.
+    """Show meshes in a browser: turn, zoom, cut, measure, make transparent, hide each part.
 
     Faces have the colours and textures of the file, or can be coloured by the operand of a script
-    that they are from. The page is one file that needs no network and can be sent to others. Meshes
-    need not be closed. Without a screen, as over ssh, it is only written.
+    from which they come. The page is one file that needs no network and can be sent to others.
+    Meshes need not be closed. Without a screen, as over ssh, the page is written, but not opened.
 
-    With --live, and always for a folder, a server on this machine alone shows the page, and makes
-    it anew when a file changes, until Ctrl-C.
+    With --live, and always for a folder, a server, which only this machine can reach, shows the
+    page, and updates it when a file changes, until Ctrl-C.
     """
     return _Viewing(files, target, **given).run()
 
 
 class _Viewing:
-    """Meshes, and the page that shows them."""
+    """The work of the verb `view`: it writes or serves a page that shows meshes."""
 
     def __init__(self, files: tuple[Path, ...], target: Path | None, **settings: Any) -> None:
         self._files = files
@@ -100,7 +100,7 @@ class _Viewing:
 
     @property
     def _folder(self) -> Path | None:
-        """The folder to show, if the input is a folder."""
+        """The folder to show, if the only input is a folder, else None."""
         return self._files[0] if len(self._files) == 1 and self._files[0].is_dir() else None
 
     def _scene(self, files: Sequence[Path]) -> "tuple[list[Layer], str]":
@@ -112,7 +112,7 @@ class _Viewing:
         return layers, unit
 
     def _served(self) -> int:
-        """Show the files until Ctrl-C."""
+        """Serve the page until Ctrl-C, and return the exit code."""
         from ..pages.live import LiveServer
         from ..pages.showing import site_of_files, site_of_folder
 
@@ -148,7 +148,7 @@ class _Viewing:
         self._inputs.refuse_early(self._files)
 
     def _opened(self, address: str) -> bool:
-        """Open the page, or print why it cannot be opened."""
+        """Open an address in a browser; return False and print the reason if that fails."""
         reason = opened(address)
         if reason:
             self._out.note(reason)

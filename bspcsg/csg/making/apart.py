@@ -1,4 +1,4 @@
-"""Moves transforms inwards, to single parts."""
+"""Distribution of transforms to the operands of set operations."""
 
 from dataclasses import replace
 
@@ -7,21 +7,21 @@ import numpy as np
 from ..syntax.arguments import is_number
 from ..syntax.tree import Node, Value
 
-#: Nodes that combine their children where they stand.
+#: The names of nodes that combine their children without a transform.
 COMBINING = frozenset({"group", "union", "color", "render", "difference", "intersection"})
 
-#: The largest number of nested moves that are distributed to parts: each part repeats all moves
-#: around it.
+#: The largest number of nested transforms that are distributed to parts. Each part repeats all
+#: transforms around it.
 _MAX_NESTED_MOVES = 64
 
 
 def moved_apart(root: Node) -> Node:
-    """Return an equivalent tree in which the operands of set operations are moved one by one.
+    """Return an equivalent tree with transforms applied to the operands of set operations.
 
-    Matrices that shift, scale, mirror or swap axes, and flatten none, move inwards through set
-    operations: the parts inside are parts of the model, and axis-aligned faces stay axis-aligned. A
-    body that is rotated otherwise stays one part, because a lattice would bend the faces of its
-    parts. Nodes may nest to any depth.
+    Matrices that translate, scale, mirror or exchange axes are moved inwards through set
+    operations, so that the operands become parts of the model; their axis-aligned faces stay
+    axis-aligned. A node under any other rotation stays one part, since snapping would bend the
+    faces of its operands. Nodes may be nested to any depth.
     """
     waiting: list[tuple[Node, tuple[Node, ...], bool]] = [(root, (), False)]
     done: list[Node] = []
@@ -52,7 +52,7 @@ def _combined(node: Node, children: tuple[Node, ...]) -> Node:
 
 
 def _keeps_axes(node: Node) -> bool:
-    """Say whether a node is a matrix whose linear part has one entry in each row and column."""
+    """Return True if a node is a matrix whose linear part has one entry per row and column."""
     if node.name != "multmatrix" or len(node.arguments) != 1:
         return False
     [argument] = node.arguments

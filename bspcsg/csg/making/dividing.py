@@ -1,4 +1,4 @@
-"""Divides the edges of outlines, so that walls that turn or shrink follow their curves."""
+"""Division of the edges of outlines, so that twisted walls approximate their curved shape."""
 
 import heapq
 from collections.abc import Sequence
@@ -9,20 +9,21 @@ import numpy as np
 from ..._types import FloatArray, IndexArray
 from ...geometry.transform import cos_sin
 
-#: Edges whose parts differ by less than this part of their length are divided together.
+#: Edges are divided together if the lengths of their parts have at least this ratio.
 _ALIKE = 0.999
 
 
 class Stretch(NamedTuple):
-    """The change of a figure on its way up.
+    """The twist and scale of a linear extrusion.
 
     Parameters
     ----------
     twist : float
-        Degrees that the upper end is turned clockwise.
+        The rotation of the upper end in degrees, clockwise.
     scale : (float, float)
-        Of the upper end.
+        The scale factors of the upper end along x and y.
     slices : int
+        The number of levels above the lower end.
     """
 
     twist: float
@@ -31,11 +32,11 @@ class Stretch(NamedTuple):
 
     @property
     def is_even(self) -> bool:
-        """True if walls stay plane, so that dividing them gains nothing."""
+        """True if walls are plane: there is no twist, and x and y are scaled equally."""
         return self.twist == 0 and self.scale[0] == self.scale[1]
 
     def lengths(self, vectors: FloatArray) -> FloatArray:
-        """Return the largest length that each vector has at any level."""
+        """Return the largest length that each vector of the lower end gets at any level, (n,)."""
         x, y = self.scale
         if x == y:
             return np.asarray(np.linalg.norm(vectors, axis=1) * max(x, 1.0))
@@ -50,17 +51,17 @@ class Stretch(NamedTuple):
 
 
 def divided(outline: FloatArray, segments: int, stretch: Stretch) -> FloatArray:
-    """Divide the edges of an outline until it has up to `segments`, as OpenSCAD does.
+    """Divide the edges of an outline evenly, until there are up to `segments`, as in OpenSCAD.
 
-    The edge with the longest parts is divided once more, again and again. Edges of about the same
-    length are divided together or not at all, which keeps symmetry.
+    In each step, the edge with the longest parts gets one more part. Edges of about the same length
+    are divided together or not at all, which preserves symmetry.
 
     Parameters
     ----------
     outline : (n, 2) float64
     segments : int
     stretch : Stretch
-        Says how long edges become.
+        The twist and scale of the extrusion, on which the lengths of edges depend.
     """
     vectors = np.roll(outline, -1, axis=0) - outline
     counts = _counts(stretch.lengths(vectors).tolist(), segments)
@@ -70,7 +71,7 @@ def divided(outline: FloatArray, segments: int, stretch: Stretch) -> FloatArray:
 
 
 def _counts(lengths: Sequence[float], segments: int) -> IndexArray:
-    """Return the number of parts of each edge, given the edges' lengths."""
+    """Return the number of parts of each edge, (n,), given the lengths of the edges."""
     counts = np.ones(len(lengths), dtype=np.int64)
     longest = [(-length / 1.5, edge) for edge, length in enumerate(lengths)]
     heapq.heapify(longest)
@@ -85,6 +86,6 @@ def _counts(lengths: Sequence[float], segments: int) -> IndexArray:
             break
         for edge in alike:
             counts[edge] += 1
-            # Midway between the lengths of its parts now and after one more division.
+            # The key is between the length of its parts now and after one more division.
             heapq.heappush(longest, (-lengths[edge] / (counts[edge] + 0.5), edge))
     return counts

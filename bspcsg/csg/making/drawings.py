@@ -1,4 +1,4 @@
-"""DXF drawings as OpenSCAD imports them: arcs get as many chords as circles."""
+"""Import of DXF drawings as in OpenSCAD: arcs have the chords of OpenSCAD's circles."""
 
 import math
 from collections.abc import Iterable, Iterator
@@ -17,10 +17,10 @@ from ...errors import format_errors
 from ..syntax.arguments import Arguments
 from .tessellation import Fineness
 
-#: The largest number of blocks inside one another; deeper ones are left out.
+#: The largest nesting depth of blocks; blocks at a greater depth are omitted.
 _MAX_BLOCK_DEPTH = 16
 
-#: Ends of lines closer than this are one corner.
+#: The grid step of ends of lines, in drawing units; ends in neighbouring grid cells are one corner.
 _JOINED = 2.0**-10
 
 
@@ -29,23 +29,23 @@ def dxf_region(
 ) -> Region:
     """Return the region inside the outlines of a DXF file, by the even-odd rule.
 
-    Lines, light polylines, circles, arcs, ellipses and inserted blocks count, as in OpenSCAD;
-    outlines that stay open are closed by a chord. With nothing in the model space, the paper space
-    is read.
+    Lines, LWPOLYLINE polylines, circles, arcs, ellipses and inserted blocks are read, as in
+    OpenSCAD; open outlines are closed by a chord. If the model space is empty, the paper space is
+    read.
 
     Parameters
     ----------
     path : Path
     layer : str
-        The layer to read; all if empty.
+        The name of the layer to read; all layers if it is empty.
     origin : (2,) float64
-        Subtracted first.
+        The point that becomes the origin, before scaling.
     scale : float
-        Multiplied then.
+        The factor by which coordinates are then multiplied.
     arguments : Arguments
-        The arguments of the node, which say how fine arcs are.
+        The arguments of the node, which determine the number of chords of arcs.
     lost : LeftOut
-        Collects what is left out.
+        Collects the entities that are omitted.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def dxf_region(
 
 
 def _entities(document: Any, layer: str, lost: LeftOut) -> Iterator[Any]:
-    """Return the entities of the drawing on a layer; on all if that is empty."""
+    """Return the entities of a drawing on the named layer, or on all layers if it is empty."""
 
     def is_wanted(name: str) -> bool:
         return not layer or name == layer
@@ -74,7 +74,7 @@ def _entities(document: Any, layer: str, lost: LeftOut) -> Iterator[Any]:
 
 
 class _Places:
-    """Numbers of points; points less than a step of the grid apart are one."""
+    """Numbering of points; points less than a grid step apart have the same number."""
 
     def __init__(self) -> None:
         self._numbers: dict[tuple[int, int], int] = {}
@@ -87,7 +87,7 @@ class _Places:
 
 
 def _joined(chains: list[FloatArray]) -> list[FloatArray]:
-    """Return the chains joined where their ends meet, beginning with loose ends."""
+    """Join chains, (n, 2) each, whose ends coincide; start with chains that have a free end."""
     places = _Places()
     ends = [(places.number(chain[0]), places.number(chain[-1])) for chain in chains]
     at: dict[int, list[int]] = {}
@@ -111,7 +111,10 @@ def _walk(
     at: dict[int, list[int]],
     left: set[int],
 ) -> FloatArray:
-    """Follow chains from one end of the first until none is left where the last one ends."""
+    """Return the joined corners of consecutive chains, starting with chain `number` at `end`.
+
+    Used chains are removed from `left`; the walk ends where no chain in `left` continues.
+    """
     parts = []
     following: int | None = number
     while following is not None:
@@ -122,13 +125,13 @@ def _walk(
         following = next((k for k in at[place] if k in left), None)
         if following is not None:
             end = ends[following].index(place)
-            # The corner is there already.
+            # The next chain begins with the same corner.
             parts[-1] = chain[:-1]
     return np.concatenate(parts)
 
 
 def _flat(entities: Iterator[Any], lost: LeftOut) -> Iterator[Any]:
-    """Yield entities; inserted blocks are replaced by their entities."""
+    """Yield the entities of a drawing, with inserted blocks replaced by their entities."""
     waiting: list[Iterator[tuple[Any, bool]]] = [((entity, True) for entity in entities)]
     left = MAX_BLOCK_ENTITIES
     while waiting:
@@ -151,7 +154,10 @@ def _flat(entities: Iterator[Any], lost: LeftOut) -> Iterator[Any]:
 def _limited(
     entities: Iterable[Any], arguments: Arguments, scale: float, lost: LeftOut
 ) -> Iterator[Any]:
-    """Yield the chains of all entities; raise an error if they have too many corners."""
+    """Yield the polylines of all entities; raise an error if they have too many corners.
+
+    Record the entities that are not read in `lost`.
+    """
     corners = 0
     for entity in entities:
         if entity.dxftype() not in _CURVES and entity.dxftype() != WINDOW:
@@ -161,7 +167,7 @@ def _limited(
             yield chain
 
 
-#: Entities that OpenSCAD reads.
+#: The types of DXF entities that OpenSCAD reads.
 _CURVES = frozenset(["LINE", "LWPOLYLINE", "CIRCLE", "ARC", "ELLIPSE"])
 
 

@@ -1,4 +1,4 @@
-"""SVG drawings as OpenSCAD imports them: in millimetres on their page, y upwards."""
+"""Import of SVG drawings as in OpenSCAD: in millimetres on the page, with y upwards."""
 
 import re
 from collections.abc import Sequence
@@ -22,25 +22,25 @@ from ...modelling.planar.offsetting import stroked
 _MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6}
 _LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][+-]?\d+)?)\s*([a-zA-Z%]*)\s*")
 
-#: Chords of a Bézier curve, and of a quarter of a circle or an ellipse.
+#: The number of chords of a Bézier curve, and of a quarter of a circle or an ellipse.
 _CURVE_STEPS, _QUARTER_STEPS = 20, 10
 
-#: Chords per half turn of any other arc, which gets four more.
+#: The number of chords per half turn of any other arc; each arc gets four additional chords.
 _TURN_STEPS = 10
 
-#: Allowance for rounding in a number of steps.
+#: The tolerance for rounding errors when a number of chords is rounded down.
 _ROUNDING = 1e-6
 
-#: The smallest width of a line in user units. A line with a smaller one is drawn one unit wide.
+#: The smallest width of a line in user units. A thinner line is drawn one unit wide.
 _MIN_LINE_WIDTH = 0.01
 
-#: Ends of a subpath that are closer than this, in user units, close it.
+#: A subpath is closed if the distance of its ends, in user units, is at most this.
 _CLOSED = 0.1
 
 
 @dataclass(frozen=True)
 class _Page:
-    """The place of user units on a page, in millimetres from its lower left corner."""
+    """The map from user units to millimetres from the lower left corner of the page."""
 
     scale: float
     x: float
@@ -48,12 +48,13 @@ class _Page:
 
 
 def svg_region(path: Path, dpi: float, centered: bool, lost: LeftOut) -> Region:
-    """Return the shapes of an SVG file as OpenSCAD imports them.
+    """Return the region of the shapes in an SVG file, as OpenSCAD imports them.
 
-    Closed paths are filled, whatever their fill; open paths become as wide as their stroke. Curves
-    have OpenSCAD's corners, whose number does not depend on their size. The view box is fitted into
-    width and height, as in browsers; without a view box, user units count as they are. Style sheets
-    and ``use`` elements are ignored. Hidden shapes are left out; OpenSCAD 2021.01 draws them.
+    Closed paths are filled, whatever their fill; open paths get the width of their stroke. Curves
+    have the number of chords that OpenSCAD uses, which does not depend on their size. The view box
+    is fitted into width and height, as in browsers; without a view box, user units are millimetres.
+    Style sheets and ``use`` elements are ignored. Hidden shapes are omitted; OpenSCAD 2021.01 draws
+    them.
 
     Parameters
     ----------
@@ -61,9 +62,10 @@ def svg_region(path: Path, dpi: float, centered: bool, lost: LeftOut) -> Region:
     dpi : float
         Pixels per inch, for lengths without a unit.
     centered : bool
-        True if the middle of the drawing is at the origin, rather than a corner of the page.
+        True if the middle of the drawing is at the origin, rather than the lower left corner of the
+        page.
     lost : LeftOut
-        Collects what is left out.
+        Collects the shapes that are omitted.
     """
     region = _drawn(path, lost)
     page = _page(path, dpi)
@@ -91,21 +93,21 @@ def _drawn(path: Path, lost: LeftOut) -> Region:
 
 
 def _prepare(root: ElementTree.Element) -> None:
-    """Remove elements that are ignored, and the view box, which is read separately."""
+    """Remove from an SVG tree what OpenSCAD ignores, and the view box, which is read separately."""
     for parent in list(root.iter()):
         parent[:] = [child for child in parent if name_of(child) != "style"]
         if name_of(parent) == "switch":
-            # All of its children are drawn.
+            # OpenSCAD draws all children of a switch element.
             parent.tag = parent.tag.removesuffix("switch") + "g"
         if name_of(parent) == "use":
-            # It then shows nothing, and is reported.
+            # Without a reference it draws nothing, and is reported as omitted.
             parent.attrib = {key: parent.attrib[key] for key in parent.attrib if key not in HREF}
     for name in ("viewBox", "width", "height", "x", "y", "preserveAspectRatio"):
         root.attrib.pop(name, None)
 
 
 def _steps_of(shapes: Sequence[Shape]) -> Steps:
-    """Return how many chords OpenSCAD gives the arcs and curves of shapes."""
+    """Return a function from curves to the numbers of chords that OpenSCAD gives them."""
     elements = optional("svgelements", "svgelements")
     round_ones = (elements.Circle, elements.Ellipse)
     is_round = np.array([isinstance(shape.element, round_ones) for shape in shapes], dtype=bool)
@@ -121,7 +123,7 @@ def _steps_of(shapes: Sequence[Shape]) -> Steps:
 
 
 def _meets(corners: FloatArray) -> bool:
-    """Say whether a subpath without a closing command ends where it begins."""
+    """Return True if a subpath without a closing command ends at its first point."""
     return len(corners) > 2 and bool(np.hypot(*(corners[0] - corners[-1])) <= _CLOSED)
 
 
@@ -151,7 +153,7 @@ def _page(path: Path, dpi: float) -> _Page:
 
 
 def _length(text: str, dpi: float) -> float | None:
-    """Return a length in millimetres; None if it is missing or relative."""
+    """Return an SVG length in millimetres; None if it is missing or a percentage."""
     match = _LENGTH.fullmatch(text)
     if match is None or match.group(2) == "%":
         return None

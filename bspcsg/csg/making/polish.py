@@ -1,4 +1,4 @@
-"""Undoes rounding to six digits: makes rotations exact, and lets faces meet again."""
+"""Correction of rounding to six digits: rotations become exact, and faces coincide again."""
 
 import math
 from collections.abc import Sequence
@@ -13,15 +13,15 @@ from ...geometry.polygon import signed_area
 from ...mesh.mesh import Mesh, surfaces_of
 from ...solid.solid import Solid
 
-#: Entries of a matrix may be this far from a rotation's to be taken for one.
+#: A matrix becomes a rotation if each of its entries differs by at most this.
 NEARLY = 1e-5
 
-#: The number of digits that OpenSCAD writes.
+#: The number of significant digits that OpenSCAD writes.
 DIGITS = 6
 
 
 def polished_matrix(matrix: FloatArray) -> FloatArray:
-    """Return the matrix with its linear part replaced by the nearest rotation, if it is near.
+    """Return a matrix with its linear part replaced by the nearest rotation, if within 1e-5.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def polished_matrix(matrix: FloatArray) -> FloatArray:
     Notes
     -----
     The nearest orthogonal matrix is U V' of the singular value decomposition U S V' (Schönemann
-    1966). Mirror images stay mirror images. Entries that are 0 or ±1 up to rounding become exact.
+    1966); it may be a reflection. Entries that are 0 or ±1 up to rounding become exact.
     """
     u, _, v = np.linalg.svd(matrix[:3, :3])
     rotation = u @ v
@@ -44,15 +44,15 @@ def polished_matrix(matrix: FloatArray) -> FloatArray:
 
 
 class Polish(NamedTuple):
-    """The changes of polishing, besides matrices that became rotations.
+    """The changes that polishing made to the corners of a model.
 
     Parameters
     ----------
     pitch : int or None
-        Exponent of the step of the lattice that corners were moved to; None if none had to move.
+        The pitch of the lattice to which corners were snapped; None if no corner was.
     moved : float
-        The largest distance that a corner moved, in model units: each moves once, by half a step
-        along each axis at most, √3/2 · 10**pitch in all.
+        The largest distance that a corner moved, in model units: each corner moves once, by at most
+        half a step along each axis, so by at most √3/2 · 10**pitch.
     """
 
     pitch: int | None = None
@@ -60,18 +60,19 @@ class Polish(NamedTuple):
 
 
 def polished_pitch(kinds: Sequence[Sequence[FloatArray]], finest: int) -> int | None:
-    """Return the finest lattice on which most of different parts coincides; None if none helps.
+    """Return the pitch of the finest lattice on which most features of different parts coincide.
 
-    Things that would coincide within one part are distinct on purpose, and count against a lattice.
-    The coarsest lattice has a step of one unit of the sixth digit of the largest coordinate: things
+    None means that no lattice increases their number. Features are corners or coordinates of faces.
+    Features of one part that would coincide are distinct on purpose, and count against a lattice.
+    The coarsest lattice step is one unit of the sixth digit of the largest coordinate: features
     that differ only by rounding differ by less.
 
     Parameters
     ----------
     kinds : sequence of sequence of (n, d) float64
-        For each kind of thing that may coincide, such as corners, the things of each part.
+        For each kind of feature, such as corners, the features of each part.
     finest : int
-        Exponent of the step of the lattice that they lie on.
+        The pitch of the parts' present lattice.
     """
     parts = [rows for kind in kinds for rows in kind]
     largest = max((float(np.abs(rows).max(initial=0)) for rows in parts), default=0.0)
@@ -85,14 +86,21 @@ def polished_pitch(kinds: Sequence[Sequence[FloatArray]], finest: int) -> int | 
 
 
 def _gain(parts: Sequence[FloatArray], pitch: int) -> int:
-    """Return how much parts share on a lattice, less how much each loses, up to a constant."""
+    """Return a score of a lattice: the number of features that parts share, less those they lose.
+
+    Features are the rows of the arrays; only differences of scores are meaningful.
+    """
     rounded = [np.unique(np.round(rows, -pitch), axis=0) for rows in parts]
-    # Counted twice: once for what parts share, and once for what they do not lose.
+    # The sum counts twice: once for features that parts share, once for features not lost.
     return 2 * sum(map(len, rounded)) - len(np.unique(np.concatenate(rounded), axis=0))
 
 
 def corners_and_levels(bodies: Sequence[Solid | Region]) -> list[list[FloatArray]]:
-    """Return what may coincide: corners, and the coordinates of faces perpendicular to an axis."""
+    """Return the features of parts that may coincide, as a list of arrays for each kind.
+
+    The kinds are corners, the coordinates of faces perpendicular to x, y and z, and corners of
+    regions.
+    """
     meshes = [body.to_mesh() for body in bodies if isinstance(body, Solid)]
     figures = [body.to_polygons() for body in bodies if isinstance(body, Region)]
     corners = [mesh.vertices for mesh in meshes]
@@ -102,21 +110,21 @@ def corners_and_levels(bodies: Sequence[Solid | Region]) -> list[list[FloatArray
 
 
 def _levels(mesh: Mesh, axis: int) -> FloatArray:
-    """Return the (n, 1) coordinates along an axis of the faces perpendicular to it."""
+    """Return the coordinates of the faces perpendicular to an axis, (n, 1)."""
     along = mesh.vertices[mesh.faces][:, :, axis]
     levels: FloatArray = along[np.ptp(along, axis=1) == 0][:, :1]
     return levels
 
 
 def pitch_of(body: Solid | Region) -> int:
-    """Return the exponent of the step of a body's lattice."""
+    """Return the pitch of the lattice of a solid or region."""
     return body.pitch if isinstance(body, Region) else body.tree.pitch
 
 
 def snapped(body: Solid | Region, pitch: int) -> tuple[Solid | Region, float]:
-    """Return a body with its corners on a lattice, and the largest distance that one moved.
+    """Return a solid or region with its corners snapped to a lattice, and their largest motion.
 
-    A body stays as it is if a piece or a hole of it would lose more than half its size.
+    It is unchanged if one of its pieces or holes would lose more than half its volume or area.
     """
     if isinstance(body, Region):
         loops = body.to_polygons()
@@ -134,13 +142,16 @@ def snapped(body: Solid | Region, pitch: int) -> tuple[Solid | Region, float]:
 
 
 def _survive(before: ArrayLike, after: ArrayLike) -> bool:
-    """Say whether all signed sizes keep at least half of their value."""
+    """Return True if each signed area or volume has at least half of its previous value."""
     whole = np.asarray(before)
     return bool((np.asarray(after) * np.sign(whole) >= np.abs(whole) / 2).all())
 
 
 def _volumes(triangles: FloatArray, surfaces: IndexArray) -> FloatArray:
-    """Return the signed volume within each surface, from its first corner for few digits' sake."""
+    """Return the signed volume inside each connected surface, (n,).
+
+    Coordinates are taken relative to the surface's first corner, against cancellation.
+    """
     names, first, owner = np.unique(surfaces, return_index=True, return_inverse=True)
     a, b, c = np.moveaxis(triangles - triangles[first, :1][owner], 1, 0)
     volumes = np.zeros(len(names))

@@ -1,9 +1,9 @@
-"""The number of sides of round things: OpenSCAD's rules, so that results have the same corners.
+"""The number of sides of round shapes by OpenSCAD's rules, so that results have the same corners.
 
-``$fn`` above 0 is the number of sides; otherwise ``$fe`` above 0 is how far sides may be from the
-circle; otherwise ``$fa``, the smallest angle of a side in degrees, and ``$fs``, its smallest
-length, say what is enough. Source: OpenSCAD's user manual, "Special variables"; the slices of
-twisted extrusions follow OpenSCAD 2021.01, ``$fe`` its development snapshots.
+``$fn`` above 0 is the number of sides; otherwise ``$fe`` above 0 is the largest distance of a side
+from the circle; otherwise ``$fa``, the smallest angle of a side in degrees, and ``$fs``, its
+smallest length, limit the number. Source: OpenSCAD's user manual, "Special variables"; the slices
+of twisted extrusions follow OpenSCAD 2021.01, ``$fe`` its development snapshots.
 """
 
 import math
@@ -11,21 +11,22 @@ from dataclasses import dataclass
 
 from ..syntax.arguments import MAX_NUMBER, Arguments
 
-#: The smallest angle of a side in degrees, and its smallest length.
+#: The lower bound of ``$fa``, in degrees, and of ``$fs``, in model units.
 _MIN_SIDE = 0.01
 
-#: Lengths below this count as zero: a 2**20th of a unit.
+#: Lengths below this, in model units, count as zero.
 _NOTHING = 2.0**-20
 
 
 @dataclass(frozen=True)
 class Fineness:
-    """The special variables.
+    """OpenSCAD's special variables ``$fn``, ``$fa``, ``$fs`` and ``$fe`` for one node.
 
     Parameters
     ----------
     fn, fa, fs, fe : float
-        Number of sides or 0; degrees; model units; the same, or 0.
+        The number of sides, or 0; the smallest angle of a side in degrees; its smallest length in
+        model units; its largest distance from the circle in model units, or 0.
     """
 
     fn: float = 0.0
@@ -35,10 +36,10 @@ class Fineness:
 
     @classmethod
     def of(cls, arguments: Arguments) -> "Fineness":
-        """Return the special variables of a node."""
+        """Return the special variables in the arguments of a node."""
         fn = arguments.value("$fn")
         if isinstance(fn, float) and not math.isfinite(fn):
-            # OpenSCAD makes triangles of it.
+            # For these values, OpenSCAD makes triangles.
             return cls(3.0)
         return cls(
             arguments.number("$fn", 0.0),
@@ -48,7 +49,7 @@ class Fineness:
         )
 
     def fragments(self, radius: float) -> float:
-        """Return the sides of a full circle, a whole number."""
+        """Return the number of sides of a full circle of the given radius, a whole number."""
         if radius < _NOTHING:
             return 3
         if self.fn > 0:
@@ -59,14 +60,14 @@ class Fineness:
         return math.ceil(max(min(360 / self.fa, radius * 2 * math.pi / self.fs), 5))
 
     def twist_slices(self, reach: float, height: float, twist: float, scale: float) -> float:
-        """Return the slices of a twisted extrusion.
+        """Return the number of slices of a twisted extrusion.
 
         Parameters
         ----------
         reach : float
             The largest distance from the axis.
         height, twist, scale : float
-            Twist in degrees; scale of the upper end, the same in x and y.
+            Height, twist in degrees, and scale factor of the upper end, equal along x and y.
         """
         turn = abs(twist)
         least = max(math.ceil(turn / 120), 1)
@@ -80,16 +81,16 @@ class Fineness:
         return max(min(math.ceil(turn / self.fa), math.ceil(length / self.fs)), least)
 
     def _step_within(self, radius: float) -> float:
-        """Return the angle in radians whose chord is `fe` away from a circle at most."""
+        """Return the angle in radians of a chord whose distance from the circle is `fe`."""
         return 2 * math.acos(max(1 - self.fe / radius, 0.0))
 
     def taper_slices(self, shift: float, height: float) -> float:
-        """Return the slices of an extrusion that scales x and y differently.
+        """Return the number of slices of an extrusion that scales x and y differently.
 
         Parameters
         ----------
         shift : float
-            The farthest that a corner moves.
+            The largest distance between a corner's x, y at the lower and at the upper end.
         height : float
         """
         if shift < _NOTHING:
@@ -100,7 +101,7 @@ class Fineness:
 
 
 def _step(arguments: Arguments, name: str, default: float) -> float:
-    """Return the smallest angle or length of a side; NaN counts as very small."""
+    """Return ``$fa`` or ``$fs``, at least 0.01; NaN counts as 0.01."""
     value = arguments.value(name)
     if isinstance(value, float) and not math.isfinite(value):
         return MAX_NUMBER if value == math.inf else _MIN_SIDE
@@ -108,7 +109,10 @@ def _step(arguments: Arguments, name: str, default: float) -> float:
 
 
 def _helix_length(reach: float, height: float, turn: float, scale: float) -> float:
-    """Return the length of a corner's path: a helix, on a cone if it is scaled."""
+    """Return the length of a corner's path in an extrusion: a helix, conical if scaled.
+
+    `turn` is in radians.
+    """
     if scale == 1:
         return math.hypot(turn * reach, height)
     end = turn * scale / (scale - 1) if scale > 1 else turn / (1 - scale)
@@ -118,5 +122,5 @@ def _helix_length(reach: float, height: float, turn: float, scale: float) -> flo
 
 
 def _archimedes(growth: float, angle: float) -> float:
-    """Return the length of the spiral r = growth * angle from 0 on."""
+    """Return the length of the spiral r = growth * angle from angle 0 to the given angle."""
     return 0.5 * growth * (angle * math.hypot(1, angle) + math.asinh(angle))

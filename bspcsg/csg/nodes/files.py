@@ -1,4 +1,4 @@
-"""Shapes from files: import and surface."""
+"""Evaluation of the nodes that read files: import and surface."""
 
 import os
 from pathlib import Path
@@ -24,10 +24,10 @@ from ..syntax.tree import Node, Value
 from .registry import Evaluation, Geometry, node
 from .signature import Signature
 
-#: The default, and the smallest accepted number, of pixels per inch of a drawing.
+#: The default and the smallest accepted number of pixels per inch of a drawing.
 _DEFAULT_DPI, _MIN_DPI = 72.0, 0.001
 
-#: Arguments that only some kinds of files use, with the values that OpenSCAD always dumps.
+#: Arguments that only some types of files use, with the default values that OpenSCAD writes.
 _ASKING_NOTHING: dict[str, Value] = {
     "id": "", "layer": "", "origin": (0.0, 0.0), "scale": 1.0, "dpi": _DEFAULT_DPI,
 }  # fmt: skip
@@ -71,7 +71,7 @@ def import_file(owner: Node, children: list[Geometry], run: Evaluation) -> Geome
 def _tell_of_unused(
     owner: Node, arguments: Arguments, run: Evaluation, used: tuple[str, ...]
 ) -> None:
-    """Warn of arguments that this kind of file does not use, unless they have default values."""
+    """Warn of arguments that a file of this type ignores, unless they have default values."""
     for name, nothing in _ASKING_NOTHING.items():
         if name not in used and arguments.value(name) not in (None, nothing):
             run.warn(
@@ -81,7 +81,7 @@ def _tell_of_unused(
 
 def drawing_of(owner: Node, arguments: Arguments, run: Evaluation) -> Region:
     """Return the DXF drawing that an extrusion names, as in scripts from before 2013."""
-    # The `scale` of an extrusion is that of its upper end.
+    # The argument `scale` of an extrusion scales its upper end, not the drawing.
     return _dxf(_path(arguments, run), owner, arguments, run, 1.0)
 
 
@@ -107,7 +107,7 @@ def _dxf(path: Path, owner: Node, arguments: Arguments, run: Evaluation, scale: 
 
 
 def _with_warning(owner: Node, run: Evaluation, name: str, lost: LeftOut, region: Region) -> Region:
-    """Return the region of a drawing, and warn of what was left out."""
+    """Return the region of a drawing unchanged, and warn of its omitted entities."""
     words = lost.words(region)
     if words:
         run.warn(owner, f"{name}: {words}")
@@ -116,14 +116,14 @@ def _with_warning(owner: Node, run: Evaluation, name: str, lost: LeftOut, region
 
 @node("surface", takes=Signature(("file", "center", "convexity", "invert"), ("timestamp",)))
 def surface(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Make the body below a table of heights: a text file of numbers, or a picture's brightness."""
+    """Make the solid below a table of heights, from a text file or the brightness of a picture."""
     del children
     arguments = run.arguments(owner)
     path = _path(arguments, run)
     is_picture = path.suffix.lower() == ".png"
     heights = read_picture(path) if is_picture else read_heights(path)
     if is_picture and arguments.flag("invert"):
-        # One less the brightness that OpenSCAD counts from 0 to 255.
+        # OpenSCAD subtracts the brightness, which it counts from 0 to 255, from 1.
         heights = heights_of(BRIGHTEST / 255 - heights.table)
     arguments.limited(heights.table.size * 2, "this surface")
     return height_map(heights, centered=arguments.flag("center"))
@@ -132,7 +132,7 @@ def surface(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 def _path(arguments: Arguments, run: Evaluation) -> Path:
     name = arguments.text("file")
     path = run.folder / name
-    # Refuse forbidden files first, so that nobody learns whether they exist.
+    # Refuse forbidden files first, so that the error does not reveal whether they exist.
     if name and "\0" not in name and not _is_allowed(path, run):
         message = (
             f"the file “{name}” lies outside the script's folder and is not read; allow its"
@@ -149,7 +149,7 @@ def _path(arguments: Arguments, run: Evaluation) -> Path:
 
 
 def _is_allowed(path: Path, run: Evaluation) -> bool:
-    """Say whether a file is in an allowed folder once links are resolved."""
+    """Return True if a file is in an allowed folder after links are resolved."""
     try:
         target = path.resolve()
         return any(target.is_relative_to(one) for one in (run.folder.resolve(), *run.allowed))

@@ -1,4 +1,4 @@
-"""Convex hulls and sums of shapes: hull, minkowski."""
+"""Evaluation of the nodes hull and minkowski."""
 
 from functools import reduce
 from typing import TypeVar
@@ -18,7 +18,7 @@ _Shape = TypeVar("_Shape", Solid, Region)
 def hull(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Return the convex hull of all children together.
 
-    Meshes among them need not be closed: the corners count, as in OpenSCAD.
+    Child meshes need not be closed: only their corners matter, as in OpenSCAD.
     """
     solids, regions = run.same_kind(owner, children)
     if solids:
@@ -29,10 +29,7 @@ def hull(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 
 @node("minkowski")
 def minkowski(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Return the Minkowski sum of the children: the first one swept along the others.
-
-    Empty solids do not count, as in OpenSCAD.
-    """
+    """Return the Minkowski sum of all children; empty solids are ignored, as in OpenSCAD."""
     arguments = run.arguments(owner)
     solids, regions = run.same_kind(owner, children)
     if solids:
@@ -45,10 +42,10 @@ def minkowski(owner: Node, children: list[Geometry], run: Evaluation) -> Geometr
 
 
 def _summands(children: list[Geometry], regions: list[Region]) -> list[Region]:
-    """Return the plane figures that are summed; a lone empty one if the sum is empty.
+    """Return the regions whose Minkowski sum is computed; one empty region if the sum is empty.
 
-    OpenSCAD leaves out empty operands. In the plane the sum is empty if the first operand is, or if
-    fewer than two are left.
+    Like OpenSCAD, ignore empty operands; but the sum is empty if the first operand is empty, or if
+    fewer than two operands are not.
     """
     figures = [region for region in regions if not region.is_empty]
     first = children[0]

@@ -1,4 +1,4 @@
-"""The stand-in for a node that is left out, and the errors that leave one out."""
+"""Which errors omit a node of a script, and the empty set that replaces it."""
 
 from pathlib import PurePath
 
@@ -9,7 +9,7 @@ from ..syntax.arguments import Arguments
 from ..syntax.tree import Node
 from .registry import Geometry
 
-#: Nodes that make solids, and nodes that make plane figures.
+#: The names of nodes that make solids, and of nodes that make plane figures.
 _SOLIDS = frozenset(
     {
         "cube", "sphere", "cylinder", "polyhedron", "surface", "linear_extrude", "rotate_extrude",
@@ -19,15 +19,15 @@ _SOLIDS = frozenset(
 _FIGURES = frozenset({"square", "circle", "polygon", "text", "offset", "projection", "fill"})
 _DRAWINGS = (".dxf", ".svg")
 
-#: Codes of errors after which OpenSCAD continues without the node.
+#: The codes of errors after which OpenSCAD continues without the node.
 _OPENSCADS = frozenset({"missing_file", "missing_argument", "not_finite"})
 
 
 def is_left_out(error: BspcsgError, *, lenient: bool) -> bool:
-    """Say whether a node that fails with this error is left out with a warning.
+    """Return True if a node that fails with this error is omitted with a warning.
 
-    A lenient evaluation leaves out every node that is itself at fault, but never hides defects of
-    this package or missing parts of the installation.
+    OpenSCAD omits nodes for errors such as a missing file. A lenient evaluation omits every node
+    that is itself at fault, but never hides defects of this package or missing dependencies.
     """
     if error.code in _OPENSCADS:
         return True
@@ -36,7 +36,7 @@ def is_left_out(error: BspcsgError, *, lenient: bool) -> bool:
 
 
 def nothing_of(node: Node) -> Geometry:
-    """Return the empty set of the dimension that a node makes; None if that is not known."""
+    """Return the empty solid or region that replaces a node; None if its dimension is unknown."""
     if node.name in _SOLIDS:
         return Solid.empty()
     if node.name in _FIGURES:

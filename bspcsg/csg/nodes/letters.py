@@ -1,4 +1,4 @@
-"""Text as plane figures: text."""
+"""Evaluation of the node text."""
 
 from typing import Any, get_args
 
@@ -27,10 +27,11 @@ from ..syntax.tree import Node
 from .registry import Evaluation, Geometry, node
 from .signature import Signature
 
-#: OpenSCAD 2021.01 takes a pixel of FreeType for this part of the size where it draws glyphs…
+#: The width of a FreeType pixel relative to the text's size, where OpenSCAD 2021.01 draws glyphs.
 _PIXEL = 64 / 100_000
 
-#: … and for a 1600th of it where it measures lines and moves from letter to letter.
+#: The ratio of the unit in which OpenSCAD 2021.01 measures lines and advances from letter to letter
+#: to the unit in which it draws glyphs.
 _TIGHTNESS = 1000 / 1024
 
 
@@ -41,7 +42,7 @@ _TEXT = Signature(
 
 @node("text", takes=_TEXT)
 def text(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Write a line of text; missing fonts are replaced by the package's own."""
+    """Return a line of text as a region; a missing font is replaced by the package's font."""
     del children
     arguments = run.arguments(owner)
     string, size = arguments.text("text", ""), arguments.number("size", 10.0)
@@ -67,7 +68,10 @@ def text(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 
 
 def _ink(file: FontFile) -> float:
-    """Return FreeType's scale factor for a font whose em must be a whole number of pixels."""
+    """Return the factor by which FreeType scales glyphs to make the em a whole number of pixels.
+
+    It is 1 for a font that does not ask for that.
+    """
     pixels = EM / _PIXEL
     return round(pixels) / pixels if wants_whole_pixels(file) else 1.0
 
@@ -84,9 +88,9 @@ def _font(owner: Node, arguments: Arguments, run: Evaluation) -> FontFile:
 def _choice(
     owner: Node, arguments: Arguments, run: Evaluation, name: str, default: str, known: Any
 ) -> Any:
-    """Return an argument that must be one of some words; any other value counts as the default."""
+    """Return an argument that is one of the `known` texts; else warn and return `default`."""
     word = arguments.text(name, default)
-    if word == "default":  # which dumps of OpenSCAD have since 2024
+    if word == "default":  # written by OpenSCAD since 2024
         return default
     if word in get_args(known):
         return word

@@ -1,4 +1,4 @@
-"""Affine maps: multmatrix and resize."""
+"""Evaluation of the transform nodes multmatrix and resize."""
 
 import math
 from collections.abc import Sequence
@@ -17,13 +17,13 @@ from .registry import Evaluation, Geometry, node
 from .sets import union_of
 from .signature import Signature
 
-#: A matrix with an entry above this may move a body beyond all lattices.
+#: A matrix with an entry above this may move a solid outside the range of all lattices.
 _MAX_SAFE_ENTRY = 1e15
 
 
 @node("multmatrix", takes=Signature(("m",)), makes_corners=False)
 def multmatrix(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Transform the children by a matrix; leave out those that it flattens."""
+    """Transform the children by a matrix; with a singular or infinite one, omit them and warn."""
     body = union_of(owner, children, run)
     arguments = run.arguments(owner)
     matrix = _matrix(arguments)
@@ -53,14 +53,14 @@ def _moved(owner: Node, body: Geometry, matrix: FloatArray, run: Evaluation) -> 
 
 
 def _flat_map(matrix: FloatArray) -> FloatArray:
-    """Return the action of the matrix on the plane z = 0, as a map of space."""
+    """Return a (4, 4) matrix that acts on x and y as the given one and leaves z unchanged."""
     flat = np.eye(4)
     flat[:2, :2] = matrix[:2, :2]
     return flat
 
 
 def _matrix(arguments: Arguments) -> FloatArray | None:
-    """Return the (4, 4) matrix with 1 in its last place, None if it is not finite."""
+    """Return the (4, 4) matrix of a node, divided by its last entry; None if it is not finite."""
     value = arguments.value("m")
     rows = value if isinstance(value, tuple) else ()
     if not 3 <= len(rows) <= 4 or not all(map(_is_row, rows)):
@@ -84,9 +84,10 @@ def _is_row(row: object) -> bool:
 
 @node("resize", takes=Signature(("newsize", "auto", "convexity")), makes_corners=False)
 def resize(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Scale the children to new sizes along the axes; 0 keeps one, unless `auto` scales it too.
+    """Scale the children to new lengths along the axes.
 
-    In the plane only the sizes along x and y count. Sizes that are left out are 0.
+    A length of 0 keeps the present one, or with `auto` scales that axis like the axis of the
+    largest new length. Missing lengths are 0; in the plane only x and y matter.
     """
     arguments = run.arguments(owner)
     body = union_of(owner, children, run)

@@ -1,4 +1,4 @@
-"""Figures of the plane: square, circle, polygon, offset."""
+"""Evaluation of the nodes of plane figures: square, circle, polygon, offset, fill."""
 
 import numpy as np
 
@@ -13,17 +13,17 @@ from .registry import Evaluation, Geometry, node
 from .sets import union_of
 from .signature import Signature
 
-#: Nodes that do not clean the outlines of an only child.
+#: The names of nodes in which OpenSCAD does not clean the outlines of an only child.
 _PASSING = frozenset({"group", "union", "color", "render", "multmatrix", "resize", "difference",
                       "intersection"})  # fmt: skip
 
-#: Figures whose outlines are exactly those of the script.
+#: The names of nodes whose outlines are exactly as given in the script.
 _PRIMITIVE = frozenset({"square", "circle", "polygon"})
 
 
 @node("square", takes=Signature(("size", "center")))
 def square(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Make a rectangle; a side of length 0 or less leaves it empty."""
+    """Make a rectangle; it is empty if a side has length 0 or less."""
     del children
     arguments = run.arguments(owner)
     width, height = arguments.vector("size", 2, (1.0, 1.0))
@@ -46,7 +46,7 @@ def circle(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 
 @node("polygon", takes=Signature(("points", "paths", "convexity")))
 def polygon(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Fill one path through all points, or `paths`, by the even-odd rule."""
+    """Make the region inside `paths`, by default one path through all points, even-odd."""
     del children
     arguments = run.arguments(owner)
     points = np.array(arguments.points("points", 2)).reshape(-1, 2)
@@ -65,7 +65,10 @@ _OFFSET = Signature(("r",), ("delta", "chamfer"), (("delta", ("r",)), ("chamfer"
 
 @node("offset", takes=_OFFSET)
 def offset(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Grow or shrink the children, with round (`r`), mitred or chamfered (`delta`) corners."""
+    """Move the outlines of the children outwards, or inwards for a negative distance.
+
+    Corners are round with `r`, and mitred or chamfered with `delta`.
+    """
     arguments = run.arguments(owner)
     figure = union_of(owner, run.figures(owner, children), run)
     if not isinstance(figure, Region):
@@ -84,7 +87,7 @@ def offset(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 
 @node("fill")
 def fill(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Fill the holes of the children, with everything inside the holes."""
+    """Return the children's union without holes."""
     figure = union_of(owner, run.figures(owner, children), run)
     if not isinstance(figure, Region):
         return None
@@ -93,7 +96,10 @@ def fill(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 
 
 def _is_combined(owner: Node) -> bool:
-    """Say whether a node's figure is computed from others, so that OpenSCAD has cleaned it."""
+    """Return True if OpenSCAD cleans a node's outlines, since they are computed from others.
+
+    False means that they come from a single square, circle or polygon.
+    """
     while True:
         children = [child for child in owner.children if not child.is_ignored]
         if len(children) != 1:

@@ -1,4 +1,4 @@
-"""Plane figures of solids: projection."""
+"""Evaluation of the node projection."""
 
 from ...bsp import Region
 from ...solid.solid import Solid
@@ -10,7 +10,7 @@ from .signature import Signature
 
 @node("projection", takes=Signature(("cut",)))
 def projection(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Return the children's shadow on the plane z = 0, or their section by it (`cut`)."""
+    """Return the projection of the children onto z = 0; with `cut`, their section at z = 0."""
     arguments = run.arguments(owner)
     body = union_of(owner, run.solids(owner, children), run)
     if not isinstance(body, Solid):
@@ -21,5 +21,5 @@ def projection(owner: Node, children: list[Geometry], run: Evaluation) -> Geomet
 
 
 def _section(body: Solid) -> Region:
-    """Return the section of the closed body, with faces that touch the plane from either side."""
+    """Return the section of a solid at z = 0, including faces that lie in the plane."""
     return body.slice(0) | body.mirror((0, 0, 1)).slice(0)

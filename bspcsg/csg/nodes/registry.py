@@ -1,4 +1,4 @@
-"""The table of functions by the nodes that they make."""
+"""The table of the functions that evaluate script nodes, by the names of the nodes."""
 
 import warnings
 from collections.abc import Callable, Sequence
@@ -18,19 +18,19 @@ from ..syntax.arguments import Arguments
 from ..syntax.tree import Node
 from .signature import Signature
 
-#: The geometry of a node; None is nothing at all, which has no dimension.
+#: The geometry of a node; None if it has none, and so no dimension.
 Geometry: TypeAlias = Solid | Region | None
 
 
 OnInvalid: TypeAlias = Literal["error", "warn", "repair"]
 
 
-#: Codes of meshes without an inside.
+#: The error codes of meshes that do not bound a solid.
 _BOUND_NOTHING = frozenset({"not_closed", "empty_mesh"})
 
 
 class CsgWarning(UserWarning):
-    """Something in a script was left out, as OpenSCAD does."""
+    """A warning that a part of a script was omitted, as OpenSCAD would."""
 
 
 @dataclass
@@ -40,29 +40,29 @@ class Evaluation:
     Parameters
     ----------
     script : str
-        Its name, for errors.
+        The name of the script in errors.
     folder : Path
-        The folder in which imported files are looked for.
+        The folder to which names of imported files are relative.
     allowed : tuple of Path
         Other folders from which files may be imported, with links resolved.
     polish : bool
-        True to turn matrices that are nearly rotations into exact ones.
+        True to replace matrices that are nearly rotations by exact rotations.
     on_invalid : {"error", "warn", "repair"}
-        The treatment of polyhedra and imported meshes that are not closed: error, left out, or
-        closed.
+        The treatment of polyhedra and imported meshes that are not closed: raise an error, omit
+        them, or close them.
     lenient : bool
-        True if nodes that cannot be made are left out.
+        True if nodes that cannot be evaluated are omitted.
     explained : callable
-        Takes a message that begins with a place, and adds what is known about the place.
+        Takes a message that begins with script, line and column, and adds an explanation of them.
     united : dict
         Unions of plane figures by their `id`, each with the figures that it is made of.
     in_hull : bool
-        True while a child of a hull is made, of which only the corners count.
+        True while a child of a hull is evaluated, of which only the corners matter.
     loose : dict
-        Empty solids that stand for meshes in hulls that bound nothing, by `id`, each with the
-        corners of its mesh.
+        The empty solids that represent open meshes in hulls, by `id`, each with the corners of its
+        mesh.
     told : set of str
-        The warnings that were issued already.
+        The warnings that were already issued.
     """
 
     script: str = "<csg>"
@@ -78,55 +78,55 @@ class Evaluation:
     told: set[str] = field(default_factory=set)
 
     def arguments(self, node: Node) -> Arguments:
-        """Return the arguments of a node."""
+        """Return the arguments of a node, with names for positional arguments."""
         return Arguments(node, self.script, RECIPES[node.name].takes.order)
 
     def tell_of_arguments(self, node: Node) -> None:
-        """Warn of the arguments of a node that are ignored."""
+        """Warn of each argument of a node that is ignored."""
         if node.name in RECIPES:
             for complaint in RECIPES[node.name].takes.complaints(node):
                 self.warn(node, complaint)
 
     def figures(self, owner: Node, children: list[Geometry]) -> list[Geometry]:
-        """Return the children of a node that takes plane figures; warn of solids among them."""
+        """Return the children that are not solids; warn if a solid is ignored."""
         figures: list[Geometry] = [child for child in children if not isinstance(child, Solid)]
         if len(figures) < len(children):
             self.warn(owner, "its 3D children are ignored, because it takes 2D children only")
         return figures
 
     def solids(self, owner: Node, children: list[Geometry]) -> list[Geometry]:
-        """Return the children of a node that takes solids; warn of plane figures among them."""
+        """Return the children that are not plane figures; warn if a plane figure is ignored."""
         solids: list[Geometry] = [child for child in children if not isinstance(child, Region)]
         if len(solids) < len(children):
             self.warn(owner, "its 2D children are ignored, because it takes 3D children only")
         return solids
 
     def parts_of(self, figure: Region) -> list[Region]:
-        """Return the figures that a union was made of; any other figure alone."""
+        """Return the figures whose union is the given one; the figure itself if it is no union."""
         return self.united[id(figure)][1] if id(figure) in self.united else [figure]
 
     def corners_or(self, solid: Solid) -> Solid | FloatArray:
-        """Return the corners of a mesh in a hull that bounds nothing; any other solid itself."""
+        """Return the corners of the open mesh that an empty solid represents, else the solid."""
         return self.loose[id(solid)][1] if id(solid) in self.loose else solid
 
     def warn(self, node: Node, message: str) -> None:
-        """Warn that something at a node was left out."""
+        """Issue a warning with the script, line, column and name of a node."""
         place = node.place
         self.tell(f"{self.script}:{place.line}:{place.column}: {node.name}(): {message}")
 
     def tell(self, message: str) -> None:
-        """Issue a warning that names its place, each message once."""
-        # A polished model is evaluated twice.
+        """Issue a warning, unless the same message was issued before."""
+        # A polished model may be evaluated twice.
         if message in self.told:
             return
         self.told.add(message)
         warnings.warn(harmless(self.explained(message)), CsgWarning, stacklevel=2)
 
     def closed_solid(self, node: Node, vertices: Any, faces: Any) -> Solid | None:
-        """Return the solid of a mesh that the user gave, oriented either way.
+        """Return the solid of a mesh from the script, whatever its orientation.
 
-        A mesh that is not closed is an error, or is left out or repaired with a warning; in a hull
-        its corners are kept.
+        If the mesh is not closed, raise an error, or repair it or return None with a warning, as
+        `on_invalid` says. In a hull, return an empty solid that represents its corners.
         """
         try:
             solid = Solid(vertices, faces, winding="nonzero")
@@ -151,9 +151,10 @@ class Evaluation:
     def same_kind(
         self, node: Node, children: Sequence[Geometry]
     ) -> tuple[list[Solid], list[Region]]:
-        """Return the solids or regions among the children, whichever the first one is.
+        """Return the solids and the regions among the children; one of the lists is empty.
 
-        The others are ignored with a warning, as in OpenSCAD.
+        If there are both, only the dimension of the first child counts, as in OpenSCAD, and a
+        warning is issued.
         """
         there = [child for child in children if child is not None]
         solids = [child for child in there if isinstance(child, Solid)]
@@ -173,16 +174,16 @@ NodeMaker: TypeAlias = Callable[[Node, list[Geometry], Evaluation], Geometry]
 
 @dataclass(frozen=True)
 class Recipe:
-    """The evaluation of one kind of node.
+    """The function that evaluates the nodes of one name, and their arguments.
 
     Parameters
     ----------
     maker : callable
-        Takes the node, its children's geometries and the evaluation.
+        Takes the node, the geometries of its children and the evaluation; returns its geometry.
     takes : Signature
-        The arguments that it knows.
+        The arguments that such nodes have.
     makes_corners : bool
-        True if its result has corners that its children do not have.
+        True if the result has corners that the children do not have.
     """
 
     maker: NodeMaker
@@ -199,7 +200,7 @@ _NO_ARGUMENTS = Signature()
 def node(
     *names: str, takes: Signature = _NO_ARGUMENTS, makes_corners: bool = True
 ) -> Callable[[NodeMaker], NodeMaker]:
-    """Register a function as the maker of the nodes with these names."""
+    """Return a decorator that registers a function to evaluate the nodes of the given names."""
 
     def register(maker: NodeMaker) -> NodeMaker:
         for name in names:

@@ -1,4 +1,4 @@
-"""Operations on children: unions, differences, intersections, and nodes that only group."""
+"""Evaluation of the nodes union, difference and intersection, and of nodes that only group."""
 
 from functools import reduce
 from operator import and_
@@ -12,16 +12,19 @@ from .signature import Signature
 
 
 def union_of(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Return the union of the children of one kind; None if there is none."""
+    """Return the union of the children; None without any.
+
+    If there are solids and regions, only those of the first child's dimension are united.
+    """
     solids, regions = run.same_kind(owner, children)
     if solids:
         return setops.union(solids)
     if len(regions) <= 1:
         return regions[0] if regions else None
-    # Outlines wind once around the inside, so all of them wind at least once around the union.
+    # Each region has winding number 1 inside, so all outlines have at least 1 in the union.
     loops = [loop for region in regions for loop in region.to_polygons()]
     union = Region(loops, pitch=min(region.pitch for region in regions))
-    # Kept with its parts, so that no other figure gets its `id`.
+    # Store the union too, so that no other figure gets its `id`.
     run.united[id(union)] = union, [part for region in regions for part in run.parts_of(region)]
     return union
 
@@ -29,13 +32,13 @@ def union_of(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry
 @node("group", "union", "render", makes_corners=False)
 @node("color", takes=Signature(("c", "alpha")), makes_corners=False)
 def group(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Unite the children; ignore colours and hints for the preview."""
+    """Return the union of the children; colours and preview hints are ignored."""
     return union_of(owner, children, run)
 
 
 @node("difference", makes_corners=False)
 def difference(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Subtract all other children from the first; if the first is nothing, so is the result."""
+    """Return the first child minus all other children; None if the first has no geometry."""
     if not children or children[0] is None:
         return None
     solids, regions = run.same_kind(owner, children)
@@ -46,7 +49,10 @@ def difference(owner: Node, children: list[Geometry], run: Evaluation) -> Geomet
 
 @node("intersection", makes_corners=False)
 def intersection(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Intersect the children; one that is nothing, or of the other dimension, leaves nothing."""
+    """Return the intersection of the children.
+
+    It is None if a child has no geometry, and empty if there are both solids and regions.
+    """
     if not children or any(child is None for child in children):
         return None
     solids, regions = run.same_kind(owner, children)

@@ -1,4 +1,4 @@
-"""The arguments that a node knows, and complaints about others."""
+"""The arguments that a node has, and complaints about other arguments."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from ..syntax.tree import SPECIAL, Argument, Node, Value
 
-#: Special variables, which every node may have; some of them concern the preview only.
+#: Arguments that every node may have: the special variables, of which some concern only the
+#: preview, and `convexity`.
 _EVERYWHERE = frozenset(
     {*SPECIAL, "$t", "$preview", "$vpr", "$vpt", "$vpd", "$vpf", "convexity"}
 )  # fmt: skip
@@ -14,16 +15,16 @@ _EVERYWHERE = frozenset(
 
 @dataclass(frozen=True)
 class Signature:
-    """The arguments of one kind of node.
+    """The arguments that nodes of one name have.
 
     Parameters
     ----------
     order : tuple of str
-        The names that positional arguments take, one after another.
+        The names of positional arguments, in order.
     named : tuple of str
-        Arguments that are given by name only.
+        The names of arguments that are given only by name.
     beside : tuple of (str, tuple of str)
-        Arguments, each with others that override it if all of them are given.
+        Pairs of an argument and the arguments that override it if all of them are given.
     """
 
     order: tuple[str, ...] = ()
@@ -51,7 +52,7 @@ class Signature:
                 yield f"its {name} is ignored in favour of {' and '.join(others)}"
 
     def _names(self, arguments: tuple[Argument, ...]) -> list[str | None]:
-        """Return the names of arguments; None for positional ones beyond the end of `order`."""
+        """Return the names of arguments; None for positional arguments that exceed `order`."""
         left = iter(self.order)
         return [next(left, None) if one.name is None else one.name for one in arguments]
 
@@ -61,5 +62,5 @@ class Signature:
 
 
 def _asks(value: Value) -> bool:
-    """Say whether a value is set: undef and false are not."""
+    """Return True if the value of an argument is neither undef nor false."""
     return value is not None and value is not False

@@ -1,4 +1,4 @@
-"""Bodies of space: cube, sphere, cylinder, polyhedron."""
+"""Evaluation of the nodes cube, sphere, cylinder and polyhedron."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from .signature import Signature
 
 @node("cube", takes=Signature(("size", "center")))
 def cube(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Make a box; an edge of length 0 or less leaves it empty."""
+    """Make a box; it is empty if an edge has length 0 or less."""
     del children
     arguments = run.arguments(owner)
     size = arguments.vector("size", 3, (1.0, 1.0, 1.0))
@@ -26,7 +26,7 @@ def cube(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 
 @node("sphere", takes=Signature(("r",), ("d",), (("r", ("d",)),)))
 def sphere(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Make a sphere without vertices at the poles: rings lie midway in equal steps of latitude."""
+    """Make a sphere of rings at the midpoints of equal steps of latitude, without poles."""
     del children
     arguments = run.arguments(owner)
     r = arguments.number("d") / 2 if "d" in arguments else arguments.number("r", 1.0)
@@ -39,7 +39,7 @@ def sphere(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 
 
 def _sphere(r: float, around: int, rings: int) -> Solid:
-    # Midpoints of `rings` equal steps over the half turn from pole to pole.
+    # The midpoints of `rings` equal steps from pole to pole.
     half = unit_circle(4 * rings)[1 : 2 * rings : 2]
     circle = unit_circle(around)
     levels = [np.column_stack([circle * sine, np.full(around, cosine)]) for cosine, sine in half]
@@ -57,7 +57,7 @@ _CYLINDER = Signature(
     ("r", "d", "d1", "d2"),
     (
         *(("r", ("d",)), ("r1", ("d1",)), ("r2", ("d2",))),
-        # A value for both ends counts for an end that has none of its own.
+        # A radius of both ends applies to an end without its own radius.
         *((both, (f"{low}1", f"{high}2")) for both in "rd" for low in "rd" for high in "rd"),
     ),
 )
@@ -65,7 +65,7 @@ _CYLINDER = Signature(
 
 @node("cylinder", takes=_CYLINDER)
 def cylinder_node(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Make a cylinder or cone; it is empty without height or radius."""
+    """Make a cylinder or cone; it is empty if the height or both radii are 0 or less."""
     del children
     arguments = run.arguments(owner)
     h = arguments.number("h", 1.0)
@@ -90,7 +90,7 @@ _POLYHEDRON = Signature(
 
 @node("polyhedron", takes=_POLYHEDRON)
 def polyhedron(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Make the solid that polygons bound, all clockwise seen from outside or all reversed."""
+    """Make the solid that polygons bound; seen from outside, all are clockwise or all counter."""
     del children
     arguments = run.arguments(owner)
     points = np.array(arguments.points("points", 3)).reshape(-1, 3)
@@ -105,7 +105,7 @@ def polyhedron(owner: Node, children: list[Geometry], run: Evaluation) -> Geomet
     if not proper.any():
         return Solid.empty()
     if run.lenient and run.on_invalid == "warn" and not run.in_hull:
-        # Open edges on one line may cancel each other; OpenSCAD leaves out such meshes, too.
+        # Open edges on one line may cancel each other; OpenSCAD omits such meshes, too.
         count = _open_edges(triangles)
         if count:
             run.warn(
@@ -118,7 +118,7 @@ def polyhedron(owner: Node, children: list[Geometry], run: Evaluation) -> Geomet
 
 
 def _open_edges(triangles: IndexArray) -> int:
-    """Return how many edges have more triangles one way than the other."""
+    """Return the number of edges that triangles use more often in one direction than the other."""
     ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
     _, edge = np.unique(np.sort(ends, axis=1), axis=0, return_inverse=True)
     turns = np.bincount(edge.ravel(), np.sign(ends[:, 1] - ends[:, 0]))

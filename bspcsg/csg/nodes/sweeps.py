@@ -1,4 +1,4 @@
-"""Solids from plane figures: linear_extrude, rotate_extrude and roof."""
+"""Evaluation of the nodes linear_extrude, rotate_extrude and roof."""
 
 import math
 
@@ -18,7 +18,7 @@ from .registry import Evaluation, Geometry, node
 from .sets import union_of
 from .signature import Signature
 
-#: Arguments of scripts from before 2013 for the drawing that an extrusion names.
+#: Arguments of extrusions in scripts from before 2013, which name the file of a drawing.
 _DRAWING = ("file", "layer", "origin", "timestamp")
 
 _LINEAR = Signature(
@@ -32,7 +32,7 @@ _ROTATE = Signature(("angle", "start"), ("a", "scale", *_DRAWING), (("a", ("angl
 
 @node("linear_extrude", takes=_LINEAR)
 def linear_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Extrude the children along z or `v`, turned (`twist`) and scaled on the way up."""
+    """Extrude the children along z or the vector `v`, with `twist` and `scale`."""
     arguments = run.arguments(owner)
     figure = _figure(arguments, owner, children, run)
     way = _way(arguments)
@@ -44,10 +44,11 @@ def linear_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Ge
 
 
 def _way(arguments: Arguments) -> tuple[float, float, float]:
-    """Return the vector from the lower to the upper end: `v`, scaled to the height if one is given.
+    """Return the vector from the lower to the upper end of an extrusion.
 
-    A negative height makes nothing, as in OpenSCAD 2021.01; later versions dump it as a `v` that
-    points downwards.
+    It is `v`, scaled to the length `height` if both are given, else (0, 0, height). A negative
+    height counts as 0, as in OpenSCAD 2021.01; later versions write it as a `v` that points
+    downwards.
     """
     name = "height" if "height" in arguments else "h"
     if "v" not in arguments:
@@ -55,14 +56,17 @@ def _way(arguments: Arguments) -> tuple[float, float, float]:
     x, y, z = arguments.vector("v", 3)
     if name not in arguments:
         return x, y, z
-    # Zero has no direction, and stays so.
+    # A zero vector stays zero.
     length = math.hypot(x, y, z) or 1.0
     height = max(arguments.number(name), 0.0)
     return x / length * height, y / length * height, z / length * height
 
 
 def _leaning(upright: Solid, way: tuple[float, float, float]) -> Solid:
-    """Shear an upright solid along a vector of its height; mirror it if the vector points down."""
+    """Shear an upright extrusion so that its top is displaced by a vector.
+
+    The length of the vector along z is the height; if it points down, the solid is mirrored.
+    """
     x, y, z = way
     if z < 0:
         upright = upright.mirror((0, 0, 1))
@@ -94,7 +98,7 @@ def _extruded(arguments: Arguments, figure: Region, height: float) -> Solid:
 def _segmented(
     arguments: Arguments, outlines: list[FloatArray], stretch: Stretch
 ) -> list[FloatArray]:
-    """Return the outlines divided into the number of edges that `segments` asks for."""
+    """Return the outlines with edges divided, so that each outline has up to `segments` edges."""
     wanted = arguments.number("segments", 0.0)
     arguments.limited(wanted * len(outlines) * (stretch.slices + 1), "this extrusion")
     return [
@@ -117,7 +121,7 @@ def _slices(
     if "slices" in arguments:
         count = max(np.floor(arguments.number("slices")), 1)
     elif twist != 0:
-        # A twist with unequal scales counts as an unscaled one.
+        # With unequal scales, count the slices as without scale.
         equal = scale[0] if scale[0] == scale[1] else 1.0
         count = fineness.twist_slices(reach, height, twist, equal)
     elif scale[0] != scale[1]:
@@ -128,10 +132,10 @@ def _slices(
 
 @node("rotate_extrude", takes=_ROTATE)
 def rotate_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Turn the children around the z axis, their x axis pointing away from it.
+    """Revolve the children around the z axis; their x becomes the distance from the axis.
 
-    It starts at the angle `start`. By default a full turn starts on the negative x axis, and any
-    other on the positive one, as in OpenSCAD 2021.01.
+    The solid starts at the angle `start`. By default a full turn starts on the negative x axis, and
+    any other turn on the positive x axis, as in OpenSCAD 2021.01.
     """
     arguments = run.arguments(owner)
     figure = _figure(arguments, owner, children, run)
@@ -157,7 +161,10 @@ def rotate_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Ge
 
 
 def _turned(figure: Region, angle: float, segments: int, start: float) -> Solid:
-    """Revolve a figure on one side of the axis; its far corners begin at the angle `start`."""
+    """Revolve a figure on one side of the y axis by an angle, in `segments` steps.
+
+    The side away from the axis starts at the angle `start`, in degrees.
+    """
     bounds = figure.bounds
     right = figure.mirror((1, 0)) if bounds is not None and bounds[0, 0] < 0 else figure
     solid = right.revolve(angle=abs(angle), segments=segments)
@@ -167,10 +174,10 @@ def _turned(figure: Region, angle: float, segments: int, start: float) -> Solid:
 
 @node("roof", takes=Signature(("method",)))
 def roof(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Build a roof over the children, all sides of which rise by 45 degrees.
+    """Build a roof over the children, with a slope of 45 degrees on all sides.
 
-    Without reflex corners both methods give the same roof. With them, "voronoi" gives a curved
-    roof, which is refused.
+    If there are reflex corners, the method "voronoi" would give a curved roof, and is refused;
+    otherwise both methods give the same roof.
     """
     arguments = run.arguments(owner)
     figure = union_of(owner, run.figures(owner, children), run)

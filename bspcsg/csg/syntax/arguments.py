@@ -1,4 +1,4 @@
-"""A node's arguments, checked when they are read; errors name line and column."""
+"""The arguments of a node, checked when they are read; errors name line and column."""
 
 import math
 from typing import Any, TypeGuard
@@ -9,10 +9,10 @@ from .source import error_at
 from .tree import Node, Value
 from .writer import value_text
 
-#: The largest number that may be a length or an angle: the product of three still fits a double.
+#: The largest allowed length or angle: the product of three such numbers still fits in a double.
 MAX_NUMBER = 1e100
 
-#: The type of numbers in trees and of defaults; true and false have another type.
+#: The only type of numbers in trees and of default values.
 _FLOAT = frozenset({float})
 
 #: The largest number of characters of a value that an error quotes.
@@ -22,15 +22,16 @@ _MAX_QUOTED_CHARACTERS = 40
 class Arguments:
     """The arguments of one node.
 
-    Positional arguments take the names of `order`, one after another. Missing arguments and undef
-    stand for the default.
+    Positional arguments get the names in `order`, one after another. An argument that is missing or
+    undef has the default value.
 
     Parameters
     ----------
     node : Node
     script : str
-        The script's name, for errors.
+        The name of the script in errors.
     order : tuple of str
+        The names of positional arguments.
     """
 
     def __init__(self, node: Node, script: str, order: tuple[str, ...] = ()) -> None:
@@ -49,29 +50,29 @@ class Arguments:
         return error_at(self._script, self.node.place, message, code)
 
     def __contains__(self, name: str) -> bool:
-        """Say whether the argument is there and not undef."""
+        """Return True if the argument is given and is not undef."""
         return self._values.get(name) is not None
 
     def value(self, name: str) -> Value:
-        """Return the argument as it is, None if it is missing."""
+        """Return the unchecked value of an argument; None if it is missing or undef."""
         return self._values.get(name)
 
     def number(self, name: str, default: float | None = None) -> float:
-        """Return a number, finite and not absurdly large."""
+        """Return an argument that must be a number from -1e100 to 1e100."""
         value = self._given(name, default)
         if not is_number(value) or not _is_usable(value):
             raise self._wrong(name, "a number from -1e100 to 1e100", value)
         return float(value)
 
     def flag(self, name: str, default: bool = False) -> bool:
-        """Return true or false; a number is true if it is not zero."""
+        """Return an argument as a truth value; a number is true if it is not zero."""
         value = self._given(name, default)
         if not isinstance(value, (bool, float, int)):
             raise self._wrong(name, "true or false", value)
         return bool(value)
 
     def text(self, name: str, default: str | None = None) -> str:
-        """Return a text."""
+        """Return an argument that must be a text."""
         value = self._given(name, default)
         if not isinstance(value, str):
             raise self._wrong(name, "a string", value)
@@ -80,7 +81,7 @@ class Arguments:
     def vector(
         self, name: str, size: int, default: tuple[float, ...] | None = None
     ) -> tuple[float, ...]:
-        """Return `size` numbers; one number alone stands for all of them."""
+        """Return an argument of `size` numbers; a single number is repeated."""
         value = self._given(name, default)
         if is_number(value):
             value = (value,) * size
@@ -89,14 +90,14 @@ class Arguments:
         return tuple(float(entry) for entry in value[:size])
 
     def padded(self, name: str, size: int) -> tuple[float, ...]:
-        """Return `size` numbers, 0 for those that are not given."""
+        """Return an argument of `size` numbers; missing numbers at the end are 0."""
         value = self._given(name, ())
         if isinstance(value, tuple) and len(value) < size and _all_usable(value):
             return (*map(float, value), *(0.0,) * (size - len(value)))
         return self.vector(name, size)
 
     def points(self, name: str, size: int) -> list[tuple[float, ...]]:
-        """Return points of `size` numbers each."""
+        """Return an argument that must be a list of points with `size` numbers each."""
         value = self._given(name, None)
         if not isinstance(value, tuple):
             raise self._wrong(name, "a list of points", value)
@@ -108,7 +109,10 @@ class Arguments:
         return list(value)
 
     def index_lists(self, name: str, count: int, *, single: bool = False) -> list[list[int]]:
-        """Return lists of indices below `count`; if `single`, one list need not be in a list."""
+        """Return an argument that must be a list of lists of indices below `count`.
+
+        If `single`, it may also be one list of indices.
+        """
         value = self._given(name, None)
         if single and isinstance(value, tuple) and value and is_number(value[0]):
             value = (value,)
@@ -125,7 +129,7 @@ class Arguments:
         return list(map(int, value))
 
     def limited(self, count: float, what: str) -> int:
-        """Return a number of corners, or raise an error if it would not fit into memory."""
+        """Return a number of corners; raise an error if it exceeds `MAX_CORNERS`."""
         if not count <= MAX_CORNERS:
             message = (
                 f"{what} would have more than {MAX_CORNERS:,} corners, the largest number that is"
@@ -135,7 +139,7 @@ class Arguments:
         return int(count)
 
     def sides(self, count: float, what: str) -> int:
-        """Return a number of sides around, or raise an error if it is absurd."""
+        """Return a number of sides of a circle; raise an error if it exceeds `MAX_SEGMENTS`."""
         if not count <= MAX_SEGMENTS:
             message = (
                 f"{what} would have more than {MAX_SEGMENTS:,} sides, the largest number that is"
@@ -160,12 +164,12 @@ class Arguments:
 
 
 def is_number(value: Any) -> TypeGuard[float]:
-    """Say whether a value is a number; true and false are not."""
+    """Return True if a value is an int or a float, but not a truth value."""
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 def _is_finite(value: Any) -> bool:
-    """Say whether all numbers in a value are finite, at any depth."""
+    """Return True if all numbers in a value, also in nested tuples, are finite."""
     waiting = [value]
     while waiting:
         one = waiting.pop()
@@ -181,5 +185,5 @@ def _is_usable(value: float) -> bool:
 
 
 def _all_usable(values: tuple[Any, ...]) -> bool:
-    # Only functions written in C look at long lists.
+    # Long lists are tested by functions written in C only, for speed.
     return _FLOAT.issuperset(map(type, values)) and all(map(MAX_NUMBER.__ge__, map(abs, values)))

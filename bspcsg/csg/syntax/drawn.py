@@ -1,4 +1,4 @@
-"""Trees for people: outlines in the terminal, and graphs for Graphviz."""
+"""Display of script trees: as indented text, and as graphs for Graphviz."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -8,25 +8,25 @@ from .tokens import quoted
 from .tree import Argument, CsgTree, Node, Value
 from .writer import value_text
 
-#: The largest number of characters of a value that are shown.
+#: The largest number of characters that are displayed of a value.
 _MAX_VALUE_CHARACTERS = 64
 
-#: The largest number of levels that are indented; deeper nodes show their depth as a number.
+#: The largest number of indented levels; nodes at a greater depth display the depth as a number.
 _MAX_INDENT_DEPTH = 40
 
 
 class _Place(NamedTuple):
-    """A node in the tree.
+    """A node and its position in a displayed tree.
 
     Parameters
     ----------
     node : Node
     depth : int
-        From 1.
+        The depth of the node; top nodes have depth 1.
     ended : tuple of bool
-        For each node around it, whether it is the last of its siblings.
+        For each enclosing node, whether it is the last of its siblings.
     is_last : bool
-        True if it is the last of its siblings itself.
+        True if the node is the last of its siblings.
     """
 
     node: Node
@@ -36,7 +36,7 @@ class _Place(NamedTuple):
 
 
 def outline(tree: CsgTree) -> str:
-    """Return a line for each node, indented by its depth; long values are cut short."""
+    """Return a tree as text: one line per node, indented by depth, with long values shortened."""
     lines = [of_kind(CsgTree, tree, "tree").name]
     for place in _walk(tree):
         indent = "".join("   " if last else "│  " for last in place.ended)
@@ -47,7 +47,7 @@ def outline(tree: CsgTree) -> str:
 
 
 def graph(tree: CsgTree) -> str:
-    """Return the tree in Graphviz's language; ``dot -Tsvg`` draws it."""
+    """Return a tree as a graph in Graphviz's language; ``dot -Tsvg`` draws it."""
     lines = ["digraph csg {", "  node [shape=box, fontname=monospace];"]
     path: list[int] = []
     for number, place in enumerate(_walk(of_kind(CsgTree, tree, "tree"))):
@@ -60,7 +60,7 @@ def graph(tree: CsgTree) -> str:
 
 
 def _walk(tree: CsgTree) -> Iterator[_Place]:
-    """Yield the nodes in the order of the script; trees may be any depth."""
+    """Yield the nodes of a tree of any depth, in the order of the script."""
     waiting = _siblings(tree.nodes, 1, ())
     while waiting:
         place = waiting.pop()
@@ -70,7 +70,7 @@ def _walk(tree: CsgTree) -> Iterator[_Place]:
 
 
 def _siblings(nodes: Sequence[Node], depth: int, ended: tuple[bool, ...]) -> list[_Place]:
-    """Return the places of some nodes, the first one last."""
+    """Return sibling nodes with their positions, in reverse order."""
     last = len(nodes) - 1
     return [_Place(nodes[k], depth, ended, k == last) for k in range(last, -1, -1)]
 

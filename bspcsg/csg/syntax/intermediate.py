@@ -1,4 +1,4 @@
-"""The file that openscad made from a script: errors name its lines, which are not the script's."""
+"""The `.csg` text that openscad made from a script, and the lines of both that an error names."""
 
 import re
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ _OTHER_FILES = re.compile(r"^\s*(?:use|include)\s*<", re.MULTILINE)
 
 @dataclass(frozen=True)
 class Intermediate:
-    """A `.csg` text and the `.scad` script it was made from.
+    """A `.csg` text and the `.scad` script from which it was made.
 
     Parameters
     ----------
@@ -36,9 +36,10 @@ class Intermediate:
         return f"{self.script}, as openscad's .csg"
 
     def explained(self, error: BspcsgError) -> BspcsgError:
-        """Return an error with the line of the `.csg` text that it names, and the script's line.
+        """Return an error whose message also quotes the line of the `.csg` text that it names.
 
-        The script's line is known if the node is on exactly one of its lines, and in no other file.
+        It adds the script's line if the node's name is on exactly one of its lines, and the script
+        includes no other file.
         """
         place = re.match(rf"{re.escape(self.name)}:(\d+):(\d+): ", error.message)
         lines = self.text.splitlines()
@@ -55,7 +56,10 @@ class Intermediate:
         return type(error)(message, error.code, error.where)
 
     def _own_line(self, text: str) -> int | None:
-        """Return the number of the script's only line with the node that a text begins with."""
+        """Return the number of the script's only line that uses the node with which a text begins.
+
+        None means that there is no such line or several, or that the script includes other files.
+        """
         node = re.match(r"[A-Za-z_]\w*", text)
         if node is None or _OTHER_FILES.search(self.source):
             return None

@@ -1,10 +1,9 @@
-"""Converts trees to JSON and back.
+"""Conversion of script trees to JSON and back.
 
 A document is ``{"format": "bspcsg-csg", "version": 1, "nodes": [...]}``; a node is
 ``{"node": "cube", "arguments": [{"name": "size", "value": [1, 2, 3]}], "children": [...]}``, with
-``"modifiers"`` where it has some; an argument without a name goes by its position. Vectors are
-arrays, undef is null. JSON has no infinite numbers: they are ``{"number": "inf"}``, "-inf" or
-"nan".
+``"modifiers"`` if it has any; an argument without a name is positional. Vectors are arrays, undef
+is null. JSON has no infinite numbers: they are ``{"number": "inf"}``, "-inf" or "nan".
 """
 
 import json
@@ -19,15 +18,15 @@ from .tree import MAX_VECTOR_DEPTH, WORDS, Argument, CsgTree, Node, Value, is_na
 FORMAT = "bspcsg-csg"
 VERSION = 1
 
-#: The largest number of nodes inside one another in JSON; the text form allows any depth. Python's
-#: reader of JSON, and the code that makes nodes of its answer, take up to three nested calls for a
-#: node. Python allows 1000 by default, so this leaves a third of them to the caller.
+#: The largest nesting depth of nodes in JSON; the text form allows any depth. Python's JSON reader,
+#: and the code that makes nodes of its result, need up to three nested calls for a node. Python
+#: allows 1000 by default, so a third of them remains for the caller.
 MAX_NODE_DEPTH = 200
 
 _ODD = {"inf": math.inf, "-inf": -math.inf, "nan": math.nan}
 
 
-#: The largest number of blanks by which a level is indented: with more, files are mostly blanks.
+#: The largest number of spaces by which a level is indented.
 _MAX_INDENT = 64
 
 
@@ -37,7 +36,7 @@ def to_json(tree: CsgTree, *, indent: int | None = None) -> str:
     Raises
     ------
     FormatError
-        If nodes nest deeper than 200, which not all readers of JSON accept; code "too_deep".
+        If nodes are nested deeper than 200, which some JSON readers refuse; code "too_deep".
     """
     steps = None if indent is None else min(at_least(0, indent, "indent"), _MAX_INDENT)
     nodes = [_node_data(node, 1, tree.name) for node in of_kind(CsgTree, tree, "tree").nodes]
@@ -51,7 +50,7 @@ def from_json(text: str, name: str = "<json>", folder: str | Path | None = None)
     Raises
     ------
     FormatError
-        If the text is not JSON, or not such a document; the message says where.
+        If the text is not JSON, or not a script tree; the message names the wrong entry.
     """
     place = Path() if folder is None else Path(file_path(folder, "folder"))
     text_value(name, "name")
@@ -153,7 +152,7 @@ def _value(data: Any, where: str, name: str, depth: int) -> Value:
 
 
 def _is_text(data: Any) -> TypeGuard[str]:
-    """Say whether it is text that can be encoded: JSON may hold lone surrogates."""
+    """Return True for text that can be encoded as UTF-8; JSON may contain lone surrogates."""
     try:
         return isinstance(data, str) and data.encode() is not None
     except UnicodeEncodeError:

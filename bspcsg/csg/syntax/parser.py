@@ -1,6 +1,6 @@
-"""Parses scripts to trees.
+"""Parser of scripts to trees.
 
-The grammar is OpenSCAD's own dump of an evaluated model, its `.csg` files::
+The grammar is that of `.csg` files, which OpenSCAD writes for an evaluated model::
 
     file  = { node | ";" } ;
     node  = { "#" | "%" | "!" | "*" } , name , "(" , [ arg , { "," , arg } ] , ")" , body ;
@@ -9,7 +9,7 @@ The grammar is OpenSCAD's own dump of an evaluated model, its `.csg` files::
     value = number | text | "true" | "false" | "undef" | "inf" | "nan" | ( "-" | "+" ) , value
           | "[" , [ value , { "," , value } ] , "]" ;
 
-Nodes nest to any depth: the parser keeps its own stack.
+Nodes may be nested to any depth, since the parser has its own stack.
 """
 
 import math
@@ -24,22 +24,22 @@ from .tree import MAX_VECTOR_DEPTH, WORDS, Argument, CsgTree, Node, Place, Value
 
 
 def parse(text: str, name: str = "<csg>", folder: str | Path | None = None) -> CsgTree:
-    """Return the tree of a script.
+    """Parse the text of a script, and return its tree.
 
     Parameters
     ----------
     text : str
-        OpenSCAD's `.csg` language.
+        The script, in OpenSCAD's `.csg` language.
     name : str
         The script's name in errors.
     folder : path, optional
-        The folder of the files that it imports; the current folder by default.
+        The folder of the files that the script imports; by default the current folder.
 
     Raises
     ------
     FormatError
-        If the text is not such a script. The message begins with name, line and column; `where`
-        holds line and column.
+        If the text is not a `.csg` script. The message begins with name, line and column; `where`
+        contains line and column.
 
     Examples
     --------
@@ -53,7 +53,7 @@ def parse(text: str, name: str = "<csg>", folder: str | Path | None = None) -> C
 
 
 def value_of(text: str) -> Value:
-    """Return the value of a text such as ``1.5``, ``"text"`` or ``[1, 2]``.
+    """Parse a value of the script language, such as ``1.5``, ``"text"`` or ``[1, 2]``.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def value_of(text: str) -> Value:
 
 @dataclass
 class _Frame:
-    """A node whose children are being read."""
+    """A node whose children are still being parsed."""
 
     name: str
     arguments: tuple[Argument, ...]
@@ -105,7 +105,7 @@ class _Parser:
         return tuple(top)
 
     def _open(self, open_frames: list[_Frame], top: list[Node]) -> None:
-        """Read a node up to its body; one without children is complete."""
+        """Read a node up to its body, and close it if it has no children."""
         if self._next.kind == "end":
             frame = open_frames[-1]
             missing = "“}”" if frame.braced else "“;”"
@@ -121,7 +121,7 @@ class _Parser:
             frame.braced = True
 
     def _close(self, open_frames: list[_Frame], top: list[Node]) -> None:
-        """Add the innermost node to its parent; also close parents without braces."""
+        """Add the innermost open node to its parent; also close parents without braces."""
         while True:
             node = open_frames.pop().node()
             (open_frames[-1].children if open_frames else top).append(node)
@@ -166,7 +166,7 @@ class _Parser:
         return Argument(name, self._value())
 
     def _value(self) -> Value:
-        """Read a value; the vectors around it are kept in a list, outermost first."""
+        """Read a value, which may be a vector of vectors up to `MAX_VECTOR_DEPTH` deep."""
         vectors: list[list[Value]] = []
         while True:
             value: Value
@@ -191,14 +191,14 @@ class _Parser:
                 return value
 
     def _numbers(self, deepest: int) -> Value:
-        """Read a vector of plain numbers at once; None if it has to be read word by word."""
+        """Read a whole vector of numbers; return None if it must be read token by token."""
         found = self._words.numbers(self._next.offset, deepest)
         if found is not None:
             self._next = self._words.next()
         return found
 
     def _comma_before_value(self) -> bool:
-        """Skip a comma, and say whether another value follows it."""
+        """Skip a comma; return True if there was one and another value follows it."""
         if self._next.text == ",":
             self._take()
             return self._next.text != "]"

@@ -1,4 +1,4 @@
-"""Removes nodes that make no difference from trees."""
+"""Removal of nodes that do not change the solid of a script tree."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -9,38 +9,39 @@ import numpy as np
 from ...parameters import of_kind
 from .tree import CsgTree, Node
 
-#: Nodes that only unite their children, unless they have arguments.
+#: The names of nodes that only unite their children, unless they have arguments.
 _PLAIN = frozenset({"group", "union"})
 
-#: Nodes that unite their children, so a child may be replaced by the parts of its union.
+#: The names of nodes that unite their children, so that a union among them can be replaced by its
+#: operands.
 _UNITING = frozenset({*_PLAIN, "color", "multmatrix", "render"})
 
-#: Nodes that make plane figures, and nodes that make whatever their first child is.
+#: The names of nodes that make plane figures, and of nodes with the dimension of their first child.
 _FIGURES = frozenset({"square", "circle", "polygon", "text", "offset", "projection", "fill"})
 _KEEPING = _UNITING | {"difference", "intersection", "hull", "minkowski", "resize"}
 
 
 def simplified(tree: CsgTree) -> CsgTree:
-    """Return a tree of the same solid with fewer nodes.
+    """Return a tree with fewer nodes that evaluates to the same solid.
 
-    It leaves out nodes that modifiers remove from the model, groups and unions of one child or
-    inside others, and matrices that move nothing. Other nodes and all arguments stay, even if they
-    cannot be evaluated.
+    It omits nodes that modifiers remove from the model, groups and unions that have one child or
+    are inside other unions, and identity matrices. All other nodes and all arguments remain, even
+    if they cannot be evaluated.
     """
     roots = of_kind(CsgTree, tree, "tree").roots()
     return replace(tree, nodes=_with_children(Node("union", (), roots)))
 
 
 class _SimplifiedNode(NamedTuple):
-    """A simplified node.
+    """A simplified node, and the dimension of its geometry.
 
     Parameters
     ----------
     node : Node
     is_flat : bool or None
-        True for a plane figure, False for a solid, None for nothing.
+        True for a plane figure, False for a solid, None without geometry.
     is_mixed : bool
-        True if its children have both dimensions, so that some of them are ignored.
+        True if there are plane figures and solids among its children, of which one kind is ignored.
     """
 
     node: Node
@@ -49,7 +50,7 @@ class _SimplifiedNode(NamedTuple):
 
 
 def _with_children(root: Node) -> tuple[Node, ...]:
-    """Return the simplified children of a node that unites; trees may be any depth."""
+    """Return the simplified children of a node that unites them, at any depth."""
     done: list[_SimplifiedNode] = []
     waiting: list[tuple[Node, bool]] = [(root, False)]
     while waiting:
@@ -82,7 +83,10 @@ def _rebuilt(node: Node, made: Sequence[_SimplifiedNode], at_top: bool) -> Node:
 
 
 def _is_flat(node: Node, kinds: Sequence[bool]) -> bool | None:
-    """Say whether a node with children of these kinds makes a plane figure."""
+    """Return True if a node makes a plane figure, False for a solid, None without geometry.
+
+    `kinds` are the same values for the node's children.
+    """
     if node.name in _KEEPING:
         return kinds[0] if kinds else None
     texts = [argument.value for argument in node.arguments if isinstance(argument.value, str)]
@@ -91,7 +95,7 @@ def _is_flat(node: Node, kinds: Sequence[bool]) -> bool | None:
 
 
 def _parts(child: _SimplifiedNode) -> tuple[Node, ...]:
-    """Return the nodes that may replace a child of a node that unites."""
+    """Return the nodes that replace a child of a uniting node: its children if it unites, too."""
     is_loose = _is_plain(child.node) and not child.is_mixed
     return child.node.children if is_loose else (child.node,)
 

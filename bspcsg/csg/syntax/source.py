@@ -1,4 +1,4 @@
-"""The text of a script, with the places that errors about it name."""
+"""The text of a script, and the lines and columns that errors name."""
 
 from bisect import bisect_right
 from dataclasses import dataclass, field
@@ -10,15 +10,16 @@ from .tree import Place
 
 @dataclass(frozen=True)
 class Script:
-    """A text that a parser reads.
+    """The text of a script, with its name and folder.
 
     Parameters
     ----------
     text : str
+        The text of the script.
     name : str
-        Its name in errors: the path as the caller gave it.
+        The name in errors: the path as the caller gave it.
     folder : Path, optional
-        The folder of the files that it imports; the current folder by default.
+        The folder of the files that the script imports; by default the current folder.
     """
 
     text: str
@@ -26,16 +27,16 @@ class Script:
     folder: Path = field(default_factory=Path)
 
     def places(self) -> "Places":
-        """Return the index of this text's lines."""
+        """Return the converter of offsets in this text to lines and columns."""
         return Places(self.text)
 
     def error(self, place: Place, message: str, code: str = "syntax") -> FormatError:
-        """Return the error for a place: `where` holds line and column, both from 1."""
+        """Return an error at a line and column, both from 1, which `where` contains."""
         return error_at(self.name, place, message, code)
 
 
 class Places:
-    """Lines and columns of offsets in a text.
+    """A converter of offsets in a text to lines and columns.
 
     Parameters
     ----------
@@ -50,11 +51,11 @@ class Places:
             position = text.find("\n", position + 1)
 
     def at(self, offset: int) -> Place:
-        """Return the place of a character, counted from 0."""
+        """Return the line and column, both from 1, of the character at an offset, from 0."""
         line = bisect_right(self._starts, offset)
         return Place(line, offset - self._starts[line - 1] + 1)
 
 
 def error_at(name: str, place: Place, message: str, code: str) -> FormatError:
-    """Return the error for a place of a named script."""
+    """Return an error whose message begins with the script's name, line and column."""
     return FormatError(f"{name}:{place.line}:{place.column}: {message}", code, list(place))

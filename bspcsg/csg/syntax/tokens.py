@@ -1,4 +1,4 @@
-"""Splits a script into words."""
+"""Division of a script into tokens."""
 
 import json
 import math
@@ -23,19 +23,19 @@ _WORD = re.compile(
 _ESCAPE = re.compile(r"\\(x[0-7][0-9a-fA-F]|u[0-9a-fA-F]{4}|U[0-9a-fA-F]{6}|.)", re.DOTALL)
 _CONTROLS = {"n": "\n", "t": "\t", "r": "\r"}
 
-#: The largest number of characters of an offending word that an error quotes.
+#: The largest number of characters of a token that an error quotes.
 _MAX_QUOTED_CHARACTERS = 24
 
 
 class Token(NamedTuple):
-    """A word: its kind ("number", "name", "string", "mark" or "end"), text and offset."""
+    """A token: its kind ("number", "name", "string", "mark" or "end"), text and offset."""
 
     kind: str
     text: str
     offset: int
 
     def __str__(self) -> str:
-        """Return the word as an error quotes it."""
+        """Return the token in quotation marks, shortened, for error messages."""
         if self.kind == "end":
             return "the end of the file"
         text = "".join(
@@ -46,7 +46,7 @@ class Token(NamedTuple):
 
 
 class Words:
-    """The words of a script, from its beginning.
+    """An iterator over the tokens of a script.
 
     Parameters
     ----------
@@ -58,12 +58,12 @@ class Words:
         self._position = 0
 
     def next(self) -> Token:
-        """Return the next word and move past it; an "end" follows the last one.
+        """Return the next token and advance past it; after the last token, return an "end" token.
 
         Raises
         ------
         FormatError
-            If the text is not a word, such as a string without its closing quote.
+            If the text is not a token, such as a string without its closing quote.
         """
         text = self._script.text
         match = _WORD.match(text, self._position)
@@ -78,22 +78,22 @@ class Words:
         return Token("end", "", self._position)
 
     def numbers(self, start: int, deepest: int) -> "Numbers | None":
-        """Return a whole vector of numbers, or of such vectors, and move past it.
+        """Return a whole vector of numbers, or of such vectors, and advance past it.
 
-        It is parsed as JSON, ten times as fast as word by word.
+        It is parsed as JSON, which is ten times as fast as token by token.
 
         Parameters
         ----------
         start : int
-            The offset of its opening bracket.
+            The offset of the vector's opening bracket.
         deepest : int
-            The largest number of nested vectors.
+            The largest nesting depth of vectors.
 
         Returns
         -------
         tuple or None
-            None, without moving, if the vector is not JSON, holds anything else, nests too deep or
-            is malformed.
+            None, without an advance, if the vector is not JSON, contains anything but numbers and
+            vectors, or is nested too deep.
         """
         try:
             found, end = _JSON.raw_decode(self._script.text, start)
@@ -104,7 +104,7 @@ class Words:
         return numbers
 
 
-#: Numbers and vectors of them.
+#: A vector of numbers, or of such vectors.
 Numbers = tuple["float | Numbers", ...]
 
 
@@ -116,7 +116,7 @@ _JSON = json.JSONDecoder(parse_int=float, parse_constant=_no_number)
 
 
 def _numbers(found: list[Any], deepest: int) -> Numbers:
-    """Return lists as tuples; raise a ValueError for anything but finite numbers in them."""
+    """Return nested lists as tuples; raise `ValueError` for entries that are not finite numbers."""
     if deepest < 1:
         raise ValueError("too deep")
     kinds = set(map(type, found))
@@ -143,7 +143,7 @@ def _unreadable(script: Script, position: int) -> Exception:
 
 
 def unquoted(text: str) -> str:
-    r"""Return the value of a quoted text, with ``\n``, ``\t``, ``\x41``, ``\u0041`` replaced."""
+    r"""Return a quoted text without quotes, with ``\n``, ``\t``, ``\x41``, ``\u0041`` replaced."""
     return _ESCAPE.sub(_character, text[1:-1])
 
 
@@ -156,7 +156,7 @@ def _character(match: re.Match[str]) -> str:
 
 
 def quoted(text: str) -> str:
-    """Return a text in quotes, so that reading it gives the same again."""
+    """Return a text in quotes, with escapes so that parsing it gives the same text."""
     for plain, escaped in (("\\", "\\\\"), ('"', '\\"'), ("\n", "\\n"), ("\t", "\\t")):
         text = text.replace(plain, escaped)
     return '"' + text.replace("\r", "\\r") + '"'

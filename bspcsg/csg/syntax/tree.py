@@ -1,4 +1,4 @@
-"""The tree of a script: nodes with arguments and children, as plain values."""
+"""The tree of a script: immutable nodes with arguments and children."""
 
 import math
 import re
@@ -14,10 +14,10 @@ from ...errors import BspcsgError, invalid_parameter
 from ...parameters import shown
 from .intermediate import Intermediate
 
-#: An argument: a number, a text, true or false, undef (None), or a vector of values.
+#: The value of an argument: a number, text, truth value, undef (None), or a vector of values.
 Value: TypeAlias = "float | str | bool | tuple[Value, ...] | None"
 
-#: Names that are values, so that no argument has them.
+#: Keywords that denote values, and so cannot be names of arguments.
 WORDS: dict[str, Value] = {
     "true": True,
     "false": False,
@@ -26,7 +26,7 @@ WORDS: dict[str, Value] = {
     "nan": math.nan,
 }
 
-#: The largest number of vectors inside one another. OpenSCAD writes two, for matrices and paths.
+#: The largest nesting depth of vectors. OpenSCAD writes a depth of two, for matrices and paths.
 MAX_VECTOR_DEPTH = 64
 
 _SCALAR = frozenset({float, str, bool, NoneType})
@@ -35,7 +35,7 @@ _Part = TypeVar("_Part")
 
 
 class Place(NamedTuple):
-    """A place in a script, both numbers from 1; (0, 0) if nowhere."""
+    """A line and a column of a script, both from 1; (0, 0) if unknown."""
 
     line: int
     column: int
@@ -43,17 +43,20 @@ class Place(NamedTuple):
 
 NOWHERE = Place(0, 0)
 
-#: The special variables, which also apply to the nodes inside the one that has them.
+#: The special variables for numbers of sides, which nodes inherit from enclosing nodes.
 SPECIAL = ("$fn", "$fa", "$fs", "$fe")
 
 
 def is_name(name: Any) -> TypeGuard[str]:
-    """Say whether it may be the name of a node or of an argument."""
+    """Return True if a value is a text that may be the name of a node or argument."""
     return isinstance(name, str) and _NAME.fullmatch(name) is not None
 
 
 def _plain(value: Any, depth: int = 0) -> "Value":
-    """Return a value as trees store it: numbers as doubles, vectors as tuples."""
+    """Convert a value to the types of trees: numbers to floats, lists and arrays to tuples.
+
+    Raise `InvalidParameterError` for a value that scripts cannot represent.
+    """
     if type(value) in _SCALAR:
         return value  # type: ignore[no-any-return]
     if isinstance(value, (tuple, list)) and depth < MAX_VECTOR_DEPTH:
@@ -74,7 +77,7 @@ def _plain(value: Any, depth: int = 0) -> "Value":
 
 
 def _parts(kind: type[_Part], given: Any, what: str) -> tuple[_Part, ...]:
-    """Return the parts of a tree as a tuple."""
+    """Return a tuple of entries of type `kind`; raise an error for any other entry."""
     parts = tuple(given) if isinstance(given, (tuple, list)) else None
     if parts is None or not all(isinstance(part, kind) for part in parts):
         raise invalid_parameter(f"{what} must be a tuple of {kind.__name__}, not {shown(given)}.")
@@ -82,7 +85,7 @@ def _parts(kind: type[_Part], given: Any, what: str) -> tuple[_Part, ...]:
 
 
 def _are_same(one: "Value", other: "Value") -> bool:
-    """Say whether values are equal; true is not 1, though Python's are."""
+    """Return True if two values are equal; unlike in Python, true does not equal 1."""
     if isinstance(one, tuple) and isinstance(other, tuple):
         return len(one) == len(other) and all(map(_are_same, one, other))
     return isinstance(one, bool) == isinstance(other, bool) and (one is other or one == other)
@@ -90,18 +93,19 @@ def _are_same(one: "Value", other: "Value") -> bool:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Argument:
-    """One argument of a node; lists become tuples, and all numbers doubles.
+    """One argument of a node: its name and value.
 
     Parameters
     ----------
     name : str or None
-        Such as ``"size"`` or ``"$fn"``; None for a positional argument.
+        A name such as ``"size"`` or ``"$fn"``; None for a positional argument.
     value : Value
+        The value; lists become tuples, and all numbers floats.
 
     Raises
     ------
     InvalidParameterError
-        If a script cannot hold the name or the value.
+        If a script cannot represent the name or the value.
     """
 
     name: str | None
@@ -124,30 +128,32 @@ class Argument:
         return hash((self.name, self.value))
 
 
-#: A node with the numbers of its children.
+#: A node as a tuple with the numbers of its children, for pickling.
 _Row: TypeAlias = tuple[str, tuple[Argument, ...], list[int], str, Place]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Node:
-    """A node: a primitive, a transform or an operation on its children; trees may be any depth.
+    """A node of a script tree: a primitive, or a transform of or an operation on its children.
 
     Parameters
     ----------
     name : str
-        Such as ``"cube"`` or ``"difference"``; names that cannot be evaluated are kept.
+        A name such as ``"cube"`` or ``"difference"``; it need not be one that can be evaluated.
     arguments : tuple of Argument
-        In the order of the script.
+        The arguments, in the order of the script.
     children : tuple of Node
+        The nodes inside this node, nested to any depth.
     modifiers : str
-        Some of ``#`` (kept), ``%`` and ``*`` (ignored) and ``!`` (this node alone counts).
+        Any of ``#`` (no effect), ``%`` and ``*`` (the node is ignored) and ``!`` (all other nodes
+        are ignored).
     place : Place
-        The place of its name; it does not count when nodes are compared.
+        The line and column of the name, which are ignored when nodes are compared.
 
     Raises
     ------
     InvalidParameterError
-        If a script cannot hold such a node.
+        If a script cannot represent the node.
     """
 
     name: str
@@ -171,7 +177,7 @@ class Node:
 
     @property
     def is_ignored(self) -> bool:
-        """True if a modifier takes the node out of the model."""
+        """True if a modifier ``%`` or ``*`` removes the node from the model."""
         return "%" in self.modifiers or "*" in self.modifiers
 
     def __eq__(self, other: object) -> bool:
@@ -195,7 +201,7 @@ class Node:
         return made[id(self)]
 
     def __repr__(self) -> str:
-        """Show all fields, as dataclasses do."""
+        """Return a text with all fields, as for other dataclasses, at any depth of the tree."""
         parts: list[str] = []
         waiting: list[Node | str] = [self]
         while waiting:
@@ -219,7 +225,7 @@ class Node:
         return self
 
     def __reduce__(self) -> tuple[Callable[[list[_Row]], "Node"], tuple[list[_Row]]]:
-        """Pickle the nodes one after another, each after its children."""
+        """Return what pickle needs: all nodes in a list, each after its children."""
         nodes = _distinct(self)
         numbers = {id(node): number for number, node in enumerate(nodes)}
         return _planted, (
@@ -231,12 +237,12 @@ class Node:
 
 
 def _head(node: Node) -> tuple[str, tuple[Argument, ...], str, int]:
-    """Return a node's own fields, and the number of its children."""
+    """Return a node's name, arguments and modifiers, and the number of its children."""
     return node.name, node.arguments, node.modifiers, len(node.children)
 
 
 def _distinct(root: Node) -> list[Node]:
-    """Return the nodes of a tree, each once and after its children."""
+    """Return the nodes of a tree without repetition, each after its children."""
     waiting: list[tuple[Node, bool]] = [(root, False)]
     done: dict[int, Node] = {}
     while waiting:
@@ -250,7 +256,7 @@ def _distinct(root: Node) -> list[Node]:
 
 
 def _planted(rows: list[_Row]) -> Node:
-    """Return the node of the last row."""
+    """Return the root node, which is in the last row; each row refers to earlier rows."""
     made: list[Node] = []
     for name, arguments, children, modifiers, place in rows:
         made.append(Node(name, arguments, tuple(made[k] for k in children), modifiers, place))
@@ -259,17 +265,18 @@ def _planted(rows: list[_Row]) -> Node:
 
 @dataclass(frozen=True)
 class CsgTree:
-    """The content of a script: its top nodes, which are united.
+    """The content of a script: its top-level nodes, which are united.
 
     Parameters
     ----------
     nodes : tuple of Node
+        The top-level nodes.
     name : str
         The script's name in errors.
     folder : Path
-        The folder of the files that it imports.
+        The folder of the files that the script imports.
     intermediate : Intermediate, optional
-        The text to which the nodes' places refer, if it is not the script.
+        The `.csg` text to which lines and columns of nodes refer, if it is not the script itself.
     """
 
     nodes: tuple[Node, ...]
@@ -281,14 +288,14 @@ class CsgTree:
         object.__setattr__(self, "nodes", _parts(Node, self.nodes, "The nodes of a tree"))
 
     def explained(self, error: BspcsgError) -> BspcsgError:
-        """Return an error about a node with all that is known about its place."""
+        """Return an error with the lines of the script added that its message refers to."""
         return error if self.intermediate is None else self.intermediate.explained(error)
 
     def roots(self) -> tuple[Node, ...]:
-        """Return the nodes that count: the first one marked ``!``, else all top nodes.
+        """Return the nodes that are evaluated: the first one marked ``!``, or all top-level nodes.
 
-        Nodes marked ``*`` and everything inside them do not exist. A node marked ``!`` is put into
-        a group with the special variables that apply to it, if there are any.
+        Nodes inside a node marked ``*`` are not searched. A node marked ``!`` is put into a group
+        with the special variables that apply to it, if there are any.
         """
         waiting: list[tuple[Node, dict[str, Argument]]] = [(node, {}) for node in self.nodes[::-1]]
         while waiting:

@@ -1,4 +1,4 @@
-"""Writes trees as text."""
+"""Writing of script trees as text."""
 
 import math
 from collections.abc import Mapping
@@ -7,27 +7,27 @@ from ...parameters import of_kind, truth_value
 from .tokens import quoted
 from .tree import Argument, CsgTree, Node, Value
 
-#: The largest number of levels that are indented: otherwise the text of a deep tree is mostly
-#: blanks.
+#: The largest number of levels that are indented; with more, the text of a deep tree would be
+#: mostly tabs.
 _MAX_INDENT_DEPTH = 40
 
 
-#: The names of numbers without literals, in dumps of a tree and in OpenSCAD's own language.
+#: The texts of numbers that are not finite, in `.csg` scripts and in OpenSCAD's own language.
 _IN_CSG = {math.inf: "inf", -math.inf: "-inf", math.nan: "nan"}
 _IN_SCAD = {math.inf: "1 / 0", -math.inf: "-1 / 0", math.nan: "0 / 0"}
 
 
 def written(tree: CsgTree, *, scad: bool = False) -> str:
-    """Return a tree as a `.csg` script; reading it gives an equal tree.
+    """Return a tree as the text of a `.csg` script; parsing it gives an equal tree.
 
-    Numbers are written so that reading them gives the same doubles: OpenSCAD itself writes six
+    Numbers are written with enough digits to identify the doubles: OpenSCAD itself writes six
     digits, but reads all.
 
     Parameters
     ----------
     tree : CsgTree
     scad : bool
-        Write OpenSCAD's own language instead, in which infinity has no name.
+        True for OpenSCAD's own language, in which infinity has no name.
     """
     odd = _IN_SCAD if truth_value(scad, "scad") else _IN_CSG
     lines: list[str] = []
@@ -62,7 +62,7 @@ def _argument(argument: Argument, odd: Mapping[float, str]) -> str:
 
 
 def value_text(value: Value, odd: Mapping[float, str] = _IN_CSG) -> str:
-    """Return a value as a script writes it."""
+    """Return the text of a value in the script language."""
     if isinstance(value, tuple):
         return f"[{', '.join(value_text(entry, odd) for entry in value)}]"
     if isinstance(value, bool) or value is None:
@@ -71,8 +71,8 @@ def value_text(value: Value, odd: Mapping[float, str] = _IN_CSG) -> str:
 
 
 def number_text(value: float, odd: Mapping[float, str] = _IN_CSG) -> str:
-    """Return a number with as few digits as identify the double."""
+    """Return a number as text, with the fewest digits that identify the double."""
     if math.isfinite(value):
         return str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(float(value))
-    # NaN is not equal to itself, so no lookup finds it.
+    # NaN is not equal to itself, so look up the object `math.nan`.
     return odd[math.nan if math.isnan(value) else value]

@@ -1,1 +1,1 @@
-"""Binary glTF."""
+"""Reading and writing GLB, the binary form of glTF."""

@@ -1,4 +1,4 @@
-"""The numbers of accessors, each row an element.
+"""Decoding of glTF accessors into arrays of numbers, with one row for each element.
 
 # Source
 glTF 2.0, sections 3.6.2 (accessors, sparse ones, fractions in whole numbers) and 3.11.
@@ -11,14 +11,14 @@ from .container import COMPONENTS, ELEMENTS, Container
 
 
 def stored(container: Container, number: int) -> Values:
-    """Return the (count, k) numbers of an accessor as stored, without a copy where possible.
+    """Return the elements of an accessor, (count, k) in the stored type, if possible as a view.
 
-    In a sparse accessor without a base, elements that are not replaced are zeros.
+    In a sparse accessor without a buffer view, elements that are not replaced are zeros.
 
     Raises
     ------
     IndexError
-        If an element that does not exist is replaced.
+        If a sparse accessor replaces an element that does not exist.
     """
     accessor = container.tree["accessors"][number]
     count, item = accessor["count"], np.dtype(COMPONENTS[accessor["componentType"]])
@@ -40,7 +40,7 @@ def stored(container: Container, number: int) -> Values:
 
 
 def numbers(values: Values, is_fraction: bool) -> Values:
-    """Return stored numbers in native byte order; normalized integers become floats."""
+    """Return numbers in native byte order; if `is_fraction`, integers become fractions."""
     if is_fraction:
         return fractions(values)
     native: Values = values.astype(values.dtype.newbyteorder("="))
@@ -48,7 +48,7 @@ def numbers(values: Values, is_fraction: bool) -> Values:
 
 
 def fractions(values: Values) -> Values:
-    """Return normalized integers as fractions from -1 to 1, in single precision."""
+    """Return normalized integers as fractions from -1 to 1 in float32; floats stay unchanged."""
     if values.dtype.kind == "f":
         return values
     parts: Values = np.maximum(values / np.iinfo(values.dtype).max, -1).astype(np.float32)
@@ -62,7 +62,7 @@ def _rows(
     width: int,
     item: "np.dtype[np.generic]",
 ) -> Values:
-    """Return rows of numbers of a buffer view, without a copy."""
+    """Return (count, width) numbers of a buffer view, without a copy."""
     view = container.tree["bufferViews"][told["bufferView"]]
     stride = view.get("byteStride") or item.itemsize * width
     start = view.get("byteOffset", 0) + told.get("byteOffset", 0)

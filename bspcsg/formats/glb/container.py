@@ -12,29 +12,29 @@ from ..source import Source
 _MAGIC, _HEADER = b"glTF", 12
 _JSON, _BINARY = b"JSON", b"BIN\0"
 
-#: Types of components, and components of an element, by glTF's names.
+#: The numpy type of a component by glTF's number, and the components of an element by glTF's name.
 COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 ELEMENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 
-#: The largest number of triangles that all nodes together may show.
+#: The largest number of triangles in a file, where a mesh counts once for each node that has it.
 _MAX_TRIANGLES = 1 << 27
 
-#: The largest number of nodes that may contain one another.
+#: The largest number of ancestors that a node may have.
 _MAX_NODE_DEPTH = 64
 
-#: Shows the mesh of a node several times, at places that accessors tell.
+#: The extension that shows a node's mesh several times, with transformations from accessors.
 _INSTANCES = "EXT_mesh_gpu_instancing"
 
-#: Extensions that are read here, and beginnings of the names of those that are about looks alone:
-#: a file may say that it needs others to be understood.
+#: Extensions that a file may require: those that are read here, and the first letters of the names
+#: of those that change only the appearance.
 _READ = (_INSTANCES, "KHR_mesh_quantization")
 _LOOKS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "EXT_lights_")
 
-#: Extensions that pack data, and how to unpack them.
+#: Extensions that compress data, and the advice on decompressing it.
 _PACKINGS = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
 _UNPACK = " “gltf-transform copy in.glb out.glb” removes the compression."
 
-#: Attributes of vertices that are not read, by the beginnings of their names.
+#: Names, in messages, of vertex attributes that are not read, by the first letters of their keys.
 _ATTRIBUTES = {
     "TANGENT": "tangents",
     "JOINTS_": "joints",
@@ -43,24 +43,24 @@ _ATTRIBUTES = {
     "COLOR_": "further colours",
 }
 
-#: Modes of primitives that are triangles.
+#: glTF's numbers of the primitive modes that consist of triangles.
 TRIANGLES, STRIP, FAN = 4, 5, 6
 
 
 @dataclass(frozen=True, eq=False)
 class Container:
-    """A file whose description is consistent.
+    """The content of a GLB file whose JSON description has been validated.
 
     Parameters
     ----------
     tree : dict
-        The description.
+        The JSON description.
     data : bytes
-        The binary chunk, which accessors lie in.
+        The binary chunk, which contains the elements of accessors.
     findings : tuple of Finding
-        Findings about points and lines, which are skipped.
+        Findings about primitives that are skipped: points, lines, and those without positions.
     dropped : tuple of str
-        As `RawMesh.dropped`.
+        Kinds of data that are not read, as in `RawMesh.dropped`.
     """
 
     tree: dict[str, Any]
@@ -70,12 +70,12 @@ class Container:
 
 
 def container_of(source: Source) -> Container:
-    """Return the description and the data of a file.
+    """Return the JSON description and the binary data of a GLB file, validated.
 
     Raises
     ------
     FormatError
-        If it is cut off, is no GLB of version 2, or its description is inconsistent.
+        If the file is cut off, is no GLB of version 2, or its description is inconsistent.
     """
     tree, data = _chunks(source)
     try:
@@ -89,7 +89,7 @@ def container_of(source: Source) -> Container:
 
 
 def _chunks(source: Source) -> tuple[dict[str, Any], bytes]:
-    """Return the parsed JSON chunk and the binary one."""
+    """Return the parsed JSON chunk and the bytes of the binary chunk of a GLB file."""
     data = source.data
     if len(data) < _HEADER + 8 or data[:4] != _MAGIC:
         raise source.error("the file is not a GLB: it does not begin with “glTF”.")
@@ -125,14 +125,15 @@ def _parsed(source: Source, chunk: bytes) -> dict[str, Any]:
 
 
 class _Claims:
-    """The description to check, and the number of bytes that back it.
+    """A check of a GLB file's JSON description against the length of its binary data.
 
     Parameters
     ----------
     source : Source
     tree : dict
+        The JSON description.
     held : int
-        Length of the binary chunk.
+        Length of the binary chunk in bytes.
     """
 
     def __init__(self, source: Source, tree: dict[str, Any], held: int) -> None:
@@ -141,7 +142,7 @@ class _Claims:
         self._held = held
 
     def check(self) -> None:
-        """Check everything that decoding relies on."""
+        """Raise a `FormatError` if the description has an error that would break decoding."""
         for extension in self._tree.get("extensionsRequired", []):
             if extension not in _READ and not extension.startswith(_LOOKS):
                 message = (
@@ -168,7 +169,7 @@ class _Claims:
         self._check_nodes(self._tree.get("nodes", []))
 
     def _entry(self, kind: str, index: Any) -> dict[str, Any]:
-        """Return the entry of an index; unlike in Python, negative indices are errors."""
+        """Return entry `index` of the list `kind`; a negative or too large index is an error."""
         entries: list[dict[str, Any]] = self._tree.get(kind, [])
         if type(index) is not int or not 0 <= index < len(entries):
             message = (
@@ -179,7 +180,7 @@ class _Claims:
         return entries[index]
 
     def _check_accessor(self, number: int, accessor: dict[str, Any]) -> None:
-        """Check where the elements lie; accessors without a buffer view are checked when used."""
+        """Raise a `FormatError` if elements of an accessor lie outside the binary data."""
         count, element = accessor["count"], _bytes_of(accessor)
         if "bufferView" in accessor:
             self._check_elements(number, accessor, count, element)
@@ -221,19 +222,19 @@ class _Claims:
             raise self._source.error(message, "truncated")
 
     def _used(self, number: Any) -> dict[str, Any]:
-        """Return an accessor that will be read; without a buffer view it must be sparse."""
+        """Return the accessor `number`; one that has no data to decode is an error."""
         accessor = self._entry("accessors", number)
         if "bufferView" in accessor:
             return accessor
         if "sparse" not in accessor:
-            # Compression extensions leave it without a view, too.
+            # An accessor has no buffer view if an extension has compressed its data, too.
             used = self._tree.get("extensionsUsed", [])
             packing = next((one for one in used if one in _PACKINGS), "")
             message = f"accessor {number} has no data that can be read; they may be compressed."
             raise self._source.error(message + _way_out(packing), "unsupported")
         zeros = accessor["count"] * _bytes_of(accessor)
         if not 0 <= zeros <= self._held:
-            # Nothing else limits their number.
+            # Zeros take no bytes in the file, so its length does not limit their number.
             message = (
                 f"accessor {number} has no data and stands for {zeros} bytes of zeros, more than"
                 " the whole binary chunk."
@@ -242,7 +243,10 @@ class _Claims:
         return accessor
 
     def _check_nodes(self, nodes: list[dict[str, Any]]) -> None:
-        """Raise an error for nodes with several parents, which allow cycles and huge scenes."""
+        """Raise a `FormatError` if a node has several parents, or depth or triangles are too many.
+
+        Nodes with several parents would allow cycles and huge scenes.
+        """
         parents = [-1] * len(nodes)
         for number, node in enumerate(nodes):
             for child in node.get("children", []):
@@ -291,7 +295,7 @@ class _Claims:
         return total * times
 
     def _times(self, node: dict[str, Any]) -> int:
-        """Return the number of instances of a node's mesh."""
+        """Return how often a node shows its mesh: once, or once for each of its instances."""
         told = instances_of(node)
         if told is None:
             return 1
@@ -305,28 +309,28 @@ class _Claims:
 
 
 def _way_out(extension: str) -> str:
-    """Return advice on how to convert a file that needs an extension, if there is any."""
+    """Return advice on how to convert a file that needs an extension, or an empty string."""
     return _UNPACK if extension in _PACKINGS else ""
 
 
 def _bytes_of(told: dict[str, Any], shape: str = "") -> int:
-    """Return the bytes of one element."""
+    """Return the number of bytes of an accessor's element; `shape` replaces the accessor's type."""
     return np.dtype(COMPONENTS[told["componentType"]]).itemsize * ELEMENTS[shape or told["type"]]
 
 
 def instances_of(node: dict[str, Any]) -> dict[str, Any] | None:
-    """Return the accessors of the instances of a node, None if it has no instancing."""
+    """Return the accessor numbers of a node's instances by key; None if it has no instances."""
     told = node.get("extensions", {}).get(_INSTANCES)
     return None if told is None else dict(told["attributes"])
 
 
 def _is_nowhere(primitive: dict[str, Any]) -> bool:
-    """Say whether a primitive has no positions; glTF 2.0, 3.7.2.1: readers should skip it."""
+    """Say whether a primitive has no vertex positions: readers skip it (glTF 2.0, 3.7.2.1)."""
     return "POSITION" not in primitive["attributes"]
 
 
 def _dropped(tree: dict[str, Any]) -> tuple[str, ...]:
-    """Return the kinds of data besides the shape."""
+    """Return the names of the kinds of data in a GLB file that are not read, sorted."""
     found = {key for key in ("animations", "skins") if tree.get(key)}
     for primitive in _primitives(tree):
         if primitive.get("targets"):
@@ -346,13 +350,13 @@ def _primitives(tree: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def picture_of(material: dict[str, Any]) -> dict[str, Any]:
-    """Return the texture entry of a material's base colour; empty if there is none."""
+    """Return the texture reference of a material's base colour; an empty dict if there is none."""
     told: dict[str, Any] = material.get("pbrMetallicRoughness", {}).get("baseColorTexture", {})
     return told
 
 
 def uv_of(tree: dict[str, Any], primitive: dict[str, Any]) -> str:
-    """Return the name of the texture coordinates that a primitive's base colour uses."""
+    """Return the attribute, such as “TEXCOORD_0”, that a primitive's base colour texture uses."""
     materials, number = tree.get("materials", []), primitive.get("material", -1)
     told = picture_of(materials[number]) if 0 <= number < len(materials) else {}
     return f"TEXCOORD_{told.get('texCoord', 0)}"

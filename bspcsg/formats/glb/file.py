@@ -1,8 +1,8 @@
-"""GLB, the binary form of glTF 2.0: metres, y upwards, single precision.
+"""Reading and writing GLB, the binary form of glTF 2.0: metres, y upwards, single precision.
 
-The matrix of a node converts the model's millimetres with z upwards to metres, so coordinates are
-stored unscaled: numbers that single precision can hold read back unchanged. Names need not differ,
-so every object is a node with a mesh of its own.
+The matrix of each written node converts the model's millimetres with z upwards to metres, so
+coordinates are stored unscaled: numbers of single precision read back unchanged. Objects may have
+equal names, so every object is a node with a mesh of its own.
 """
 
 import json
@@ -26,7 +26,7 @@ from .container import container_of
 from .nodes import NodeMesh, shown
 from .said import Pictures, called, columns_of, dropped_pictures
 
-#: Millimetres with z upwards to metres with y upwards, for column vectors, and back.
+#: Matrices for column vectors from millimetres with z upwards to metres with y upwards, and back.
 TO_METRES = np.array(
     [[0.001, 0, 0, 0], [0, 0, 0.001, 0], [0, -0.001, 0, 0], [0, 0, 0, 1]], dtype=np.float64
 )
@@ -34,13 +34,13 @@ TO_MILLIMETRES = np.array(
     [[1000, 0, 0, 0], [0, 0, -1000, 0], [0, 1000, 0, 0], [0, 0, 0, 1]], dtype=np.float64
 )
 
-#: Numbers of glTF: types of components, and what a view of the data is for.
+#: Numbers in glTF that stand for component types and for the purpose of a buffer view.
 _FLOAT, _UNSIGNED, _VERTICES, _INDICES = 5126, 5125, 34962, 34963
 _WORD = 5123
 
 
 def read(source: Source) -> RawMesh:
-    """Read the triangles of every node as one mesh, in millimetres with z upwards.
+    """Read the triangles of all nodes of the scene as one mesh, in millimetres with z upwards.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def read(source: Source) -> RawMesh:
 
 
 def _placed(one: NodeMesh) -> PlacedMesh:
-    """Return the mesh of a node in millimetres; a mirrored one is turned right side out."""
+    """Return a node's mesh and its map to millimetres; mirrored triangles are reversed."""
     placing = TO_MILLIMETRES @ one.matrix
     linear = placing[:3, :3]
     with np.errstate(invalid="ignore", over="ignore"):
@@ -79,8 +79,8 @@ def _placed(one: NodeMesh) -> PlacedMesh:
 
 def _moved(vertices: FloatArray, matrix: FloatArray) -> FloatArray:
     x, y, z = vertices.T
-    # No matrix product: if a row has one entry, the result must be exact.
-    with np.errstate(invalid="ignore", over="ignore"):  # refused later
+    # No matrix product: if a row has only one nonzero entry, the result must be exact.
+    with np.errstate(invalid="ignore", over="ignore"):  # not finite: refused later
         rows = [row[0] * x + row[1] * y + row[2] * z + row[3] for row in matrix[:3]]
     return np.stack(rows, axis=1)
 
@@ -101,13 +101,13 @@ def _unit() -> Finding:
 
 
 def most_bytes(mesh: Mesh | RawMesh) -> int:
-    """Return an upper bound of the bytes of data; each object has vertices of its own."""
+    """Return an upper bound of the bytes of vertices and indices; objects share no vertices."""
     vertices = min(3 * len(mesh.faces), len(mesh.vertices) * len(parts_of(mesh)))
     return 12 * (len(mesh.faces) + vertices)
 
 
 def beyond(mesh: Mesh | RawMesh) -> str:
-    """Return why a mesh is too large for the format, or nothing if it fits."""
+    """Return why a mesh is too large for GLB, or an empty string if it fits."""
     is_beyond = most_bytes(mesh) > np.iinfo(np.uint32).max
     return (
         (
@@ -120,7 +120,7 @@ def beyond(mesh: Mesh | RawMesh) -> str:
 
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
-    """Yield the file; coordinates are rounded to single precision."""
+    """Yield the bytes of a GLB file; coordinates are rounded to single precision."""
     said = said_of(mesh)
     if said is not None:
         yield from _with_attributes(mesh, said)
@@ -138,7 +138,7 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
 
 
 def _with_attributes(mesh: Mesh | RawMesh, said: Attributes) -> Iterator[bytes]:
-    """Yield the file with attributes; vertices are split where the values of corners differ."""
+    """Yield the bytes of a GLB file; a vertex whose corners differ in an attribute is split."""
     described = Description(False)
     pictures = Pictures(said.materials, described.append)
     start = 0
@@ -153,7 +153,11 @@ def _with_attributes(mesh: Mesh | RawMesh, said: Attributes) -> Iterator[bytes]:
 
 
 def _divided(faces: IndexArray, columns: dict[str, Values]) -> tuple[IndexArray, IndexArray]:
-    """Return one corner for each split vertex, and the triangles as indices of those vertices."""
+    """Split the vertices of triangles (m, 3) whose corners differ in the values of a column.
+
+    Return the number, from 0 to 3 m - 1, of one corner for each new vertex, and the triangles as
+    indices of the new vertices.
+    """
     blocks = [faces.reshape(-1, 1).astype("<i8").view(np.uint8)]
     for values in columns.values():
         flat = np.ascontiguousarray(values).reshape(len(blocks[0]), -1)
@@ -165,7 +169,7 @@ def _divided(faces: IndexArray, columns: dict[str, Values]) -> tuple[IndexArray,
 
 
 def _runs(names: Values | None, count: int) -> list[tuple[int, int, str]]:
-    """Return the ranges of consecutive triangles of one material."""
+    """Return (begin, end, material name) for each run of consecutive triangles of one material."""
     if names is None:
         return [(0, count, "")]
     starts = [0, *(np.flatnonzero(names[1:] != names[:-1]) + 1).tolist()]
@@ -174,7 +178,7 @@ def _runs(names: Values | None, count: int) -> list[tuple[int, int, str]]:
 
 
 class Description:
-    """The JSON of a file, built object by object."""
+    """The JSON description of a GLB file, built object by object."""
 
     def __init__(self, is_empty_set: bool) -> None:
         self._extras = {"extras": {"bspcsg": "the empty set"}} if is_empty_set else {}
@@ -186,7 +190,7 @@ class Description:
         self.blocks: list[bytes] = []
 
     def add(self, name: str, vertices: "np.ndarray[Any, Any]", triangles: int) -> None:
-        """Add an object whose vertices and indices follow in the data."""
+        """Describe an object; the caller writes its vertices, then its indices, to the data."""
         self._names.append({"name": called(name)} if name else {})
         self._primitives.append([_primitive(len(self._names) - 1)])
         low, high = vertices.min(axis=0).tolist(), vertices.max(axis=0).tolist()
@@ -202,12 +206,12 @@ class Description:
         self._accessors.append({**accessor, "count": count, "type": kind})
 
     def add_object(self, name: str, primitives: list[dict[str, Any]]) -> None:
-        """Add an object whose data have been appended."""
+        """Describe an object that consists of primitives from `append_mesh`."""
         self._names.append({"name": called(name)} if name else {})
         self._primitives.append(primitives)
 
     def append(self, data: bytes) -> int:
-        """Add bytes to the data, and return the number of their view."""
+        """Append bytes to the binary data, and return the number of their buffer view."""
         view = {"buffer": 0, "byteOffset": self._size, "byteLength": len(data)}
         self._views.append(view)
         self.blocks.append(data + bytes(-len(data) % 4))
@@ -217,7 +221,7 @@ class Description:
     def append_mesh(
         self, points: FloatArray, faces: IndexArray, said: Attributes, pictures: Pictures
     ) -> list[dict[str, Any]]:
-        """Append the triangles of an object with their attributes; return its primitives."""
+        """Append triangles with attributes to the data; return a primitive for each material."""
         columns = columns_of(said, np.arange(len(faces)))
         first, corners = _divided(faces, columns)
         vertices = points[faces.ravel()[first]].astype("<f4")
@@ -233,7 +237,7 @@ class Description:
         return primitives
 
     def append_column(self, values: Values, with_bounds: bool = False) -> int:
-        """Add values of vertices, and return the number of their accessor."""
+        """Append an array of vertex values to the data, and return the number of its accessor."""
         little = np.ascontiguousarray(values, values.dtype.newbyteorder("<"))
         width = 1 if values.ndim == 1 else values.shape[1]
         whole = {"componentType": _WORD, "normalized": True}
@@ -248,29 +252,40 @@ class Description:
         return len(self._accessors) - 1
 
     def append_indices(self, corners: IndexArray) -> int:
-        """Add triangles, and return the number of their accessor."""
+        """Append triangles to the data as vertex indices; return the number of their accessor."""
         view = self.append(corners.astype("<u4").tobytes())
         self._views[view]["target"] = _INDICES
         accessor = {"bufferView": view, "componentType": _UNSIGNED, "count": corners.size}
         self._accessors.append({**accessor, "type": "SCALAR"})
         return len(self._accessors) - 1
 
-    def _roots(self) -> list[int]:
-        return list(range(len(self._names)))
-
-    def _nodes(self) -> list[dict[str, Any]]:
+    def _separate_nodes(self) -> list[dict[str, Any]]:
+        """Return a node for each object, in metres with y upwards."""
         matrix = TO_METRES.T.ravel().tolist()
         return [
             {**named, "mesh": number, "matrix": matrix} for number, named in enumerate(self._names)
         ]
 
-    def text(self, further: dict[str, Any] | None = None) -> bytes:
-        """Return the JSON."""
+    def text(
+        self, further: dict[str, Any] | None = None, nodes: list[dict[str, Any]] | None = None
+    ) -> bytes:
+        """Return the JSON description as UTF-8 bytes.
+
+        Parameters
+        ----------
+        further : dict, optional
+            More entries at the top level, such as materials.
+        nodes : list of dict, optional
+            A tree of nodes as glTF has them, the root first; by default a root for each object.
+        """
+        roots = [0]
+        if nodes is None:
+            roots, nodes = list(range(len(self._names))), self._separate_nodes()
         asset = {"version": "2.0", "generator": "bspcsg", **self._extras}
         tree: dict[str, Any] = {"asset": asset, "scene": 0}
-        tree["scenes"] = [{"nodes": self._roots()} if self._names else {}]
+        tree["scenes"] = [{"nodes": roots} if self._names else {}]
         if self._names:
-            tree["nodes"] = self._nodes()
+            tree["nodes"] = nodes
             tree["meshes"] = [
                 {**named, "primitives": self._primitives[number]}
                 for number, named in enumerate(self._names)
@@ -282,32 +297,12 @@ class Description:
         return json.dumps(tree, separators=(",", ":"), ensure_ascii=False).encode()
 
 
-class SceneDescription(Description):
-    """The JSON of a file whose nodes are a tree.
-
-    Parameters
-    ----------
-    nodes : list of dict
-        As glTF has them; the first is the root.
-    """
-
-    def __init__(self, nodes: list[dict[str, Any]]) -> None:
-        super().__init__(False)
-        self._tree = nodes
-
-    def _nodes(self) -> list[dict[str, Any]]:
-        return self._tree
-
-    def _roots(self) -> list[int]:
-        return [0]
-
-
 def _primitive(number: int) -> dict[str, Any]:
     return {"attributes": {"POSITION": 2 * number}, "indices": 2 * number + 1, "mode": 4}
 
 
 def container(description: bytes, blocks: list[bytes]) -> Iterator[bytes]:
-    """Yield a file of blocks whose sizes are multiples of four."""
+    """Yield a GLB file of a JSON description and data blocks, each a multiple of 4 bytes long."""
     text = description + b" " * (-len(description) % 4)
     held = sum(map(len, blocks))
     total = 20 + len(text) + (8 + held if blocks else 0)
@@ -322,7 +317,7 @@ def _word(number: int) -> bytes:
 
 
 def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
-    """Return what single precision would change, and that the unit changes.
+    """Return a finding about the change of unit, and findings about rounding to single precision.
 
     Raises
     ------

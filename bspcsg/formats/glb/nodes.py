@@ -1,4 +1,4 @@
-"""The meshes of the nodes of a GLB: triangles in single precision, each mesh with a matrix."""
+"""Reading of the meshes at the nodes of a GLB: triangles in single precision, with a matrix."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -23,17 +23,17 @@ _IDENTITY = np.eye(4)
 
 @dataclass(frozen=True, eq=False)
 class NodeMesh:
-    """A mesh at a node.
+    """A mesh that a node of a GLB shows, with the matrix from the mesh to the scene.
 
     Parameters
     ----------
     name : str
         The name of the mesh, or of the node if the mesh has none.
     vertices : (n, 3) float32
-        Before the matrix.
+        In the mesh's own coordinates.
     faces : (m, 3) int64
     matrix : (4, 4) float64
-        For column vectors: from the mesh to the scene.
+        From the mesh's coordinates to the scene's, for column vectors.
     attributes : Attributes or None
     """
 
@@ -45,10 +45,10 @@ class NodeMesh:
 
 
 def shown(container: Container) -> tuple[list[NodeMesh], int]:
-    """Return what the scene shows, and how many nodes with a mesh it does not show.
+    """Return the meshes of a scene's nodes, and the number of nodes with a mesh outside the scene.
 
-    A mesh of several nodes appears at each of them. The nodes come in the order of the file,
-    children after their parent.
+    A mesh of several nodes is returned once for each of them. The nodes come in the order of the
+    file, children after their parent.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def shown(container: Container) -> tuple[list[NodeMesh], int]:
 
 
 def _visited(tree: dict[str, Any], nodes: list[dict[str, Any]]) -> Iterator[tuple[int, FloatArray]]:
-    """Yield the nodes of the scene, each with its matrix; a file without scenes shows them all."""
+    """Yield number and matrix to the scene of each node; all nodes if the file has no scenes."""
     scenes = tree.get("scenes", [])
     if scenes:
         roots = scenes[tree.get("scene", 0)].get("nodes", [])
@@ -98,7 +98,7 @@ def _visited(tree: dict[str, Any], nodes: list[dict[str, Any]]) -> Iterator[tupl
 
 
 def local_matrix(node: dict[str, Any]) -> FloatArray:
-    """Return the matrix from a node to its parent, for column vectors."""
+    """Return the matrix (4, 4) from a glTF node's coordinates to its parent's, for columns."""
     if "matrix" in node:
         return np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
     given = [
@@ -109,12 +109,12 @@ def local_matrix(node: dict[str, Any]) -> FloatArray:
     return matrix
 
 
-#: No translation, no rotation, and the scale 1.
+#: glTF's defaults of a node: no translation, no rotation (a quaternion), and the scale 1.
 _USUAL = ([0, 0, 0], [0, 0, 0, 1], [1, 1, 1])
 
 
 def places_of(container: Container, node: dict[str, Any]) -> FloatArray:
-    """Return the matrices of a node's instances, (n, 4, 4), relative to the node."""
+    """Return the matrices (n, 4, 4) from a node's instances to the node, or one identity."""
     told = instances_of(node)
     if told is None:
         return _IDENTITY[None]
@@ -134,7 +134,7 @@ def places_of(container: Container, node: dict[str, Any]) -> FloatArray:
 
 
 def _matrices(translations: FloatArray, rotations: FloatArray, scales: FloatArray) -> FloatArray:
-    """Return (n, 4, 4) matrices for column vectors, which scale, then turn, then move."""
+    """Return (n, 4, 4) matrices for column vectors: they scale, then rotate, then translate."""
     found = np.tile(_IDENTITY, (len(scales), 1, 1))
     found[:, :3, :3] = _turned(rotations) * scales[:, None]
     found[:, :3, 3] = translations
@@ -142,8 +142,8 @@ def _matrices(translations: FloatArray, rotations: FloatArray, scales: FloatArra
 
 
 def _turned(quaternions: FloatArray) -> FloatArray:
-    """Return the (n, 3, 3) matrices of (n, 4) quaternions of any length, the real part last."""
-    with np.errstate(invalid="ignore"):  # what is not finite is refused later
+    """Return the rotation matrices (n, 3, 3) of quaternions (n, 4), any length, real part last."""
+    with np.errstate(invalid="ignore"):  # results that are not finite are refused later
         x, y, z, w = (quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)).T
     rows = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
@@ -154,7 +154,7 @@ def _turned(quaternions: FloatArray) -> FloatArray:
 
 
 def triangles_of(container: Container, mesh: dict[str, Any], materials: Named) -> _Triangles:
-    """Return the triangles of all primitives of a mesh, and their attributes."""
+    """Return vertices, triangles and attributes of all primitives of a glTF mesh, joined."""
     vertices: list[SingleArray] = [np.zeros((0, 3), np.float32)]
     faces = [np.zeros((0, 3), np.int64)]
     parts = []
@@ -168,7 +168,7 @@ def triangles_of(container: Container, mesh: dict[str, Any], materials: Named) -
         corners = _faces(container, primitive, len(points), mode)
         used = None
         if primitive["attributes"]["POSITION"] in shared:
-            # If several primitives share vertices, each takes the vertices that it uses.
+            # If several primitives share vertices, each gets a copy of the vertices that it uses.
             used, corners = compacted(corners)
         columns = read_columns(container, primitive, len(points), used)
         points = points if used is None else points[used]
@@ -186,12 +186,12 @@ def triangles_of(container: Container, mesh: dict[str, Any], materials: Named) -
 
 
 def _shared(primitives: list[dict[str, Any]]) -> set[Any]:
-    """Return the accessors of positions that more than one primitive names."""
+    """Return the numbers of the position accessors that more than one primitive uses."""
     named = Counter(primitive["attributes"].get("POSITION") for primitive in primitives)
     return {accessor for accessor, times in named.items() if times > 1}
 
 
-#: The kinds of components that positions have, and those of indices.
+#: The component types that positions may have, and those that indices may have.
 _POSITIONS = ("f4", "i1", "u1", "i2", "u2")
 _INDICES = ("u1", "u2", "u4")
 

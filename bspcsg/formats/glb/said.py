@@ -1,4 +1,4 @@
-"""Attributes and materials of GLB.
+"""Conversion of attributes and materials from and to GLB.
 
 Colours are converted between sRGB and linear (see `light`); other numbers are stored unchanged.
 glTF counts texture coordinates from the upper left corner of a picture, attributes count from the
@@ -21,26 +21,26 @@ from .accessors import fractions, numbers, stored
 from .container import Container, picture_of, uv_of
 from .light import as_read, color_of, shown, to_light, words_of
 
-#: Names and materials of a file, in its order.
+#: The name and the material of each material in a file, in file order.
 Named: TypeAlias = list[tuple[str, Material]]
 
-#: glTF's names of attributes that everybody knows.
+#: glTF's names of standard attributes, and our names of them.
 _KNOWN = {"NORMAL": "normal", "TEXCOORD_0": "uv", "COLOR_0": "color"}
 
-#: The beginning of the names that other attributes have in files; their own names follow.
+#: The prefix that glTF requires for the names of attributes that it does not define.
 _OWN = "_"
 
 
 def called(name: str) -> str:
-    """Return a name without lone surrogates, which UTF-8 cannot encode."""
+    """Return a name in which “?” replaces lone surrogates, which UTF-8 cannot encode."""
     return name.encode("utf-8", "replace").decode("utf-8")
 
 
 def kept(said: Attributes, vertices: FloatArray) -> Attributes:
-    """Return the attributes that GLB can hold, in single precision.
+    """Return the attributes that GLB can store, in single precision.
 
-    Normals and texture coordinates of corners, colours, materials of faces, and other floats of
-    vertices and corners, up to four for each. Where normals are missing, those of the faces are.
+    These are normals, texture coordinates, colours, materials of faces, and float arrays of
+    vertices and corners with up to four components. A missing normal becomes that of its face.
     """
     told = _with_all_normals(said.without_empty_material(), vertices)
     held = chosen(told, _kept).with_materials_called(called)
@@ -91,18 +91,18 @@ def _kept(kind: Kind, name: str, values: Values) -> Values | None:
 
 
 def _color(values: Values) -> Values:
-    """Return colours as files store them: four bytes, since rows must be multiples of four."""
+    """Return colours as four bytes each, since rows in a file must be multiples of four bytes."""
     return opaque(as_bytes(values))
 
 
 def _upright(uv: Values) -> Values:
-    """Flip texture coordinates vertically, in single precision."""
+    """Flip texture coordinates vertically: v becomes 1 - v, in single precision."""
     turned: Values = np.stack([uv[..., 0], np.float32(1) - uv[..., 1]], axis=-1)
     return turned
 
 
 def columns_of(said: Attributes, rows: IndexArray) -> dict[str, Values]:
-    """Return the values at the corners of some triangles, (k, 3, …), by glTF's names."""
+    """Return the attributes at the corners of the triangles `rows`, (k, 3, …), by glTF's names."""
     called = {name: semantic for semantic, name in _KNOWN.items()}
     found = {}
     for name in said.names:
@@ -121,16 +121,16 @@ def _in_file(name: str, values: Values) -> Values:
 def read_columns(
     container: Container, primitive: dict[str, Any], count: int, used: IndexArray | None
 ) -> dict[str, Values]:
-    """Return the attributes of some of a primitive's vertices.
+    """Return the attributes of a primitive's vertices by name, for all vertices or a selection.
 
     Parameters
     ----------
     container : Container
     primitive : dict
     count : int
-        Number of its vertices.
+        Number of the primitive's vertices.
     used : (k,) int64 or None
-        Those that are wanted; None for all.
+        Indices of the selected vertices; None for all.
     """
     found: dict[str, Values] = {}
     known = {**_KNOWN, "TEXCOORD_0": "", uv_of(container.tree, primitive): "uv"}
@@ -147,7 +147,7 @@ def read_columns(
 
 
 def _decoded(name: str, values: Values, is_fraction: bool) -> Values:
-    """Return the values of an attribute that numbers in a file mean."""
+    """Convert stored numbers to an attribute: colours to sRGB, texture coordinates flipped."""
     if name == "color":
         return shown(fractions(values), is_whole=values.dtype.kind != "f")
     decoded = numbers(values, is_fraction)
@@ -162,7 +162,7 @@ def _fits(name: str, values: Values) -> bool:
 
 
 def materials_of(tree: Mapping[str, Any], data: bytes) -> Named:
-    """Return names and materials of a file; those without a name are called by their numbers."""
+    """Return names and materials of a file; names that are missing or repeated get a number."""
     found: Named = []
     taken: set[str] = set()
     for number, told in enumerate(tree.get("materials", [])):
@@ -181,7 +181,7 @@ def materials_of(tree: Mapping[str, Any], data: bytes) -> Named:
 
 
 def _texture(tree: Mapping[str, Any], data: bytes, told: Any) -> bytes | None:
-    """Return the picture of a texture, if the file contains it in a known format."""
+    """Return the picture of a texture; None if the file does not contain it as PNG or JPEG."""
     try:
         image = tree["images"][tree["textures"][told["index"]]["source"]]
         view = tree["bufferViews"][image["bufferView"]]
@@ -193,7 +193,7 @@ def _texture(tree: Mapping[str, Any], data: bytes, told: Any) -> bytes | None:
 
 
 def dropped_pictures(tree: Mapping[str, Any], data: bytes) -> tuple[str, ...]:
-    """Return the kinds of pictures that are not kept, for `RawMesh.dropped`."""
+    """Return text for `RawMesh.dropped` if a material's picture cannot be read, else nothing."""
     textures = range(len(tree.get("textures", [])))
     named = [picture_of(material) for material in tree.get("materials", [])]
     given = [told for told in named if told.get("index") in textures]
@@ -202,13 +202,13 @@ def dropped_pictures(tree: Mapping[str, Any], data: bytes) -> tuple[str, ...]:
 
 
 class Pictures:
-    """The materials of a file that is written, and the pictures they need.
+    """The materials of a GLB file that is being written, with their pictures.
 
     Parameters
     ----------
     materials : dict of str to Material
     append : callable
-        Adds bytes to the data, and returns the number of their view.
+        Appends bytes to the binary data, and returns the number of their buffer view.
     """
 
     def __init__(self, materials: Mapping[str, Material], append: Callable[[bytes], int]) -> None:
@@ -217,7 +217,7 @@ class Pictures:
         self._append = append
 
     def described(self) -> dict[str, Any]:
-        """Return the entries of the description for them."""
+        """Append the pictures to the data; return the JSON of materials, textures and images."""
         if not self._materials:
             return {}
         images: list[dict[str, Any]] = []

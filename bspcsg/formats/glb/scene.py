@@ -1,4 +1,4 @@
-"""Reading and writing the tree of a GLB's nodes."""
+"""Reading and writing a GLB as a tree of nodes."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -14,7 +14,7 @@ from ..raw import RawMesh
 from ..scene import SceneNode
 from ..source import Source
 from .container import Container, container_of, instances_of
-from .file import TO_METRES, TO_MILLIMETRES, SceneDescription, container
+from .file import TO_METRES, TO_MILLIMETRES, Description, container
 from .light import as_read
 from .nodes import local_matrix, places_of, triangles_of
 from .said import Pictures, called, kept, materials_of
@@ -23,12 +23,12 @@ _IDENTITY = np.eye(4)
 
 
 def read(source: Source) -> SceneNode:
-    """Read the nodes of the scene, in millimetres with z upwards.
+    """Read the scene of a GLB as a tree of nodes, in millimetres with z upwards.
 
     Raises
     ------
     FormatError
-        As for a mesh.
+        If the file is cut off, is no GLB of version 2, or has content that cannot be read.
     """
     held = container_of(source)
     try:
@@ -40,7 +40,7 @@ def read(source: Source) -> SceneNode:
 
 
 class _Reading:
-    """The nodes of one file; a mesh at several nodes is one."""
+    """A reader of one file's nodes; a mesh that several nodes share becomes one object."""
 
     def __init__(self, held: Container) -> None:
         self._held = held
@@ -61,12 +61,12 @@ class _Reading:
         return found[0] if len(found) == 1 else SceneNode("", _IDENTITY, children=found)
 
     def _only_turns(self, told: dict[str, Any]) -> bool:
-        """Say whether a node only converts to metres with y upwards, as this package writes it."""
+        """Say whether a node has only one child and the matrix `TO_METRES`, as written here."""
         is_bare = set(told) == {"matrix", "children"} and len(told["children"]) == 1
         return is_bare and bool((local_matrix(told) == TO_METRES).all())
 
     def _node(self, number: int, outer: FloatArray) -> SceneNode:
-        """Return a node; the depth of the tree has been checked."""
+        """Return node `number` with all below it; `outer` is applied after the node's matrix."""
         if not 0 <= number < len(self._nodes):
             raise IndexError(f"node {number} does not exist")
         told = self._nodes[number]
@@ -83,7 +83,7 @@ class _Reading:
         return SceneNode(name, matrix, None, None, (*own, *children))
 
     def _mesh(self, number: int) -> tuple[RawMesh, tuple[float, ...] | None]:
-        """Return a mesh and its colour; all nodes share one object."""
+        """Return mesh `number`, always the same object, and its colour or None."""
         if number not in self._meshes:
             told = self._held.tree["meshes"][number]
             vertices, faces, said = triangles_of(self._held, told, self._materials)
@@ -97,18 +97,18 @@ class _Reading:
 
 
 def as_written(root: SceneNode) -> SceneNode:
-    """Return a tree with the colours and attributes that are read after it was written."""
+    """Return a tree with the colours and attributes that reading its GLB file would return."""
     return _AsGlb().node(root)
 
 
 class _AsGlb:
-    """A tree as GLB holds it; what nodes share stays shared."""
+    """A converter of trees to what GLB can store; nodes that share a mesh share the new one."""
 
     def __init__(self) -> None:
         self._meshes: dict[int, tuple[RawMesh, tuple[float, ...] | None]] = {}
 
     def node(self, node: SceneNode) -> SceneNode:
-        """Return a node as GLB holds it."""
+        """Return a node, and all below it, with the colours and attributes that GLB can store."""
         mesh, painted = (None, None) if node.mesh is None else self._mesh(node.mesh)
         color = painted if node.color is None else as_read(node.color)
         return SceneNode(node.name, node.matrix, mesh, color, tuple(map(self.node, node.children)))
@@ -123,13 +123,17 @@ class _AsGlb:
 
 
 def _painted(mesh: RawMesh) -> tuple[RawMesh, tuple[float, ...] | None]:
-    """Return a mesh and its colour: a lone material that is named after a colour is removed."""
+    """Return a mesh and its colour, or None for the colour.
+
+    If the mesh has one material, named after its own colour, that material is removed and its
+    colour returned.
+    """
     said = mesh.attributes
     if said is None or "material" not in said.face or "color" in said.names or not len(mesh.faces):
         return mesh, None
     names = np.unique(said.face["material"]).tolist()
     material = said.materials.get(names[0], Material())
-    # Colours that are equal in bytes have names that differ by a number at the end.
+    # Materials whose colours are equal in bytes have names that differ by a number at the end.
     is_named = len(names) == 1 and names[0].partition(" ")[0] == hexadecimal(material.color)
     if not is_named or material.texture is not None:
         return mesh, None
@@ -138,12 +142,12 @@ def _painted(mesh: RawMesh) -> tuple[RawMesh, tuple[float, ...] | None]:
 
 
 def encode(root: SceneNode) -> Iterator[bytes]:
-    """Yield the file of a tree from `as_written`; meshes of several nodes are stored once.
+    """Yield the bytes of a GLB file of a tree from `as_written`, each shared mesh stored once.
 
     Meshes have no names, since a tree has only names of nodes.
     """
     nodes: list[dict[str, Any]] = [{"matrix": TO_METRES.T.ravel().tolist()}]
-    described = SceneDescription(nodes)
+    described = Description(is_empty_set=False)
     taken: dict[str, Material] = {}
     meshes: dict[tuple[int, tuple[float, ...] | None], tuple[int, Attributes, RawMesh]] = {}
     waiting = [(root, 0)]
@@ -164,7 +168,7 @@ def encode(root: SceneNode) -> Iterator[bytes]:
     for _, said, mesh in meshes.values():
         described.add_object("", described.append_mesh(mesh.vertices, mesh.faces, said, pictures))
     further = pictures.described()
-    yield from container(described.text(further), described.blocks)
+    yield from container(described.text(further, nodes), described.blocks)
 
 
 def _attributes_of(mesh: RawMesh, color: tuple[float, ...] | None) -> Attributes:

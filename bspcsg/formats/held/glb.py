@@ -1,4 +1,4 @@
-"""The content of GLB files."""
+"""A reader of GLB files that this package has just written, to check their content."""
 
 from typing import BinaryIO
 
@@ -10,7 +10,7 @@ from .layout import StoredMesh
 
 
 def objects(file: BinaryIO) -> list[StoredMesh]:
-    """Return what the nodes show, in metres each."""
+    """Return the meshes of the nodes as stored; raise an error if a matrix is not `TO_METRES`."""
     found, hidden = shown(container_of(Source("file", file.read())))
     if hidden or any((one.matrix != TO_METRES).any() for one in found):
         raise ValueError("a node has another transform than the one written")

@@ -1,4 +1,4 @@
-"""Objects of a file, and blocks of numbers with a common layout."""
+"""Objects of a mesh file that is being checked, and the rows of numbers in that file."""
 
 import os
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from ..blocks import ROWS_PER_FILE_BLOCK, blocks
 
 @dataclass(frozen=True, eq=False)
 class StoredMesh:
-    """One object as it stands in a file.
+    """One object of a file, with the numbers that the file contains.
 
     Parameters
     ----------
@@ -31,53 +31,53 @@ class StoredMesh:
 
     @property
     def count(self) -> int:
-        """Number of triangles."""
+        """The number of triangles."""
         return len(self.vertices) // 3 if self.faces is None else len(self.faces)
 
     def has(self, vertices: npt.NDArray[Any], faces: IndexArray) -> bool:
-        """Say whether the object has exactly these arrays."""
+        """Say whether the object has exactly these vertices and faces, in this order."""
         if self.faces is None or self.vertices.shape != vertices.shape:
             return False
         return bool((self.faces == faces).all() and (self.vertices == vertices).all())
 
     def loaded(self) -> "StoredMesh":
-        """Return it with all of its numbers in memory, where they are."""
+        """Return the object itself, since its numbers are already in memory."""
         return self
 
 
 class RowsInFile(Protocol):
-    """Rows of three numbers in a file, which are read on demand."""
+    """Rows of three numbers in a file, which are read from the file when they are needed."""
 
     def __len__(self) -> int:
         """Return the number of rows."""
 
     @property
     def dtype(self) -> "np.dtype[Any]":
-        """The type of one number."""
+        """The numpy type of one number in the rows."""
 
     def are(self, expected: npt.NDArray[Any]) -> bool:
-        """Say whether the rows are these."""
+        """Say whether the rows equal the rows of `expected`."""
 
     def everything(self) -> npt.NDArray[Any]:
-        """Return all rows."""
+        """Return all rows as one array."""
 
     def check_last(self) -> None:
-        """Refuse a file that does not end with them."""
+        """Raise a `ValueError` unless the file ends after the last row."""
 
 
 class Rows:
-    """Numbers in records of one size.
+    """Rows of numbers in a binary file, each row a record of the same number of bytes.
 
-    Blocks that stay in a processor's cache are read and compared in a fifth of the time that a
-    file takes in fresh memory.
+    They are read and compared in blocks that stay in the processor's cache: this takes a fifth of
+    the time of reading the whole file into new memory.
 
     Parameters
     ----------
     file : binary file
     start : int
-        The first of their bytes.
+        The offset of the first row's first byte.
     row : dtype
-        Of one row.
+        The type of one row.
     count : int
     """
 
@@ -93,42 +93,42 @@ class Rows:
 
     @property
     def dtype(self) -> "np.dtype[Any]":
-        """The type of one number."""
+        """The numpy type of one number in the rows."""
         base: np.dtype[Any] = self._row.base
         return base
 
     @property
     def end(self) -> int:
-        """The offset of the first byte after them."""
+        """The offset of the first byte after the last row."""
         return self._start + self._count * int(self._row.itemsize)
 
     def check_last(self) -> None:
-        """Refuse a file that does not end with them."""
+        """Raise a `ValueError` unless the file ends after the last row."""
         if size_of(self._file) != self.end:
             raise ValueError(f"its length is not the {self.end} bytes that follow from its header")
 
     def are(self, expected: npt.NDArray[Any]) -> bool:
-        """Say whether the rows are these."""
+        """Say whether the rows equal the rows of `expected` bit by bit."""
         return all(
             self.hold(block, expected[block]) for block in blocks(self._count, ROWS_PER_FILE_BLOCK)
         )
 
     def hold(self, block: slice, expected: npt.NDArray[Any]) -> bool:
-        """Say whether the rows of a block, of numbers of eight bytes, equal these bit by bit."""
+        """Say whether a block's rows of 8-byte numbers equal the rows of `expected` bit by bit."""
         base = self._row.base
         words = np.ascontiguousarray(expected, base.newbyteorder("=")).view(np.uint64)
         return are_words(self.data(block), words, base == base.newbyteorder(">"))
 
     def numbers(self, block: slice) -> npt.NDArray[Any]:
-        """Return the rows of a block."""
+        """Return the rows of a block as an array."""
         return np.frombuffer(self.data(block), self._row)
 
     def everything(self) -> npt.NDArray[Any]:
-        """Return all rows."""
+        """Return all rows as one array."""
         return self.numbers(slice(None))
 
     def data(self, block: slice) -> bytes:
-        """Return the bytes of a block."""
+        """Return the bytes of a block of rows."""
         start, stop, _ = block.indices(self._count)
         size = self._row.itemsize
         return piece(self._file, self._start + start * size, (stop - start) * size)
@@ -136,14 +136,14 @@ class Rows:
 
 @dataclass(frozen=True, eq=False)
 class StoredRows:
-    """One object whose numbers are still in the file.
+    """One object of a file, whose numbers are read from the file when they are needed.
 
     Parameters
     ----------
     vertices, faces : RowsInFile
     name : str
     ends : bool
-        True if nothing may follow the faces.
+        True if nothing may follow the faces in the file.
     """
 
     vertices: RowsInFile
@@ -153,11 +153,11 @@ class StoredRows:
 
     @property
     def count(self) -> int:
-        """Number of triangles."""
+        """The number of triangles."""
         return len(self.faces)
 
     def has(self, vertices: npt.NDArray[Any], faces: IndexArray) -> bool:
-        """Say whether the file holds exactly these arrays, in this order."""
+        """Say whether the object has exactly these vertices and faces, in this order."""
         if len(self.vertices) != len(vertices):
             return False
         found = self.vertices.are(vertices) and self.faces.are(faces)
@@ -165,19 +165,19 @@ class StoredRows:
         return found
 
     def loaded(self) -> StoredMesh:
-        """Return it with all of its numbers in memory."""
+        """Return the object with all of its numbers in memory."""
         vertices, faces = self.vertices.everything(), self.faces.everything()
         self.check_end()
         return StoredMesh(vertices, faces, self.name)
 
     def check_end(self) -> None:
-        """Refuse a file that goes on where it should end."""
+        """Raise a `ValueError` if `ends` is true and something follows the faces in the file."""
         if self.ends:
             self.faces.check_last()
 
 
 def piece(file: BinaryIO, start: int, count: int) -> bytes:
-    """Return `count` bytes of a file; raise an error if it ends earlier."""
+    """Return `count` bytes of a file from offset `start`; fewer are a `ValueError`."""
     file.seek(start)
     data = file.read(count)
     if len(data) != count:
@@ -190,12 +190,15 @@ def size_of(file: BinaryIO) -> int:
     return file.seek(0, os.SEEK_END)
 
 
-#: The lines between two blocks of numbers have fewer bytes than this.
+#: An upper bound of the number of bytes in the text lines between two blocks of numbers.
 _MAX_LINE_BYTES = 1 << 12
 
 
 def text_at(file: BinaryIO, start: int, count: int = _MAX_LINE_BYTES) -> bytes:
-    """Return bytes of a file: unless told, enough for all lines before the next numbers."""
+    """Return up to `count` bytes of a file from offset `start`.
+
+    By default they include all text lines before the next block of numbers.
+    """
     file.seek(start)
     return file.read(count)
 
@@ -206,17 +209,23 @@ def header_of(file: BinaryIO) -> bytes:
 
 
 def after(key: bytes, line: bytes) -> str:
-    """Return the name that follows a key in a line."""
+    """Return the rest of a line that begins with `key`; raise a `ValueError` if it does not."""
     if not line.startswith(key):
         raise ValueError(f"a line does not begin with “{key.decode()}”")
     return line[len(key) :].decode("utf-8")
 
 
 def rows_of(block: bytes, row: bytes) -> npt.NDArray[np.float64]:
-    """Return the numbers of a block of equal rows; `#` stands for a number in the pattern `row`."""
+    """Return the numbers in a text that repeats the pattern `row`, where `#` stands for a number.
+
+    Each repetition gives one row of the array.
+    """
     return numbers_in_rows(block, row).reshape(-1, row.count(b"#"))
 
 
 def whole_rows_of(block: bytes, row: bytes) -> IndexArray:
-    """Return whole numbers as `rows_of` does."""
+    """Return the integers in a text that repeats the pattern `row`, where `#` stands for one.
+
+    Each repetition gives one row of the array.
+    """
     return whole_numbers_in_rows(block, row).reshape(-1, row.count(b"#"))

@@ -1,4 +1,4 @@
-"""Numbers in lines of text."""
+"""Rows of numbers in a text file that is being checked, each row a line of text."""
 
 from collections.abc import Callable, Iterator
 from typing import Any, BinaryIO, TypeAlias
@@ -8,22 +8,23 @@ import numpy.typing as npt
 
 from .layout import size_of, text_at
 
-#: Returns the rows of three numbers in whole lines; raises an exception where they have others.
+#: A function that returns the rows of three numbers in complete lines of text, and raises an
+#: exception for lines of another form.
 Reader: TypeAlias = Callable[[bytes], npt.NDArray[Any]]
 
-#: The number of bytes that are read together: with the numbers in them they fit into the
+#: The number of bytes that are read at a time: with the numbers in them they fit into the
 #: processor's cache.
 _BYTES_PER_READ = 1 << 18
 
 
 class Lines:
-    """Rows of three numbers, each in a line of text.
+    """Rows of three numbers in a file, each row a line of text.
 
     Parameters
     ----------
     file : binary file
     start : callable
-        Returns the offset of the first line.
+        Returns the byte offset of the first line.
     count : int
     read : callable
     """
@@ -41,22 +42,22 @@ class Lines:
 
     @property
     def dtype(self) -> "np.dtype[Any]":
-        """The type of one number."""
+        """The numpy type of one number in the lines."""
         return self._read(b"").dtype
 
     def end(self) -> int:
-        """Return the offset at which the last line ends; this reads all lines once."""
+        """Return the byte offset after the last line; the first call may read all lines."""
         if self._end is None:
             self._end = self._start() + sum(map(len, self._texts()))
         return self._end
 
     def check_last(self) -> None:
-        """Refuse a file that does not end with them."""
+        """Raise a `ValueError` unless the file ends after the last line."""
         if size_of(self._file) != self.end():
             raise ValueError("there is data after its last line")
 
     def are(self, expected: npt.NDArray[Any]) -> bool:
-        """Say whether the lines hold these rows."""
+        """Say whether the numbers in the lines equal the rows of `expected`."""
         row, end = 0, self._start()
         for text in self._texts():
             found = self._read(text)
@@ -67,11 +68,11 @@ class Lines:
         return True
 
     def everything(self) -> npt.NDArray[Any]:
-        """Return the rows of all lines."""
+        """Return the numbers in all lines as one array, a row for each line."""
         return np.concatenate([self._read(b""), *map(self._read, self._texts())])
 
     def _texts(self) -> Iterator[bytes]:
-        """Yield all lines, many at a time."""
+        """Yield all lines in chunks of complete lines."""
         at, left = self._start(), self._count
         while left:
             text, count = _first_lines(text_at(self._file, at, _BYTES_PER_READ), left)

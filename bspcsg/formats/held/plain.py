@@ -1,4 +1,4 @@
-"""The content of STL, OBJ, OFF and PLY files."""
+"""Readers of STL, OBJ, OFF and PLY files that this package has just written, to check them."""
 
 import io
 import re
@@ -21,7 +21,7 @@ from .lines import Lines, Reader
 
 
 def binary_stl(file: BinaryIO) -> list[StoredMesh]:
-    """Return the triangles after the header and the count, which must be those that follow."""
+    """Return the triangles of a binary STL; a length that does not fit their count is an error."""
     data = file.read()
     count = int.from_bytes(data[80:84], "little")
     if len(data) != 84 + 50 * count:
@@ -33,7 +33,7 @@ def binary_stl(file: BinaryIO) -> list[StoredMesh]:
 
 
 def text_stl(file: BinaryIO) -> list[StoredMesh]:
-    """Return the solids, one after another."""
+    """Return the solids of a text STL, in file order."""
     data, found, at = file.read(), [], 0
     while at < len(data):
         head = data.index(b"\n", at) + 1
@@ -54,7 +54,7 @@ _FACET = (
 
 
 def obj(file: BinaryIO) -> list[StoredMesh] | list[StoredRows]:
-    """Return the objects; all have the same vertices."""
+    """Return the objects of an OBJ; each has all vertices of the file."""
     data = file.read()
     start = data.index(b"\n") + 1 if data.startswith(b"#") else 0
     end = _first(data, start, b"fo")
@@ -74,7 +74,7 @@ def obj(file: BinaryIO) -> list[StoredMesh] | list[StoredRows]:
 
 
 def _lines(data: bytes, start: int, end: int, read: Reader) -> Lines:
-    """Return the lines between two offsets; the last must end with a line break."""
+    """Return the lines between two byte offsets; raise an error if the last has no line break."""
     if start < end and data[end - 1 : end] != b"\n":
         raise ValueError(f"its last line is incomplete, at byte {end}")
     return Lines(io.BytesIO(data), lambda: start, data.count(b"\n", start, end), read)
@@ -89,19 +89,19 @@ def _named_faces(text: bytes) -> npt.NDArray[Any]:
 
 
 def _first(data: bytes, start: int, letters: bytes) -> int:
-    """Return the offset of the first of these letters, which occur only in lines of this kind."""
+    """Return the first offset from `start` of one of the letters; the end if there is none."""
     found = [data.find(letter, start) for letter in letters]
     return min((at for at in found if at >= 0), default=len(data))
 
 
 def off(file: BinaryIO) -> list[StoredRows]:
-    """Return the faces between the vertices."""
+    """Return the only object of an OFF file, a list of one."""
     head = re.match(rb"OFF\n(?:#[^\n]*\n)?(\d+) (\d+) 0\n", header_of(file))
     return [_table(file, head)]
 
 
 def text_ply(file: BinaryIO) -> list[StoredRows]:
-    """Return the faces after the vertices."""
+    """Return the only object of a text PLY, a list of one."""
     return [_table(file, _PLY.match(header_of(file)))]
 
 
@@ -113,7 +113,7 @@ _PLY = re.compile(
 
 
 def binary_ply(file: BinaryIO) -> list[StoredRows]:
-    """Return the records after the header."""
+    """Return the only object of a binary PLY, a list of one."""
     head = _PLY.match(header_of(file))
     if head is None:
         raise ValueError("its header differs from the one written")
@@ -123,7 +123,7 @@ def binary_ply(file: BinaryIO) -> list[StoredRows]:
 
 
 class _Faces(Rows):
-    """Rows of three corners, each after a byte of value three."""
+    """Triangles of a binary PLY: rows of three vertex indices, each after a byte of value three."""
 
     def hold(self, block: slice, expected: npt.NDArray[Any]) -> bool:
         return are_triangles(self.data(block), expected.astype(np.int64, copy=False))
@@ -137,7 +137,7 @@ class _Faces(Rows):
 
 
 def _table(file: BinaryIO, head: re.Match[bytes] | None) -> StoredRows:
-    """Return the vertices and faces that follow a header that counts them."""
+    """Return the vertices and faces in the lines after the header `head`, which counts them."""
     if head is None:
         raise ValueError("its header differs from the one written")
     vertices = Lines(file, head.end, int(head[1]), _bare_points)
@@ -154,7 +154,7 @@ def _counted_faces(text: bytes) -> npt.NDArray[Any]:
 
 
 def _complete(held: StoredRows) -> StoredRows:
-    """Return what is held, looked at in full if it has no faces: nobody will compare it."""
+    """Return an object; one without faces is read in full first, as it will not be compared."""
     if not held.count:
         held.loaded()
     return held

@@ -1,4 +1,4 @@
-"""The content of 3MF archives."""
+"""A reader of 3MF files that this package has just written, to check their content."""
 
 import zipfile
 from collections.abc import Iterator
@@ -9,7 +9,7 @@ from .layout import StoredMesh, rows_of, whole_rows_of
 
 
 def archive(file: BinaryIO) -> list[StoredMesh]:
-    """Return the objects of the model in the archive, each of which is built once."""
+    """Return the objects of a 3MF; raise a `ValueError` unless its build names each once."""
     with zipfile.ZipFile(file) as archive:
         parts = {name: _read(archive, name) for name in archive.namelist()}
     model = parts["3D/3dmodel.model"]
@@ -22,7 +22,10 @@ def archive(file: BinaryIO) -> list[StoredMesh]:
 
 
 def _read(archive: zipfile.ZipFile, name: str) -> bytes:
-    """Return a part and check its checksum; read it in pieces, so that it can be interrupted."""
+    """Return a part of an archive, its checksum verified.
+
+    The part is read in chunks, so that signals can interrupt the reading.
+    """
     with archive.open(name) as part:
         return b"".join(iter(lambda: part.read(_CHUNK_BYTES), b""))
 

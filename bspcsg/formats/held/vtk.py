@@ -1,4 +1,4 @@
-"""The content of VTK and VTU grids."""
+"""Readers of VTK and VTU files that this package has just written, to check their content."""
 
 import re
 import zlib
@@ -18,13 +18,13 @@ _HEAD = re.compile(
 )
 _CELLS = re.compile(rb"\nCELLS (\d+) (\d+)\nOFFSETS vtktypeint64\n")
 
-#: VTK's number of triangles.
+#: VTK's number for cells that are triangles.
 _TRIANGLE = 5
 _KIND = _TRIANGLE.to_bytes(4, "big")
 
 
 def legacy(file: BinaryIO) -> list[StoredRows]:
-    """Return the triangles of a VTK file, whose blocks hold big-endian numbers."""
+    """Return the triangles of a VTK file, as one object; an empty list for the empty set."""
     start = header_of(file)
     if start == vtk.EMPTY[".vtk"]:
         return []
@@ -53,7 +53,7 @@ def _behind(key: bytes, file: BinaryIO, at: int) -> int:
 
 
 def _check_triangles(offsets: Rows, kinds: Rows) -> None:
-    """Refuse cells that are no triangles, one after another."""
+    """Raise a `ValueError` unless all cells are triangles, cell k at offset 3 k."""
     for block in blocks(len(offsets), ROWS_PER_FILE_BLOCK):
         rows = np.arange(*block.indices(len(offsets)), dtype=np.int64)
         if not offsets.hold(block, 3 * rows[:, None]):
@@ -70,7 +70,7 @@ _GRID = re.compile(
     rb'<UnstructuredGrid>\n<Piece NumberOfPoints="(\d+)" NumberOfCells="(\d+)">\n<Points>\n'
 )
 
-#: The lines before arrays, and behind the last; with the kinds of their numbers.
+#: The lines before each array of a VTU file, and the numpy type of the array's numbers.
 _ARRAYS = (
     (b'<DataArray type="Float64" Name="Points" NumberOfComponents="3" format="binary">\n', "f8"),
     (b'</Points>\n<Cells>\n<DataArray type="Int64" Name="connectivity" format="binary">\n', "i8"),
@@ -82,7 +82,7 @@ _END = b"</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n"
 
 
 def xml(file: BinaryIO) -> list[StoredMesh]:
-    """Return the triangles of a VTU file, whose arrays are packed."""
+    """Return the triangles of a VTU file, as one object; an empty list for the empty set."""
     data = file.read()
     if data == vtk.EMPTY[".vtu"]:
         return []
@@ -102,7 +102,10 @@ def xml(file: BinaryIO) -> list[StoredMesh]:
 
 
 def _arrays(file: BinaryIO, data: bytes, at: int, order: str) -> list[npt.NDArray[Any]]:
-    """Return the arrays of a VTU file, which go on to its end."""
+    """Return the arrays of a VTU file from byte `at`; `order` is “<” or “>”, the byte order.
+
+    Raise a `ValueError` if other data follow the arrays.
+    """
     found = []
     for line, kind in _ARRAYS:
         start = _behind(line, file, at)
@@ -115,7 +118,7 @@ def _arrays(file: BinaryIO, data: bytes, at: int, order: str) -> list[npt.NDArra
 
 
 def _unpacked(text: bytes, order: str) -> bytes:
-    """Return the bytes of an array, stored as a table of lengths and pieces compressed by zlib."""
+    """Return the bytes of an array from base64: a table of lengths, then blocks packed by zlib."""
     end = _letters(_WORD)
     count = int(np.frombuffer(_bytes(text[:end])[:_WORD], order + "u4")[0])
     end = _letters(_WORD * (3 + count))
@@ -135,7 +138,7 @@ def _bytes(text: bytes) -> bytes:
     return a2b_base64(text, strict_mode=True)
 
 
-#: Bytes of a length.
+#: The number of bytes of one entry in an array's table of lengths.
 _WORD = 4
 
 

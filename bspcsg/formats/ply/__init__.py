@@ -1,1 +1,1 @@
-"""The Stanford polygon format."""
+"""Reading and writing PLY, the Stanford polygon format."""

@@ -1,8 +1,9 @@
 """Conversion between attributes and columns of PLY.
 
-Programs know colours as red, green, blue and alpha, normals as nx, ny and nz, and texture
-coordinates as s and t, or as a list called texcoord on faces. Any other array has one column, or
-one for each component with its number after the name; values of corners are lists on faces.
+The usual columns are red, green, blue and alpha for colours, nx, ny and nz for normals, s and t for
+texture coordinates of vertices, and the list texcoord of faces for those of corners. Any other
+array has one column, or one for each component with its number after the name; values of corners
+are lists of faces.
 """
 
 import re
@@ -13,24 +14,24 @@ import numpy as np
 from ...attributes.attributes import Attributes, Kind, Values
 from ..said import chosen
 
-#: Names of columns that everybody knows, and the attributes that they are.
+#: The usual names of PLY columns, by the attribute that they form.
 _KNOWN = {
     "color": ("red", "green", "blue", "alpha"),
     "normal": ("nx", "ny", "nz"),
     "uv": ("s", "t"),
 }
 
-#: Other names of columns, by those above: what programs write instead.
+#: Other names that programs write for PLY columns, and the usual names.
 _ALIASES = {"u": "s", "v": "t", "texture_u": "s", "texture_v": "t"}
 
-#: The list of texture coordinates on faces.
+#: The name of the list that has the texture coordinates of a face's corners.
 _TEXCOORD = "texcoord"
 
 _RESERVED = frozenset(
     {"x", "y", "z", "vertex_index", "vertex_indices", _TEXCOORD}.union(*_KNOWN.values(), _ALIASES)
 )
 
-#: Types that PLY has, by numpy's letters and sizes.
+#: The names of types in PLY, by numpy's letter and number of bytes.
 TYPES = {
     "i1": "char",
     "u1": "uchar",
@@ -42,7 +43,7 @@ TYPES = {
     "f8": "double",
 }
 
-#: A word that a header can hold, and that does not look like one of several columns.
+#: A word that a PLY header can contain, and a word that ends in the number of a component.
 _NAME = re.compile(r"[!-~]+")
 _NUMBERED = re.compile(r"(.+)_(\d+)")
 
@@ -51,7 +52,7 @@ _MAX_LIST_LENGTH = 255
 
 
 def kept(said: Attributes) -> Attributes:
-    """Return the attributes that PLY can hold: numbers with one-word names."""
+    """Return the attributes that PLY can store: numbers with one-word names."""
     return chosen(said, _kept)
 
 
@@ -71,7 +72,7 @@ def _kept(kind: Kind, name: str, values: Values) -> Values | None:
 
 
 def _of_known_type(values: Values) -> Values | None:
-    """Return numbers in a type of PLY, or None if no type fits."""
+    """Convert an array to a type that PLY has; return None if no type fits its values."""
     if values.dtype.kind == "b":
         return values.astype(np.uint8)
     if values.dtype.kind == "f":
@@ -88,7 +89,7 @@ def _of_known_type(values: Values) -> Values | None:
 
 
 def columns_of(attributes: Mapping[str, Values]) -> Iterator[tuple[str, Values]]:
-    """Yield name and values of each column of vertices or faces."""
+    """Yield name and values of each PLY column for attributes of vertices or of faces."""
     for name, values in attributes.items():
         if values.ndim == 1:
             yield name, values
@@ -100,13 +101,13 @@ def columns_of(attributes: Mapping[str, Values]) -> Iterator[tuple[str, Values]]
 
 
 def lists_of(attributes: Mapping[str, Values]) -> Iterator[tuple[str, Values]]:
-    """Yield name and values (m, 3 k) of each list that holds values of corners."""
+    """Yield name and values (m, 3 k) of each PLY list of faces, for attributes of corners."""
     for name, values in attributes.items():
         yield _TEXCOORD if name == "uv" else name, values.reshape(len(values), -1)
 
 
 def attributes_of(columns: Mapping[str, Values]) -> dict[str, Values]:
-    """Return the attributes of columns of vertices or faces."""
+    """Return the attributes that PLY columns of vertices or of faces form, by name."""
     left: dict[str, Values] = {}
     for name, values in columns.items():
         usual = _ALIASES.get(name, name)
@@ -122,7 +123,7 @@ def attributes_of(columns: Mapping[str, Values]) -> dict[str, Values]:
 
 
 def _numbered(columns: Mapping[str, Values]) -> dict[str, list[str]]:
-    """Return the names of columns that form one array, numbered from 0."""
+    """Return the names of the columns of each array of several columns: `name_0`, `name_1`, …."""
     counts: dict[str, int] = {}
     for name in columns:
         match = _NUMBERED.fullmatch(name)
@@ -136,7 +137,7 @@ def _numbered(columns: Mapping[str, Values]) -> dict[str, list[str]]:
 
 
 def corners_of(lists: Mapping[str, Values], count: int) -> dict[str, Values]:
-    """Return the values at the corners of polygons, one polygon after another, from lists on faces.
+    """Return attributes of polygon corners, (p * count, …), from PLY lists of faces.
 
     Parameters
     ----------
@@ -154,7 +155,7 @@ def corners_of(lists: Mapping[str, Values], count: int) -> dict[str, Values]:
 
 
 def names_in(attributes: Attributes | None) -> dict[str, set[str]]:
-    """Return the names of kept columns and lists, by element."""
+    """Return the names of the PLY columns and lists that form the attributes, by element."""
     if attributes is None:
         return {}
     vertex = {name for name, _ in columns_of(attributes.vertex)}

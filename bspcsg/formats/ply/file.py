@@ -1,4 +1,4 @@
-"""PLY: text, binary little-endian and binary big-endian, with polygons and any further data."""
+"""Reading and writing PLY with attributes: text, binary little-endian and big-endian."""
 
 import itertools
 from collections.abc import Callable, Iterable, Iterator
@@ -19,10 +19,10 @@ from .columns import TYPES, attributes_of, columns_of, corners_of, lists_of, nam
 from .header import Element, Header, Order, read_header
 from .lists import read_mixed, read_uniform
 
-#: Both names of the list are in use.
+#: The names that programs use for the list of a face's vertex indices.
 _FACE_LISTS = ("vertex_indices", "vertex_index")
 
-#: The elements that list corners: polygons, or strips of triangles.
+#: The names of the elements that have vertex indices: polygons, or strips of triangles.
 _FACES, _STRIPS = "face", "tristrips"
 
 _Line: TypeAlias = tuple[int, list[bytes]]
@@ -32,7 +32,7 @@ _LISTS_OF_VERTICES = "the vertices have list properties, which are not supported
 
 @dataclass
 class _Found:
-    """The content of the elements read so far."""
+    """The content of the elements that have been read from a PLY file."""
 
     vertices: FloatArray | None = None
     polygons: IndexPolygons | None = None
@@ -48,7 +48,7 @@ class _Found:
         error_at: Callable[[int, str, str], FormatError],
         columns: dict[str, Values],
     ) -> None:
-        """Take the lists of an element; strips become triangles, unless there are faces."""
+        """Store the polygons of an element, or its strips as triangles if there are no polygons."""
         has_faces = self.polygons is not None and len(self.polygons.counts) > 0
         if name == _STRIPS and not has_faces:
             triangles, owners = polygons.of_strips()
@@ -60,13 +60,13 @@ class _Found:
 
 
 def read(source: Source) -> RawMesh:
-    """Read the file.
+    """Read a PLY file.
 
     Raises
     ------
     FormatError
-        If it is no PLY, is cut off, has no vertices or faces, or names a vertex that does not
-        exist; names the line or the byte.
+        If the file is no PLY, is cut off, has no vertices or faces, or names a vertex that does not
+        exist; the message has the number of the line or of the byte.
     """
     source = source.without_mark()
     header = read_header(source)
@@ -104,7 +104,7 @@ def _triangles_and_attributes(
     vertices: FloatArray,
     error_at: Callable[[int, str, str], FormatError],
 ) -> tuple[IndexArray, Attributes | None]:
-    """Return the triangles and the attributes."""
+    """Return the triangles of polygons, and the attributes or None."""
     if not found.vertex_columns and not found.face_columns:
         return polygons.triangles(vertices, error_at), None
     positions = polygons.positions(vertices, error_at)
@@ -121,7 +121,7 @@ def _triangles_and_attributes(
 
 
 def _apart(*kinds: dict[str, Values]) -> Iterator[dict[str, Values]]:
-    """Yield the arrays of vertices, corners and faces, under distinct names."""
+    """Yield each dictionary without the names that an earlier dictionary has."""
     taken: set[str] = set()
     for kind in kinds:
         yield {name: values for name, values in kind.items() if name not in taken}
@@ -129,7 +129,7 @@ def _apart(*kinds: dict[str, Values]) -> Iterator[dict[str, Values]]:
 
 
 def _more_than_a_shape(header: Header, said: Attributes | None, faces: str) -> tuple[str, ...]:
-    """Return the elements and properties besides the shape that are not kept."""
+    """Return descriptions of the elements, properties and pictures that are not read."""
     columns = names_in(said)
     told = [f"the picture “{name}”" for name in header.pictures]
     for element in header.elements:
@@ -149,7 +149,7 @@ def _axes(element: Element) -> tuple[int, int, int] | None:
 
 
 def _face_column(source: Source, header: Header, element: Element) -> int | None:
-    """Return the property that lists the corners of a face, if this element has one."""
+    """Return the number of the property with a face's vertex indices; None if there is none."""
     is_listing = element.name in (_FACES, _STRIPS)
     column = element.index(*_FACE_LISTS) if is_listing else None
     if column is None or element.properties[column].count is None:
@@ -174,8 +174,11 @@ def _read_text(source: Source, header: Header, found: _Found) -> tuple[Finding, 
 
 
 def _spread(header: Header, lines: list[_Line]) -> list[_Line] | None:
-    """Return a line for each record if the numbers are complete, but on other lines."""
-    # If the number of lines is right, one of the lines must be wrong.
+    """Return a line for each record of a file whose line breaks are elsewhere.
+
+    Return None if the numbers are not exactly those that the header promises.
+    """
+    # If the number of lines is right, the error is in a line, not in the line breaks.
     if sum(element.number for element in header.elements) == len(lines):
         return None
     words = [(number, word) for number, line in lines for word in line]
@@ -262,7 +265,7 @@ def _text_columns(
     element: Element,
     known: tuple[int, ...],
 ) -> dict[str, Values]:
-    """Return the columns of an element without lists, except those already known."""
+    """Return the columns of an element without lists, except the columns numbered in `known`."""
     return {
         prop.name: _text_numbers(source, block, [words[k] for _, words in block], prop.item)
         for k, prop in enumerate(element.properties)
@@ -273,7 +276,7 @@ def _text_columns(
 def _text_face_columns(
     source: Source, block: list[_Line], element: Element, column: int
 ) -> dict[str, Values]:
-    """Return the other columns of faces, if every list is as long as in the first line."""
+    """Return the columns of faces except column `column`, and except lists of varying length."""
     rows = [_split(words, element) for _, words in block]
     found: dict[str, Values] = {}
     for k, prop in enumerate(element.properties):
@@ -287,7 +290,7 @@ def _text_face_columns(
 
 
 def _split(words: list[bytes], element: Element) -> list[list[bytes]]:
-    """Return the words of each property of a checked line."""
+    """Divide the words of a valid line into a list of words for each property."""
     at, found = 0, []
     for prop in element.properties:
         length = 1 if prop.count is None else integral(words[at])
@@ -314,7 +317,7 @@ def _text_numbers(
 def _text_list(
     source: Source, number: int, words: list[bytes], element: Element, column: int
 ) -> list[int]:
-    """Return the list in one column of a line, every column checked to be there."""
+    """Return the list in column `column` of a line; an invalid line is a `FormatError`."""
     at, wanted = 0, []
     try:
         for position, prop in enumerate(element.properties):
@@ -362,12 +365,12 @@ def _read_binary(
         if block.polygons is not None:
             found.take(element.name, block.polygons, block.error_at, block.columns)
     extra = len(source.data) - offset
-    # A final line break is the habit of a text editor, not data.
+    # A line break at the end comes from a text editor, and is no data.
     return () if source.data[offset:].isspace() or not extra else _extra(extra, "bytes", (offset,))
 
 
 def _read_records(source: Source, order: Order, element: Element, start: int, found: _Found) -> int:
-    """Read an element without lists; return the offset at which its data end."""
+    """Read a binary element without lists; return the byte offset at which its data end."""
     fields = [(f"p{k}", p.item.newbyteorder(order)) for k, p in enumerate(element.properties)]
     record = np.dtype(fields)
     end = start + record.itemsize * element.number
@@ -418,7 +421,7 @@ _Columns: TypeAlias = list[tuple[str, Values]]
 
 
 def _columns(mesh: Mesh | RawMesh) -> tuple[_Columns, _Columns, _Columns]:
-    """Return the additional columns of vertices, the columns of faces, and the lists of faces."""
+    """Return the attributes of a mesh as columns of vertices, columns of faces, lists of faces."""
     said = said_of(mesh)
     if said is None:
         return [], [], []
@@ -435,7 +438,7 @@ def _type_of(values: Values) -> str:
 
 
 def beyond(mesh: Mesh | RawMesh) -> str:
-    """Return why a mesh is too large for the format, or nothing if it fits."""
+    """Return why a mesh is too large for PLY, or an empty string if it fits."""
     is_beyond = len(mesh.vertices) > np.iinfo(np.int32).max
     return (
         "the mesh has more than 2^31 - 1 vertices, too many for PLY; write OBJ instead."
@@ -445,7 +448,7 @@ def beyond(mesh: Mesh | RawMesh) -> str:
 
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
-    """Yield the little-endian form, in double precision."""
+    """Yield the bytes of a binary little-endian PLY file, in double precision."""
     yield _header(mesh, "binary_little_endian")
     vertex, face, lists = _columns(mesh)
     row = np.dtype([("xyz", "<f8", 3), *_fields(vertex)])
@@ -482,7 +485,7 @@ def _little(values: Values) -> "np.dtype[Any]":
 
 
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
-    """Yield the ASCII form; every coordinate reads back as the same double."""
+    """Yield the bytes of a text PLY file; every coordinate reads back as the same double."""
     yield _header(mesh, "ascii")
     yield from encoded_lines(_lines(mesh))
 
@@ -498,7 +501,10 @@ def _lines(mesh: Mesh | RawMesh) -> Iterator[str]:
 
 
 def _words(columns: _Columns, count: int) -> Iterable[str]:
-    """Return the end of each line, with a space before each word; lists begin with their length."""
+    """Return the end of each text line: the values of columns, a space before each.
+
+    A list begins with its length.
+    """
     if not columns:
         return itertools.repeat("", count)
     lists = [listed(values) for _, values in columns]

@@ -1,4 +1,4 @@
-"""The header of a PLY file: its elements, their counts and properties."""
+"""Reading of a PLY file's header: the elements, their counts and their properties."""
 
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -19,10 +19,10 @@ _TYPES = {
     **dict.fromkeys(("double", "float64"), "f8"),
 }
 
-#: Byte order of binary data.
+#: Byte order of binary data: little-endian or big-endian.
 Order: TypeAlias = Literal["<", ">"]
 
-#: Byte order of each form; none for text.
+#: The byte order of each form that a PLY header can name; None for text.
 _FORMS: dict[str, Order | None] = {
     "ascii": None,
     "binary_little_endian": "<",
@@ -30,14 +30,17 @@ _FORMS: dict[str, Order | None] = {
 }
 
 
-#: The words that begin a line; a misspelt one says more of the data than a comment does.
+#: The words that begin a line of a header. A misspelt one is an error, not a comment.
 _KEYS = ("ply", "format", "element", "property", "end_header", "comment", "obj_info")
 _ALIKE = 0.7
 
 
 @dataclass(frozen=True)
 class Property:
-    """One property: a number, or a list if `count` names the type of its length."""
+    """One property of a PLY element: a number of type `item`, or a list of such numbers.
+
+    It is a list if `count` is not None; then `count` is the type of the list's length.
+    """
 
     name: str
     item: np.dtype[np.generic]
@@ -46,7 +49,7 @@ class Property:
 
 @dataclass(frozen=True)
 class Element:
-    """One kind of record, and the number of records."""
+    """One element of a PLY header: a kind of record, such as a vertex, and their number."""
 
     name: str
     number: int
@@ -54,18 +57,18 @@ class Element:
 
     @property
     def has_lists(self) -> bool:
-        """True if records may differ in size."""
+        """True if a property is a list, so that records may differ in length."""
         return any(prop.count is not None for prop in self.properties)
 
     def index(self, *names: str) -> int | None:
-        """Return the position of the property with one of these names."""
+        """Return the number, from 0, of the first property with one of these names, or None."""
         found = (k for k, prop in enumerate(self.properties) if prop.name in names)
         return next(found, None)
 
 
 @dataclass(frozen=True)
 class Header:
-    """The content of the header, and the start of the data.
+    """The content of a PLY file's header, and the start of the data.
 
     Parameters
     ----------
@@ -80,7 +83,7 @@ class Header:
     pictures : tuple of str
         The picture files that programs name in comments.
     unknown : tuple of int
-        Numbers of lines that are no statements; they count as comments.
+        Numbers, from 1, of lines that are no valid statements and are ignored.
     """
 
     order: Order | None
@@ -92,7 +95,7 @@ class Header:
 
 
 def read_header(source: Source) -> Header:
-    """Read the header.
+    """Read the header of a PLY file.
 
     Raises
     ------
@@ -145,7 +148,7 @@ def read_header(source: Source) -> Header:
 
 
 def _line(source: Source, start: int, number: int) -> tuple[bytes, int]:
-    """Return the line that begins at `start`, and the offset of the next line."""
+    """Return a header's line that begins at byte `start`, and the offset of the next line."""
     data = source.data
     stop = data.find(b"\n", start)
     carriage = data.find(b"\r", start, None if stop < 0 else stop)

@@ -1,4 +1,4 @@
-"""Binary PLY elements with lists, read at once if all lists have one length, else one by one."""
+"""Reading of binary PLY elements with lists, whether or not all lists have one length."""
 
 import struct
 from collections.abc import Callable
@@ -15,18 +15,18 @@ from .header import Element, Order, Property
 
 @dataclass(frozen=True)
 class ListBlock:
-    """An element that was read.
+    """The data of a binary PLY element with lists.
 
     Parameters
     ----------
     end : int
-        The offset at which its data end.
+        The byte offset at which the data end.
     polygons : IndexPolygons or None
-        The lists of the wanted column, if one was wanted.
+        The lists of the column that was asked for; None if none was.
     error_at : callable
-        Makes the error for record k.
+        Makes the error for record k, from k, a message and a code.
     columns : dict of str to array
-        The other properties, (k,) or (k, n), if every list is as long as in the first record.
+        All other properties, (k,) or (k, n); empty unless all lists of a property have one length.
     """
 
     end: int
@@ -38,7 +38,10 @@ class ListBlock:
 def read_uniform(
     source: Source, order: Order, element: Element, start: int, column: int | None
 ) -> ListBlock | None:
-    """Read the element if every list is as long as in its first record; else return None."""
+    """Read an element; return None if a list has another length than in the first record.
+
+    `column` is the number of the property whose lists are polygons, or None.
+    """
     if element.number == 0:
         return None
     lengths = _first_lengths(source, order, element, start)
@@ -68,7 +71,7 @@ def read_uniform(
 
 
 def _first_lengths(source: Source, order: Order, element: Element, start: int) -> list[int] | None:
-    """Return the length of each property of the first record, or None if it is cut off."""
+    """Return the number of values of each property in the first record; None if it is cut off."""
     lengths = []
     at = start
     for prop in element.properties:
@@ -99,12 +102,12 @@ def _record(order: Order, element: Element, lengths: list[int]) -> np.dtype[np.v
 def read_mixed(
     source: Source, order: Order, element: Element, start: int, column: int | None
 ) -> ListBlock:
-    """Read the element record by record.
+    """Read an element record by record; `column` numbers the property with polygons, or is None.
 
     Raises
     ------
     FormatError
-        If the data end too early, or a list has a negative length.
+        If the data are cut off, or a list has a negative length.
     """
     data = source.data
     lists: list[list[int]] = []
@@ -136,7 +139,7 @@ def _cut_off(source: Source, element: Element, number: int, length: int) -> Form
 
 
 class _Step:
-    """The reading of one property of a record."""
+    """A reader of one property in binary records."""
 
     def __init__(self, prop: Property, order: Order) -> None:
         self.size = prop.item.itemsize
@@ -145,7 +148,10 @@ class _Step:
         self._count = None if prop.count is None else struct.Struct(order + prop.count.char)
 
     def extent(self, data: bytes, at: int) -> tuple[int, int]:
-        """Return offset and number of the values; past the end of the data, one too many."""
+        """Return the offset and the number of a property's values in the record at offset `at`.
+
+        If the data end before them, the values reach past that end.
+        """
         if self._count is None:
             return at, 1
         if at + self._count.size > len(data):
@@ -153,5 +159,5 @@ class _Step:
         return at + self._count.size, int(self._count.unpack_from(data, at)[0])
 
     def values(self, data: bytes, first: int, length: int) -> list[int]:
-        """Return the values, which must be whole numbers."""
+        """Return `length` values from offset `first`; their type must be an integer type."""
         return list(struct.unpack_from(f"{self._order}{length}{self._item}", data, first))

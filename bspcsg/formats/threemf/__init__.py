@@ -1,1 +1,1 @@
-"""3MF packages."""
+"""Reading and writing 3MF packages."""

@@ -1,4 +1,4 @@
-"""3MF, reading: build items with their components and transforms, in millimetres."""
+"""Reading of 3MF: build items with their components and transforms, in millimetres."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -17,12 +17,12 @@ from .package import Package, opened
 from .part import MILLIMETRES, ModelPart
 from .slicers import NEGATIVE, Slicing, settled
 
-#: The largest number of triangles of a build.
+#: The largest number of triangles of all build items together.
 _MAX_BUILD_TRIANGLES = 1 << 27
 
 
 def read(source: Source) -> RawMesh:
-    """Read every build item as one mesh.
+    """Read all build items of a 3MF file as one mesh.
 
     Raises
     ------
@@ -38,7 +38,7 @@ def read(source: Source) -> RawMesh:
 
 
 def _assembled(package: Package, root: str) -> RawMesh:
-    """Return the mesh of all build items."""
+    """Return one mesh of all build items of the model part `root`, with findings."""
     part, objects = package.part(root), Objects(package)
     slicing = settled(package, root)
     pieces, findings = [], list(_unit_finding(part))
@@ -79,14 +79,14 @@ def _assembled(package: Package, root: str) -> RawMesh:
 
 
 def _bodies(package: Package) -> set[tuple[str, str]]:
-    """Return part and number of all objects with a shape, in the parts read so far."""
+    """Return part and id of each object with triangles or beams, in the parts already parsed."""
     parts = package.parts.items()
     objects = ((path, item, one) for path, part in parts for item, one in part.objects.items())
     return {(path, item) for path, item, one in objects if one.is_body or one.beams}
 
 
 def _moved(mesh: RawMesh, transforms: tuple[FloatArray, ...]) -> PlacedMesh:
-    """Return a mesh under transforms; a mirrored one is turned right side out."""
+    """Return a mesh with its transforms, applied in order; mirrored triangles are reversed."""
     moving = [matrix for matrix in transforms if (matrix != np.eye(4, 3)).any()]
     sizes = [float(np.linalg.det(matrix[:3])) for matrix in moving]
     faces, said = mesh.faces, mesh.attributes
@@ -133,7 +133,7 @@ def _unit_finding(part: ModelPart) -> tuple[Finding, ...]:
 
 
 def _other_units(package: Package, unit: str) -> tuple[Finding, ...]:
-    """Return the finding about parts in other units than the root's, which counts for all."""
+    """Return a finding if parts have another unit than the root's, which is used; else nothing."""
     others = [path for path, part in package.parts.items() if part.unit != unit]
     if not others:
         return ()
@@ -146,7 +146,10 @@ def _other_units(package: Package, unit: str) -> tuple[Finding, ...]:
 
 
 def _left_out(slicing: Slicing, unmade: list[str]) -> list[Finding]:
-    """Return the findings about parts that slicers do not treat as material."""
+    """Return findings about a slicer's parts that are no material: modifiers, negative volumes.
+
+    `unmade` are the reasons why negative volumes could not be subtracted.
+    """
     found: list[Finding] = []
     for kind, count in slicing.counts.items():
         if kind != NEGATIVE:

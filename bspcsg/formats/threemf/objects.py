@@ -1,7 +1,7 @@
-"""The objects of a 3MF package: their placements and meshes.
+"""The objects of a 3MF package: their transforms and meshes.
 
-Most have a mesh. A boolean shape is a set of meshes, which is evaluated here (3MF Boolean
-Operations Extension 1.1.0, section 2.1).
+An object is a mesh, or a boolean shape of meshes, which is evaluated here (3MF Boolean Operations
+Extension 1.1.0, section 2.1).
 """
 
 from collections.abc import Iterator
@@ -20,22 +20,23 @@ from .package import Package
 from .part import INSTANCE, Object, PlacedObject
 from .properties import properties_of
 
-#: The largest number of objects that a build may place.
+#: The largest number of objects in a build, where an object counts each time it appears.
 _MAX_OBJECTS_PLACED = 100_000
 
-#: The largest number of objects that may contain one another.
+#: The largest depth to which objects may be nested.
 _MAX_OBJECT_DEPTH = 64
 
-#: The largest number of triangles of all operands of a boolean shape: to evaluate them takes some
-#: gigabytes.
+#: The largest number of triangles of all operands of a boolean shape: its evaluation then takes
+#: several gigabytes.
 _MAX_BOOLEAN_TRIANGLES = 1 << 24
 
-#: The part that names an object, the object, and the transforms around it, innermost first.
+#: A part's name, a reference in that part to an object, and the transforms of the objects that
+#: contain the reference, innermost first.
 _Waiting: TypeAlias = tuple[str, PlacedObject, tuple[FloatArray, ...]]
 
 
 class Objects:
-    """The objects of a package; each mesh is made once.
+    """The objects of a 3MF package; the mesh of each is made once and then reused.
 
     Parameters
     ----------
@@ -57,7 +58,9 @@ class Objects:
     def placed(
         self, root: str, items: list[PlacedObject]
     ) -> list[tuple[str, str, tuple[FloatArray, ...]]]:
-        """Return part, object and transforms (innermost first) of all shapes, in file order.
+        """Return part, object id and transforms of each mesh or shape of a build, in file order.
+
+        The transforms are given innermost first.
 
         Raises
         ------
@@ -72,7 +75,7 @@ class Objects:
             visited += 1
             transforms: tuple[FloatArray, ...] = (placed.transform, *outer)
             path, known = self._named(here, placed)
-            # An assembly's parts of two names lie in objects of their own.
+            # An object that only renames its component does not count as a level.
             deepest = _MAX_OBJECT_DEPTH + (known.part_number == INSTANCE)
             is_deep = bool(known.components) and len(transforms) >= deepest
             if visited > _MAX_OBJECTS_PLACED or is_deep:
@@ -83,14 +86,14 @@ class Objects:
         return found
 
     def bare_mesh(self, path: str, item: str) -> RawMesh:
-        """Return the mesh of an object like `mesh`, without attributes."""
+        """Return the mesh of an object before any transform, without attributes."""
         known = self._package.part(path).objects[item]
         if known.shape is None:
             return RawMesh(*known.arrays(), known.name)
         return replace(self.mesh(path, item), attributes=None)
 
     def mesh(self, path: str, item: str) -> RawMesh:
-        """Return the mesh of an object before any transform; that of a boolean shape is evaluated.
+        """Return the mesh of an object before any transform; boolean shapes are evaluated.
 
         Raises
         ------
@@ -107,11 +110,11 @@ class Objects:
         return self._meshes[path, item]
 
     def used(self) -> set[tuple[str, str]]:
-        """Return part and number of the objects that are operands of boolean shapes."""
+        """Return part and id of each object that was an operand of a boolean shape."""
         return {*self._solids, *self._bases}
 
     def _named(self, here: str, placed: PlacedObject) -> tuple[str, Object]:
-        """Return an object that a part names, and the part that holds it."""
+        """Return the part of an object to which the part `here` refers, and the object."""
         path = placed.path or here
         known = self._package.part(path).objects.get(placed.item)
         if known is None:
@@ -138,7 +141,7 @@ class Objects:
         return RawMesh(vertices, faces, attributes=said)
 
     def _attempted(self, path: str, item: str) -> RawMesh:
-        """Return the mesh of a boolean shape, or of its base if the shape cannot be made."""
+        """Return the mesh of a boolean shape; if it cannot be made, the mesh of its base."""
         shape = held(self._package.part(path).objects[item].shape, "the shape")
         try:
             return self._evaluated(path, item)
@@ -156,7 +159,7 @@ class Objects:
         return RawMesh(mesh.vertices, mesh.faces, attributes=said_of(mesh), is_empty_set=is_nothing)
 
     def _solid(self, here: str, placed: PlacedObject, depth: int) -> tuple[Solid, int]:
-        """Return a mesh or a boolean shape as a set, in its place, and the triangles it is of."""
+        """Return an object as a transformed solid, and the count of triangles it is made of."""
         if depth > _MAX_OBJECT_DEPTH:
             raise self._too_deep()
         path, known = self._named(here, placed)
@@ -199,7 +202,7 @@ class Objects:
 
     @contextmanager
     def _errors_with_name(self, item: str) -> Iterator[None]:
-        """Let errors about the shape of an object name the file and the object."""
+        """Add the names of the file and of an object to errors about the object's shape."""
         try:
             yield
         except (FormatError, InternalError):
@@ -212,7 +215,7 @@ class Objects:
 
 
 def _moved(mesh: RawMesh, matrix: FloatArray) -> RawMesh:
-    """Return a mesh under a transform, its outside still outside."""
+    """Return a mesh transformed by a (4, 3) matrix; if it mirrors, triangles are reversed."""
     faces, said = mesh.faces, mesh.attributes
     if np.linalg.det(matrix[:3]) < 0:
         faces, said = faces[:, ::-1], said and said.reordered([2, 1, 0])

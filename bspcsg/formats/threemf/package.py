@@ -1,7 +1,7 @@
-"""The parts of a 3MF package: a ZIP archive of XML.
+"""The parts of a 3MF package, a ZIP archive of XML files.
 
-Sizes are limited before anything is unpacked and document types are refused, so that a small file
-cannot grow without bound.
+The bytes to unpack are limited, and XML document types are refused, so that a small file cannot
+grow without bound.
 """
 
 import io
@@ -17,19 +17,19 @@ from ..source import Source
 from .part import ModelPart, PartReader, Start, parse_xml
 from .write import NOTHING
 
-#: The largest number of parts in an archive, whose directory then takes some 16 MB. The largest
-#: projects of slicers have hundreds of parts.
+#: The largest number of parts in an archive; its directory then takes some 16 MB of memory. The
+#: largest projects of slicers have hundreds of parts.
 _MAX_PARTS = 1 << 14
 
-#: The parts of an archive may unpack to this many times its bytes. The XML of meshes shrinks to a
-#: fifth, that of one small part written again and again to a 13th, and a part of nothing but one
-#: letter to a thousandth.
+#: All parts together may unpack to this many times the bytes of the archive. The XML of meshes is
+#: compressed to a fifth, XML that repeats one small mesh to a 13th, and a single repeated letter to
+#: a thousandth.
 _MAX_UNPACKING_RATIO = 64
 
-#: The smallest bound on the bytes that parts unpack to, which lets small archives grow more.
+#: All parts together may always unpack to this number of bytes, even in a small archive.
 _MIN_BYTE_LIMIT = 1 << 26
 
-#: The largest bound on the bytes that parts unpack to: 2 GiB, some 20 million triangles.
+#: All parts together may never unpack to more bytes than this: 2 GiB, some 20 million triangles.
 _MAX_BYTE_LIMIT = 1 << 31
 
 #: The number of bytes that are unpacked at a time.
@@ -53,13 +53,13 @@ _MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 
 
 class Package:
-    """The parts of one archive, each parsed once.
+    """The parts of one 3MF archive, each parsed at most once.
 
     Parameters
     ----------
     source : Source
     archive : ZipFile
-        The same, open.
+        The open archive with the bytes of `source`.
     """
 
     def __init__(self, source: Source, archive: zipfile.ZipFile) -> None:
@@ -73,7 +73,7 @@ class Package:
         )
 
     def root(self) -> str:
-        """Return the name of the model part, from the package's relationships."""
+        """Return the name of the main model part, which the package's relationships name."""
         targets: list[str] = []
 
         def start(tag: str, attributes: dict[str, str]) -> None:
@@ -85,7 +85,7 @@ class Package:
         return targets[0] if targets else "3D/3dmodel.model"
 
     def is_empty_set(self, root: str) -> bool:
-        """Say whether the model is the one that this library writes for the empty set."""
+        """Say whether the part `root` equals what this package writes for the empty set."""
         entry = self._entries.get(root.lower())
         if entry is None or entry.file_size != len(NOTHING):
             return False
@@ -93,22 +93,25 @@ class Package:
             return stream.read(len(NOTHING) + 1) == NOTHING
 
     def named(self, pattern: re.Pattern[str]) -> list[str]:
-        """Return the parts whose lower-case names match a pattern completely."""
+        """Return the lower-case names of the parts whose whole name matches a pattern."""
         return [name for name in self._entries if pattern.fullmatch(name)]
 
     def parse(self, name: str, start: Start) -> None:
-        """Call `start` with each element of a part."""
+        """Call `start` with tag and attributes of each XML element of a part."""
         parse_xml(*self._opened(name), start)
 
     def part(self, name: str) -> ModelPart:
-        """Return a part, parsed once."""
+        """Return a model part; it is parsed on the first call."""
         if name not in self.parts:
             reader = PartReader(*self._opened(name), _part_name)
             self.parts[name] = reader.read()
         return self.parts[name]
 
     def picture(self, name: str) -> bytes:
-        """Return the bytes of a part, unpacked once; None if there is no such part."""
+        """Return the bytes of a picture's part, unpacked on the first call.
+
+        Return no bytes if there is no such part.
+        """
         if name.lower() not in self._entries:
             return b""
         if name not in self._pictures:
@@ -116,7 +119,7 @@ class Package:
         return self._pictures[name]
 
     def _opened(self, name: str) -> tuple[Source, Iterator[bytes]]:
-        """Return the source that errors about a part name, and the chunks of the part."""
+        """Return a source without data, for errors that name a part, and the part's chunks."""
         entry = self._entries.get(name.lower())
         if entry is None:
             raise self.source.error(
@@ -127,7 +130,7 @@ class Package:
         return Source(f"{self.source.name}/{name}", b""), self._unpacked(entry)
 
     def _unpacked(self, entry: zipfile.ZipInfo) -> Iterator[bytes]:
-        """Yield the bytes of a part, which may be others than the directory promises."""
+        """Yield the bytes of a part in chunks; too many bytes raise a `FormatError`."""
         with _damage_as_error(self.source), self._archive.open(entry) as stream:
             while chunk := stream.read(_CHUNK_BYTES):
                 self._left -= len(chunk)
@@ -146,7 +149,7 @@ class Package:
 
 @contextmanager
 def opened(source: Source) -> Iterator[Package]:
-    """Open a package; damage in a part raises an error when the part is read.
+    """Open a 3MF package in a `with` statement; a damaged part raises an error when it is read.
 
     Raises
     ------
@@ -166,7 +169,7 @@ def opened(source: Source) -> Iterator[Package]:
 
 @contextmanager
 def _damage_as_error(source: Source) -> Iterator[None]:
-    """Tell of an archive that cannot be unpacked; what is said in it is no matter of this."""
+    """Turn exceptions of the `zipfile` module into a `FormatError`: the archive is damaged."""
     try:
         yield
     except BspcsgError:

@@ -1,4 +1,4 @@
-"""One model part of a 3MF package: its objects and its build items."""
+"""Reading of one model part of a 3MF package: objects, build items and properties."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -22,18 +22,18 @@ MILLIMETRES = {
     "meter": 1000.0,
 }
 
-#: The part number of an object that only gives its component another name.
+#: The part number of an object that has one component and gives it another name.
 INSTANCE = "bspcsg:instance"
 
-#: Elements about what a mesh of triangles has no room for.
+#: XML elements that are not read, and the names of their data in `RawMesh.dropped`.
 _DROPPED = {
     "composite": "materials",
     "multi": "layers of properties",
     "metadata": "metadata",
 }
 
-#: Words in the namespaces of extensions that are read here, or of which it is told what is not: a
-#: model may say that it needs others to be understood.
+#: Words in the namespaces of extensions that are read here, or whose unread data are reported. A
+#: model that requires another extension is refused.
 _READ = (
     "/material/",
     "/production/2015",
@@ -42,7 +42,7 @@ _READ = (
     "/trianglesets/",
 )
 
-#: The kinds of objects that Cura names in their metadata; none is material.
+#: Kinds of objects that are no material, by the metadata in which Cura names them.
 _CURA = {
     "cura:anti_overhang_mesh": "support blocker",
     "cura:support_mesh": "support",
@@ -50,7 +50,7 @@ _CURA = {
     "cura:cutting_mesh": "modifier",
 }
 
-#: Attributes of a triangle that has no properties.
+#: The number of XML attributes of a triangle that has no properties.
 _BARE = 3
 
 #: The name of a base material, and its colour in bytes.
@@ -58,20 +58,20 @@ Base: TypeAlias = tuple[str, tuple[int, ...]]
 
 Start: TypeAlias = Callable[[str, dict[str, str]], None]
 
-#: Takes what an element of metadata is named and what it says.
+#: A function that takes the name and the text of a metadata element.
 Metadata: TypeAlias = Callable[[str, str], None]
 
 
 @dataclass(frozen=True, eq=False)
 class PlacedObject:
-    """An object under a transform, here or in another part.
+    """A reference to an object, in the same part of a 3MF package or another, with a transform.
 
     Parameters
     ----------
     path : str
-        The other part, or empty.
+        Name of the part that has the object; empty for the part that has the reference.
     item : str
-        Number of the object, as written.
+        Id of the object.
     transform : (4, 3) float64
         Acts on row vectors.
     """
@@ -88,11 +88,11 @@ class BooleanShape:
     Parameters
     ----------
     operation : {"union", "difference", "intersection"}
-        Applied to the base and one operand after another.
+        Applied to the base and the first operand, then to the result and the next operand.
     base : PlacedObject
     operands : list of PlacedObject
     is_optional : bool
-        True if the base stands for a shape that cannot be made.
+        True if the base is used instead when the shape cannot be made.
     """
 
     operation: str
@@ -103,7 +103,11 @@ class BooleanShape:
 
 @dataclass(eq=False)
 class Object:
-    """A mesh, a boolean shape, or components, or none of these."""
+    """An object of a 3MF model: a mesh, a boolean shape, components, or empty.
+
+    `usual` is the property group and index of triangles without properties of their own;
+    `properties` are those of single triangles, by number: the group, and an index for each corner.
+    """
 
     kind: str
     vertices: list[tuple[float, float, float]] = field(default_factory=list)
@@ -122,16 +126,17 @@ class Object:
         return bool(self.triangles) or self.shape is not None
 
     def arrays(self) -> tuple[FloatArray, IndexArray]:
-        """Return vertices (n, 3) and triangles (m, 3)."""
+        """Return vertices (n, 3) float64 and triangles (m, 3) int64 of the mesh."""
         vertices = np.array(self.vertices, dtype=np.float64).reshape(-1, 3)
         return vertices, np.array(self.triangles, dtype=np.int64).reshape(-1, 3)
 
 
 @dataclass(eq=False)
 class ModelPart:
-    """The content of one model part.
+    """The content of one model part of a 3MF package.
 
-    Textures are package parts, by number; each group of coordinates names one texture.
+    Objects and groups of properties are dictionaries by id. `textures` has the package part of each
+    texture, and `coordinates` has groups of texture coordinates, each with the id of its texture.
     """
 
     unit: str = "millimeter"
@@ -151,10 +156,10 @@ def parse_xml(
     spaces: dict[str, str] | None = None,
     metadata: Metadata | None = None,
 ) -> None:
-    """Call `start` with the name (without namespace) and attributes of each element.
+    """Parse XML: call `start` with name (without namespace) and attributes of each element.
 
     Elements are skipped unless their namespace is that of the root or of a supported extension,
-    since equal names there have other meanings.
+    since their names have other meanings in other namespaces.
 
     Parameters
     ----------
@@ -166,7 +171,7 @@ def parse_xml(
     spaces : dict of str to str, optional
         Receives the namespaces by prefix, each before the element that declares it.
     metadata : callable, optional
-        Called with names and texts of metadata.
+        Called with name and text of each metadata element.
 
     Raises
     ------
@@ -219,12 +224,12 @@ def parse_xml(
         raise source.error(message, line=error.lineno) from None
     except FormatError:
         raise
-    except (LookupError, ValueError) as error:  # from the encoding: `begin` raises none of its own
+    except (LookupError, ValueError) as error:  # from decoding: `begin` turns its own into others
         raise source.error(f"the XML cannot be decoded: {words_of(error)}.", line=1) from error
 
 
 def _listen(parser: expat.XMLParserType, name: str, metadata: Metadata) -> None:
-    """Collect the text of the element that has just begun, and pass it to `metadata`."""
+    """Collect the text of the element that has just begun, and pass name and text to `metadata`."""
     words: list[str] = []
 
     def end(_: str) -> None:
@@ -236,7 +241,7 @@ def _listen(parser: expat.XMLParserType, name: str, metadata: Metadata) -> None:
 
 
 class PartReader:
-    """Collects a part from the elements of its XML.
+    """A reader that makes a `ModelPart` of the XML of a 3MF package's model part.
 
     Parameters
     ----------
@@ -245,7 +250,7 @@ class PartReader:
     chunks : iterable of bytes
         The XML.
     part_name : callable
-        Turns a path as written into the name of a part.
+        Turns a path in the XML into the name of a part.
     """
 
     def __init__(
@@ -261,12 +266,12 @@ class PartReader:
         self._needs: list[str] = []
 
     def read(self) -> ModelPart:
-        """Return the part.
+        """Parse the XML and return the part.
 
         Raises
         ------
         FormatError
-            If it is no valid XML or no valid model, or needs an unsupported extension.
+            If the part is no valid XML or no valid model, or requires an unsupported extension.
         """
         parse_xml(self._source, self._chunks, self._start, self._spaces, self._hear)
         for space in self._needs:
@@ -280,7 +285,7 @@ class PartReader:
         return self._part
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
-        # The two frequent elements come first.
+        # The two most frequent elements come first.
         if tag == "vertex":
             self._current.vertices.append(_point(attributes))
         elif tag == "triangle":
@@ -315,12 +320,12 @@ class PartReader:
             self._note(tag, attributes)
 
     def _hear(self, name: str, text: str) -> None:
-        """Read metadata, by which Cura marks objects that are no material."""
+        """Read a metadata element: Cura marks objects that are no material by such elements."""
         if name in _CURA and text.strip().lower() == "true":
             self._current.kind = _CURA[name]
 
     def _combine(self, tag: str, attributes: dict[str, str]) -> None:
-        """Read a boolean shape or one of its operands."""
+        """Read an element “booleanshape”, or “boolean”, which is an operand of such a shape."""
         placed = self._placed(attributes)
         if tag == "boolean":
             if self._current.shape is None:
@@ -333,7 +338,7 @@ class PartReader:
         self._current.shape = BooleanShape(operation, placed, [])
 
     def _note(self, tag: str, attributes: dict[str, str]) -> None:
-        """Read an element about data other than the shape."""
+        """Read an element about properties: colours, base materials, textures; and count beams."""
         if tag in ("colorgroup", "basematerials"):
             self._group = attributes["id"]
         elif tag == "color":
@@ -353,7 +358,7 @@ class PartReader:
         self._current.beams += tag == "beam"
 
     def _named(self, attributes: dict[str, str]) -> tuple[str, tuple[int, ...]]:
-        """Return the property group of a triangle, and the property numbers at its corners."""
+        """Return the property group of a triangle, and the property index at each corner."""
         usual = self._current.usual or ("", 0)
         group = attributes.get("pid", usual[0])
         first = attributes.get("p1")
@@ -381,7 +386,7 @@ class PartReader:
 
 
 def _color(text: str) -> tuple[int, ...]:
-    """Return red, green, blue and opacity in bytes."""
+    """Convert a hexadecimal colour to red, green, blue and opacity, from 0 to 255."""
     found: list[int] = opaque(one_color(text)).tolist()
     return tuple(found)
 
@@ -396,7 +401,7 @@ def _point(attributes: dict[str, str]) -> tuple[float, float, float]:
 
 
 def _place(attributes: dict[str, str]) -> tuple[float, float]:
-    """Return a pair of texture coordinates."""
+    """Return the texture coordinates (u, v) of a “tex2coord” element."""
     words = attributes["u"], attributes["v"]
     _refuse_underscores(words)
     u, v = float(words[0]), float(words[1])
@@ -406,7 +411,7 @@ def _place(attributes: dict[str, str]) -> tuple[float, float]:
 
 
 def _refuse_underscores(words: Iterable[str]) -> None:
-    """Refuse ``1_0``, which Python reads as 10."""
+    """Raise a `ValueError` if a word has an underscore: Python would read ``1_0`` as 10."""
     if "_" in "".join(words):
         raise ValueError("a number contains “_”, which is not allowed")
 

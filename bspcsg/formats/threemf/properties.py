@@ -1,6 +1,7 @@
-"""Properties of 3MF: colour groups become colours of corners, base materials materials.
+"""Conversion between properties of 3MF and attributes of a mesh.
 
-Textures become materials, too, and their coordinates the attribute ``"uv"``.
+Colour groups become colours of corners; base materials and textures become materials; texture
+coordinates become the attribute ``"uv"``.
 """
 
 from collections import Counter
@@ -22,7 +23,7 @@ from .write import called
 
 _Entry = TypeVar("_Entry")
 
-#: The colour of corners that have none: white.
+#: The colour of corners whose colour is not given: white.
 _WHITE = (255, 255, 255, 255)
 
 
@@ -35,7 +36,7 @@ def properties_of(
     ----------
     part : ModelPart
     held : Object
-        One of its.
+        An object of `part`.
     faces : (m, 3) int64
     picture : callable
         Returns the bytes of a part of the package, by name.
@@ -57,7 +58,7 @@ def properties_of(
 
 
 class _Reading:
-    """The properties of the triangles of an object, so far."""
+    """The properties of the triangles of one object, collected triangle by triangle."""
 
     def __init__(self, part: ModelPart, count: int) -> None:
         self._part = part
@@ -73,7 +74,7 @@ class _Reading:
         self._taken = Counter([*(name for name, _ in bases), *pictures])
 
     def take(self, k: int, group: str, numbers: tuple[int, ...]) -> None:
-        """Record the properties of one triangle."""
+        """Store the properties of triangle `k`: entries of `group`, one index for each corner."""
         part = self._part
         if group in part.colors:
             self._colors[k] = [_entry(part.colors[group], number) for number in numbers]
@@ -88,14 +89,14 @@ class _Reading:
             self._places[k] = [_entry(places, number) for number in numbers]
 
     def _called(self, texture: str) -> str:
-        """Return a name for a texture that no other material has."""
+        """Return the material name of a texture, distinct from all other material names."""
         if texture not in self._part.textures:
             raise IndexError(f"it refers to texture {texture}, which does not exist")
         name = named_after(self._part.textures[texture])
         return name if self._taken[name] == 1 else f"{name} ({texture})"
 
     def attributes(self, faces: IndexArray, picture: Callable[[str], bytes]) -> Attributes | None:
-        """Return the attributes; None if there are none."""
+        """Return the attributes of the triangles; None if no properties were stored."""
         materials = dict(self._materials)
         for texture, name in self._textures.items():
             materials[name] = _pictured(picture(self._part.textures[texture]))
@@ -108,9 +109,9 @@ class _Reading:
 
 
 def _names_of_bases(bases: list[Base], pictures: list[str]) -> dict[Base, str]:
-    """Return the names of base materials, distinct for each colour and different from pictures.
+    """Return a material name for each base material, distinct from each other and from `pictures`.
 
-    A name that another material has already gets a number; the empty name means no material.
+    A repeated name gets a number, and an empty one becomes “material” and a number.
     """
     taken = {*(name for name, _ in bases), *pictures}
     found: dict[Base, str] = {}
@@ -127,7 +128,7 @@ def _names_of_bases(bases: list[Base], pictures: list[str]) -> dict[Base, str]:
 
 @lru_cache(maxsize=256)
 def _plain(color: tuple[int, ...]) -> Material:
-    """Return the material of a colour in bytes; equal colours share one object."""
+    """Return the material of a colour, given as bytes; equal colours share one object."""
     return Material(tuple(value / 255 for value in color))
 
 
@@ -147,7 +148,7 @@ def _entry(group: list[_Entry], number: int) -> _Entry:
 
 
 def kept(said: Attributes) -> Attributes:
-    """Return the attributes that 3MF can hold: face materials or else colours, both in bytes."""
+    """Return the attributes that 3MF can store: materials of faces or else colours, as bytes."""
     said = said.without_empty_material()
     names = said.face.get("material")
     if names is not None and names.dtype.kind == "U" and names.ndim == 1:
@@ -181,7 +182,7 @@ def _kept_materials(said: Attributes) -> Attributes:
 
 
 def _has_places(said: Attributes) -> bool:
-    """Say whether the corners have texture coordinates."""
+    """Say whether vertices or corners have texture coordinates: pairs of floats named “uv”."""
     if said.kind_of("uv") not in ("vertex", "corner"):
         return False
     places = said.at_corners("uv")

@@ -1,6 +1,7 @@
 """Reading and writing the tree of a 3MF's objects and components.
 
-A leaf with another name than its mesh is an object with one component, marked by its part number.
+A leaf whose name differs from its mesh's is written as an object with one component, and marked by
+the part number `INSTANCE`.
 """
 
 from collections.abc import Iterable, Iterator
@@ -24,12 +25,13 @@ _IDENTITY = np.eye(4)
 
 
 def read(source: Source) -> SceneNode:
-    """Read the build items as a tree, in millimetres.
+    """Read the build items of a 3MF file as a tree of nodes, in millimetres.
 
     Raises
     ------
     FormatError
-        As for a mesh.
+        If the archive is damaged or has no model, or the model is not valid or needs an extension
+        that is not supported.
     """
     with opened(source) as package:
         root = package.root()
@@ -38,7 +40,7 @@ def read(source: Source) -> SceneNode:
 
 
 class _Reading:
-    """The objects of one package; an object with several placements has one mesh."""
+    """A reader of one package's nodes; an object that several nodes show becomes one mesh."""
 
     def __init__(self, package: Package, root: str) -> None:
         self._package = package
@@ -48,7 +50,7 @@ class _Reading:
 
     def tree(self) -> SceneNode:
         part = self._package.part(self._root)
-        # This also raises an error if objects are nested too deeply or placed too often.
+        # Called only for its errors: objects that are nested too deeply or placed too often.
         self._objects.placed(self._root, part.items)
         found = self._nodes(self._root, part.items)
         scale = MILLIMETRES[part.unit]
@@ -62,7 +64,7 @@ class _Reading:
         return tuple(node for node in found if node is not None)
 
     def _node(self, here: str, placed: PlacedObject) -> SceneNode | None:
-        """Return the node of a placed object, or None if it is support or a surface, no model."""
+        """Return the node of a placed object; None if it is no model, but support or a surface."""
         path = placed.path or here
         part = self._package.part(path)
         told = part.objects[placed.item]
@@ -87,7 +89,7 @@ class _Reading:
 
 
 def _color(part: ModelPart, told: Object) -> tuple[float, ...] | None:
-    """Return the colour of an object as a whole."""
+    """Return the only colour of an object; None if it has none or its triangles have properties."""
     if told.usual is None or told.properties or told.usual[0] not in part.bases:
         return None
     group = part.bases[told.usual[0]]
@@ -97,7 +99,7 @@ def _color(part: ModelPart, told: Object) -> tuple[float, ...] | None:
 
 
 def encode(root: SceneNode) -> Iterator[bytes]:
-    """Yield the package of a tree; meshes of several nodes are stored once."""
+    """Yield the bytes of a 3MF file of a tree; a mesh of several nodes is stored once."""
     resources = Resources(1)
     lines = [*_model(root, resources)]
     yield packed(iter(lines), resources.pictures)
@@ -115,7 +117,7 @@ def _model(root: SceneNode, resources: Resources) -> Iterator[str]:
 
 
 class _Writing:
-    """The objects of a package, each after the objects that it refers to."""
+    """A writer of a package's objects as XML; each comes after the objects that it refers to."""
 
     def __init__(self, root: SceneNode, resources: Resources) -> None:
         self.lines: list[str] = []
@@ -135,7 +137,7 @@ class _Writing:
             self.lines.append("</basematerials>\n")
 
     def object_of(self, node: SceneNode) -> int:
-        """Write a node and its subtree, and return the number of its object."""
+        """Write a node and its descendants as XML; return the id of the node's object."""
         if node.mesh is not None:
             return self._leaf(node, node.mesh)
         inner = [(self.object_of(child), child.matrix) for child in node.children]

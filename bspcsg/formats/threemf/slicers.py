@@ -1,4 +1,4 @@
-"""Parts of objects that slicers do not treat as material, or subtract from other parts.
+"""Parts of 3MF objects that slicers do not treat as material, or subtract from other parts.
 
 PrusaSlicer and related programs write all volumes of an object as one mesh; a part beside the model
 gives the kind of each range of triangles. Bambu Studio and OrcaSlicer give a kind for each
@@ -15,13 +15,13 @@ from ...errors import Finding, FormatError
 from .package import Package
 from .part import BooleanShape, ModelPart, Object, PlacedObject
 
-#: The parts in which slicers say it, in small letters.
+#: The names, in lower case, of the package parts with the settings of slicers.
 _SETTINGS = re.compile(r"metadata/(\w+_model|model_settings)\.config")
 
-#: What is taken away from the other parts of its object.
+#: The kind of parts that slicers subtract from all other parts of an object.
 NEGATIVE = "negative volumes"
 
-#: Kinds of parts by the words of slicers; those of material have no name.
+#: Kinds of parts by the words of slicers; the kind of plain material is empty.
 _KINDS = {
     **dict.fromkeys(("ModelPart", "normal_part"), ""),
     **dict.fromkeys(("NegativeVolume", "negative_part"), NEGATIVE),
@@ -40,13 +40,13 @@ class Slicing:
     counts : Counter of str
         The number of parts of each kind that is no material.
     inner : set of (str, str)
-        Part and number of objects that are used only inside others.
+        Package part and id of each object that is used only inside another object.
     findings : list of Finding
-        Findings about invalid statements of slicers.
+        Findings about invalid settings of slicers.
     shapes : int
-        The number of meshes from which others are to be subtracted.
+        The number of meshes from which negative volumes are to be subtracted.
     unmade : list of str
-        The reasons why meshes are not subtracted.
+        The reasons why negative volumes are not subtracted.
     """
 
     counts: Counter[str] = field(default_factory=Counter)
@@ -58,14 +58,14 @@ class Slicing:
 
 @dataclass
 class _SlicerSettings:
-    """The settings of slicers by the numbers of objects: for ranges of triangles and components."""
+    """The settings of slicers by object id, for ranges of triangles and for components."""
 
     volumes: dict[str, list[tuple[int, int, dict[str, str]]]] = field(default_factory=dict)
     components: dict[str, dict[str, str]] = field(default_factory=dict)
     current: str = ""
 
     def take(self, tag: str, attributes: dict[str, str]) -> None:
-        """Read an element."""
+        """Read one XML element of a slicer's settings."""
         if tag == "object":
             self.current = attributes["id"]
         elif tag == "volume":
@@ -80,9 +80,9 @@ class _SlicerSettings:
 
 
 def settled(package: Package, root: str) -> Slicing:
-    """Change the objects of a package according to the statements of slicers.
+    """Change the objects of a package according to the settings of slicers.
 
-    Parts that are no material are left out; subtracted parts become operands of a boolean shape.
+    Parts that are no material are removed; negative volumes become operands of a boolean shape.
     """
     slicing, part = Slicing(), package.part(root)
     settings = _settings_of(package, slicing)
@@ -110,7 +110,10 @@ def _settings_of(package: Package, slicing: Slicing) -> _SlicerSettings:
 
 
 def _kind(slicing: Slicing, word: str) -> str:
-    """Return the kind that a slicer's word names; unknown words mean material."""
+    """Return the kind of part that a slicer's word names, empty for material; count it.
+
+    An unknown word means material, with a finding.
+    """
     if word not in _KINDS:
         message = f"a part of the unknown kind “{word}” was read as an ordinary solid part."
         slicing.findings.append(Finding("unknown_part", "warning", message, (), 1))
@@ -126,7 +129,7 @@ def _divide(
     item: str,
     volumes: list[tuple[int, int, dict[str, str]]],
 ) -> None:
-    """Remove the triangles of some volumes from an object, and subtract the negative volumes."""
+    """Remove from an object the triangles that are no material, and subtract negative volumes."""
     whole = part.objects[item]
     is_body = np.ones(len(whole.triangles), dtype=bool)
     negatives = []
@@ -151,7 +154,7 @@ def _divide(
 
 
 def _sort(slicing: Slicing, package: Package, root: str, item: str, kinds: dict[str, str]) -> None:
-    """Remove some components from an object, and subtract negative ones from the others."""
+    """Remove components that are no material from an object; subtract its negative components."""
     whole = package.part(root).objects[item]
     kept, negatives = [], []
     for one in whole.components:
@@ -174,7 +177,7 @@ def _lessened(
     one: PlacedObject,
     negatives: list[PlacedObject],
 ) -> PlacedObject:
-    """Return a component with others subtracted from it."""
+    """Return a component from which negative components are subtracted."""
     known = package.part(one.path or root).objects.get(one.item)
     if known is None or not known.is_body:
         slicing.unmade.append(f"object {one.item} is not a mesh.")
@@ -186,7 +189,7 @@ def _lessened(
 
 
 def _added(slicing: Slicing, root: str, part: ModelPart, item: str, one: Object) -> PlacedObject:
-    """Add an object under a free number, and return a reference to it without a transform."""
+    """Add an object under a free id, and return a reference to it without a transform."""
     number = len(part.objects)
     while f"{item}.{number}" in part.objects:
         number += 1
@@ -196,7 +199,7 @@ def _added(slicing: Slicing, root: str, part: ModelPart, item: str, one: Object)
 
 
 def _taken(whole: Object, rows: list[int]) -> Object:
-    """Return an object of some triangles, with the vertices that they use."""
+    """Return an object with the triangles `rows` of another, and the vertices that they use."""
     triangles = [whole.triangles[row] for row in rows]
     used = sorted({corner for triangle in triangles for corner in triangle})
     numbers = {corner: number for number, corner in enumerate(used)}

@@ -1,7 +1,7 @@
-"""Pictures in 3MF packages: their parts, and the names of their materials.
+"""Pictures in 3MF packages: their package parts, and the names of their materials.
 
-3MF has no names for textures, so a material is named after the part. Coordinates count from the
-lower left corner of the picture, like those of attributes.
+3MF has no names for textures, so a material is named after the part with its picture. Texture
+coordinates count from the picture's lower left corner, as in attributes.
 """
 
 from collections.abc import Iterable, Iterator
@@ -11,13 +11,13 @@ from xml.sax.saxutils import quoteattr
 
 from ...attributes.material import Material
 
-#: The type of the relation of pictures to the model.
+#: The type of the relationship between the model and a picture.
 _TEXTURE = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dtexture"
 
-#: Suffixes of parts by media types.
+#: The suffix of a picture's part by media type.
 _SUFFIXES = {"image/png": "png", "image/jpeg": "jpeg"}
 
-#: Characters that names of parts must not have, not even encoded. Nor may they begin with a dot.
+#: Characters that the name of a part must not contain, not even encoded.
 _SLASHES = str.maketrans("/\\", "__")
 
 
@@ -28,9 +28,9 @@ class PackedPicture:
     Parameters
     ----------
     path : str
-        The part.
+        The name of the part.
     media : str
-        Its media type.
+        The media type, such as "image/png".
     data : bytes
     """
 
@@ -40,12 +40,12 @@ class PackedPicture:
 
 
 class Resources:
-    """The resource numbers of a model, and its pictures.
+    """The resource ids that a model has used, and its pictures.
 
     Parameters
     ----------
     first : int
-        The lowest number.
+        The first free id.
     """
 
     def __init__(self, first: int) -> None:
@@ -54,23 +54,23 @@ class Resources:
         self._textures: dict[str, int] = {}
 
     def free(self) -> int:
-        """Return the next free number."""
+        """Return the next free resource id, and count it as used."""
         self._next += 1
         return self._next - 1
 
     @property
     def pictures(self) -> list[PackedPicture]:
-        """All pictures so far."""
+        """All pictures that have been added."""
         return list(self._pictures.values())
 
     def picture(self, name: str, material: Material) -> PackedPicture:
-        """Return the picture of a material; equal pictures of equal names share one part."""
+        """Add the picture of a material; equal pictures with equal names share one part."""
         data, media = material.texture or b"", material.media or ""
         path = _path(len(self._pictures) + 1, name, media)
         return self._pictures.setdefault((name, data), PackedPicture(path, media, data))
 
     def texture(self, picture: PackedPicture) -> tuple[int, list[str]]:
-        """Return the number of a picture's texture, and its element if not written before."""
+        """Return the id of a picture's texture, and its XML, empty if it was returned before."""
         if picture.path in self._textures:
             return self._textures[picture.path], []
         number = self._textures[picture.path] = self.free()
@@ -84,13 +84,16 @@ def _path(number: int, name: str, media: str) -> str:
 
 
 def named_after(path: str) -> str:
-    """Return the name of the material of a picture part."""
+    """Return the material name of a picture: the decoded file name of its part, without suffix."""
     last = path.rpartition("/")[2]
     return unquote(last.rpartition(".")[0] or last)
 
 
 def fit_for_parts(names: list[str], others: list[str]) -> dict[str, str]:
-    """Return distinct names, valid as names of parts, for materials with pictures."""
+    """Return for each name of a material with a picture a name that a package part may have.
+
+    The names differ from each other and from `others`.
+    """
     found: dict[str, str] = {}
     for name in names:
         rest = name.lstrip(".").translate(_SLASHES)
@@ -102,12 +105,12 @@ def fit_for_parts(names: list[str], others: list[str]) -> dict[str, str]:
 
 
 def content_types(pictures: Iterable[PackedPicture]) -> str:
-    """Return the content types of a package's pictures."""
+    """Return the XML of the content types of a package's pictures."""
     media = sorted({one.media for one in pictures})
     return "".join(f'<Default Extension="{_SUFFIXES[one]}" ContentType="{one}"/>' for one in media)
 
 
 def relations(pictures: Iterable[PackedPicture]) -> Iterator[str]:
-    """Yield the relationships of the model to its pictures."""
+    """Yield the XML of the relationships between the model and its pictures."""
     for number, one in enumerate(pictures):
         yield f'<Relationship Id="rel{number}" Target="{one.path}" Type="{_TEXTURE}"/>\n'

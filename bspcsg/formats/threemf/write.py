@@ -1,7 +1,7 @@
-"""3MF, writing: one object per named part, in millimetres, every coordinate's double kept.
+"""Writing of 3MF: one object for each named part, in millimetres, every coordinate as its double.
 
-A package is a ZIP archive of three XML parts, so the standard library is enough. Transforms are
-never written: slicers disagree on whether a unit applies to them.
+A package is a ZIP archive of XML files, so the standard library is enough. The build items of a
+mesh have no transforms: slicers disagree on whether a unit applies to them.
 """
 
 import io
@@ -42,12 +42,12 @@ _RELATIONS = (
 _ROOT = f'<Relationship Id="rel0" Target="/3D/3dmodel.model" Type="{_MODEL}"/>'
 _END = "</Relationships>\n"
 
-#: The same bytes for the same mesh, whenever it is written.
+#: The date of all files in the archive, so that equal meshes give equal bytes.
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
-    """Yield the package; every coordinate reads back as the same double."""
+    """Yield the bytes of a 3MF file; every coordinate reads back as the same double."""
     said, resources = said_of(mesh), Resources(_GROUP)
     for name, one in ({} if said is None else said.materials).items():
         if one.texture is not None:
@@ -56,7 +56,7 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
 
 
 def packed(model: Iterator[str], pictures: Sequence[PackedPicture]) -> bytes:
-    """Return the package of a model, with the pictures that it refers to."""
+    """Return the bytes of a 3MF package: a model, given as XML lines, and its pictures."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, text in (
@@ -81,7 +81,10 @@ def _pack(archive: zipfile.ZipFile, name: str, chunks: Iterator[bytes]) -> None:
 
 
 def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
-    """Return the findings about losses: triangles with repeated corners, colours under pictures."""
+    """Return findings about data that 3MF cannot store.
+
+    These are triangles with repeated corners, and colours of materials with a picture.
+    """
     found = []
     count = int(_repeats_corner(mesh.faces).sum())
     if count:
@@ -130,12 +133,12 @@ def _model(mesh: Mesh | RawMesh, resources: Resources) -> Iterator[str]:
     yield "</build>\n</model>\n"
 
 
-#: The number of the first group of properties; objects have those from 1 on.
+#: The id of the first group of properties; the ids of objects begin at 1.
 _GROUP = 1 << 30
 
 
 def beginning(said: Iterable[Attributes]) -> str:
-    """Return the beginning of a model part, with the namespaces that its attributes need."""
+    """Return the first lines of a model part, with the namespaces that the attributes need."""
     needs_more = any(not {"color", "uv"}.isdisjoint(one.names) for one in said)
     more = f' xmlns:m="{_MATERIALS}"' if needs_more else ""
     return f'{_HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}"{more}>\n'
@@ -144,7 +147,10 @@ def beginning(said: Iterable[Attributes]) -> str:
 def mesh_object(
     number: int, name: str, mesh: RawMesh, painted: str, words: Values | None
 ) -> Iterator[str]:
-    """Yield a mesh object; `painted` is its own property, `words` are those of its triangles."""
+    """Yield the XML of a mesh object, with XML attributes for its properties.
+
+    `painted` are those of the object, and `words` are those of each triangle.
+    """
     is_proper = ~_repeats_corner(mesh.faces)
     own = None if words is None else words[is_proper]
     lines = _object(number, name, mesh.vertices, mesh.faces[is_proper], own)
@@ -153,12 +159,12 @@ def mesh_object(
 
 
 def hex_of(color: Sequence[float]) -> str:
-    """Return a colour in the notation of 3MF."""
+    """Return a colour in the notation of 3MF: upper-case hexadecimal, “#RRGGBBAA” or shorter."""
     return hexadecimal(color).upper()
 
 
 def properties(said: Attributes, resources: Resources) -> tuple[list[str], Values]:
-    """Return the property groups, and the property attributes of each triangle."""
+    """Return the XML of property groups, and the property attributes of each triangle's XML."""
     if "material" in said.face:
         return _materials(said, resources)
     corners = said.at_corners("color").reshape(-1, 4)
@@ -170,7 +176,7 @@ def properties(said: Attributes, resources: Resources) -> tuple[list[str], Value
 
 
 def _materials(said: Attributes, resources: Resources) -> tuple[list[str], Values]:
-    """Return base materials and texture coordinate groups, and the attributes of triangles."""
+    """Return the XML of base materials and textures, and the attributes of each triangle's XML."""
     names = said.face["material"]
     plain = {name: one for name, one in said.materials.items() if one.texture is None}
     lines, words = _bases(names, plain, resources)
@@ -191,7 +197,7 @@ def _materials(said: Attributes, resources: Resources) -> tuple[list[str], Value
 def _bases(
     names: Values, plain: Mapping[str, Material], resources: Resources
 ) -> tuple[list[str], Values]:
-    """Return the group of materials without pictures, and the attributes of triangles."""
+    """Return the XML of materials without pictures, and the attributes of each triangle's XML."""
     if not plain:
         return [], np.full(len(names), "", dtype=object)
     group = resources.free()
@@ -205,7 +211,7 @@ def _bases(
 
 
 def _corner_words(group: int, numbers: IndexArray) -> Values:
-    """Return the attributes of triangles, given the property numbers at their corners."""
+    """Return the attributes of each triangle's XML, given the property index at each corner."""
     words: list[str] = []
     for first, second, third in listed(numbers.reshape(-1, 3)):
         same = first == second == third
@@ -230,13 +236,13 @@ def _object(
 
 
 def called(name: str) -> str:
-    """Return a name with a replacement for the characters that XML forbids."""
+    """Return a name in which U+FFFD replaces the characters that XML forbids."""
     return _FORBIDDEN.sub("\N{REPLACEMENT CHARACTER}", name)
 
 
-#: Control characters, lone surrogates, and the two that are no characters.
+#: The characters that XML forbids: controls, lone surrogates, U+FFFE and U+FFFF.
 _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
-#: The model part of the empty set; the archives around it differ by system.
+#: The model part of the empty set; the bytes of the archive around it depend on the system.
 NOTHING = "".join(_model(empty_set(), Resources(_GROUP))).encode()

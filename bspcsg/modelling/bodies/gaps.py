@@ -14,24 +14,26 @@ from ...solid.counting import uncounted
 from ...solid.solid import Solid, surfaces_meet
 from .triangles import least_gaps, nearest_points
 
-#: Relative error of distances in doubles, of the size of the coordinates: some dozens of roundings.
+#: The largest error of a computed distance, relative to the largest absolute coordinate. It allows
+#: for about 50 roundings of doubles.
 _NOISE = 1e-14
 
-#: Rounded meshes lie within this of the solids, relative to the size of the coordinates: by far.
+#: A bound of the distance between a solid and its mesh in doubles, relative to the largest absolute
+#: coordinate.
 _ROUNDING = 1e-9
 
 #: The largest number of pairs of triangles whose distances are compared in fractions because
 #: doubles cannot tell which is less. Each takes about a millisecond.
 _MAX_EXACT_PAIRS = 64
 
-#: The number of pairs of triangles that are compared together: this bounds the memory to some 100
-#: MB.
+#: The number of pairs of triangles whose distances are computed in one batch, which bounds the
+#: memory to about 100 MB.
 _PAIRS_PER_BATCH = 1 << 16
 
 
 @uncounted
 def min_gap(solid: Solid, other: Solid) -> float:
-    """Return the least distance between two solids (see `Solid.min_gap`)."""
+    """Return the least distance between two solids; 0 if they touch, infinity if one is empty."""
     if solid.is_empty or of_kind(Solid, other, "other").is_empty:
         return math.inf
     found = _nearest(solid, other)
@@ -40,7 +42,7 @@ def min_gap(solid: Solid, other: Solid) -> float:
 
 @uncounted
 def closest_points(solid: Solid, other: Solid) -> tuple[FloatArray, FloatArray]:
-    """Return the nearest points of two solids (see `Solid.closest_points`)."""
+    """Return the point of each solid that is nearest to the other solid, two (3,) arrays."""
     if solid.is_empty or of_kind(Solid, other, "other").is_empty:
         raise invalid_parameter(
             "One of the two solids is empty, so it has no closest point; pass solids that are not"
@@ -66,14 +68,14 @@ def _common_point(common: Solid) -> FloatArray:
 
 @uncounted
 def intersects(solid: Solid, other: Solid) -> bool:
-    """Say whether two solids have a point in common (see `Solid.intersects`)."""
+    """Return True if two solids have a point in common, also if they only touch."""
     if solid.is_empty or of_kind(Solid, other, "other").is_empty:
         return False
     return not _apart(solid, other) and (not solid.isdisjoint(other) or surfaces_meet(solid, other))
 
 
 def _apart(solid: Solid, other: Solid) -> bool:
-    """Say whether the boxes of two bounded solids are disjoint, by more than rounding errors."""
+    """Return True if the bounding boxes of two solids lie apart by more than rounding errors."""
     (low, high), (low_b, high_b) = (_box(one) for one in (solid, other))
     doubt = _ROUNDING * max(float(np.abs(box).max()) for box in (low, high, low_b, high_b))
     return bool((low > high_b + doubt).any() or (low_b > high + doubt).any())
@@ -85,7 +87,10 @@ def _box(solid: Solid) -> FloatArray:
 
 
 def _nearest(solid: Solid, other: Solid) -> tuple[Fraction, FloatArray, FloatArray] | None:
-    """Return the squared distance and two points in fractions; None if solids overlap."""
+    """Return the squared distance of two solids and their nearest points, all as fractions.
+
+    None means that the interiors of the solids overlap.
+    """
     if not solid.isdisjoint(other):
         return None
     triangles = [_corners(one) for one in (solid, other)]
@@ -95,7 +100,7 @@ def _nearest(solid: Solid, other: Solid) -> tuple[Fraction, FloatArray, FloatArr
     best = min(range(len(gaps)), key=lambda k: (gaps[k], k))
     scale = max(float(np.abs(one).max()) for one in triangles)
     if 0 < gaps[best] <= _bounded(0.0, scale) and surfaces_meet(solid, other):
-        # They touch at points that doubles cannot represent.
+        # The solids touch at points that doubles cannot represent.
         return Fraction(0), p[best], p[best]
     return gaps[best], p[best], q[best]
 
@@ -107,7 +112,11 @@ def _corners(solid: Solid) -> FloatArray:
 
 
 def _candidates(first: FloatArray, second: FloatArray) -> tuple[IndexArray, IndexArray]:
-    """Return the pairs of triangles that may be nearest, within the precision of doubles."""
+    """Return the pairs of triangles, one of each list, that doubles cannot tell from the nearest.
+
+    A pair is a row of `first` and a row of `second`. The pairs, at most `_MAX_EXACT_PAIRS`, are
+    sorted by computed distance.
+    """
     scale = max(float(np.abs(first).max()), float(np.abs(second).max()))
     trees = BoxTree.over(first), BoxTree.over(second)
     search = Nearness(*trees, _bounded(_some_gap(first, second), scale))
@@ -135,12 +144,18 @@ def _candidates(first: FloatArray, second: FloatArray) -> tuple[IndexArray, Inde
 
 
 def _bounded(gap: float, scale: float) -> float:
-    """Return the largest squared distance that rounding errors cannot distinguish from `gap`."""
+    """Return the largest squared distance that doubles cannot tell from the squared distance `gap`.
+
+    `scale` is the largest absolute coordinate.
+    """
     return (math.sqrt(gap) + _NOISE * scale) ** 2
 
 
 def _some_gap(first: FloatArray, second: FloatArray) -> float:
-    """Return an upper bound of the squared gap: the squared distance of two near corners."""
+    """Return an upper bound of the squared distance of two lists of triangles.
+
+    It is the squared distance between a corner of one list and a nearby corner of the other.
+    """
     points, others = first.reshape(-1, 3), second.reshape(-1, 3)
     point = others.mean(axis=0)
     gap = np.inf
@@ -151,7 +166,10 @@ def _some_gap(first: FloatArray, second: FloatArray) -> float:
 
 
 def _pairs(trees: tuple[BoxTree, BoxTree], leaves: IndexArray) -> tuple[IndexArray, IndexArray]:
-    """Return all pairs of triangles of pairs of leaves."""
+    """Return all pairs of a triangle in one leaf and a triangle in the other, for pairs of leaves.
+
+    The (n, 2) `leaves` are the leaf numbers in the first and the second tree.
+    """
     members, rows = trees[0].members(leaves[:, 0])
     others, other_rows = trees[1].members(leaves[:, 1])
     counts = np.bincount(other_rows, minlength=len(leaves))
@@ -162,7 +180,7 @@ def _pairs(trees: tuple[BoxTree, BoxTree], leaves: IndexArray) -> tuple[IndexArr
 
 
 def _exact(corners: FloatArray) -> FloatArray:
-    """Return coordinates as fractions, by the decimals that they stand for."""
+    """Return coordinates as fractions equal to their shortest decimals, such as 1/10 for 0.1."""
     numbers = [exact_number(x) for x in corners.ravel().tolist()]
     return np.array(numbers, dtype=object).reshape(corners.shape)
 

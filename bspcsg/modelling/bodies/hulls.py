@@ -1,4 +1,4 @@
-"""Convex hulls; the core computes those in space."""
+"""Convex hulls of solids, regions and points."""
 
 from collections.abc import Iterable, Iterator
 from typing import Any, overload
@@ -17,7 +17,7 @@ from ...solid.leaf import MeshLeaf
 from ...solid.solid import Solid, from_leaf, given_pitch, keeping_pitch
 from ..planar.hulls import hull_of_figures
 
-#: Lattice coordinates are below this many steps.
+#: The bound of lattice coordinates, in lattice steps.
 _REACH = 2**53
 
 
@@ -31,8 +31,8 @@ def hull(*solids_or_points: Any) -> Solid | Region:
     """Return the convex hull: the smallest convex set that contains all arguments.
 
     Each corner of the result is a corner of a solid or one of the points, with unchanged
-    coordinates; but if a face is so thin that it would face inwards, its corners are on the
-    lattice. No point lies outside a face, except by rounding.
+    coordinates; but if a face is so thin that rounding would turn it inwards, its corners are on
+    the lattice. No point lies outside a face, except by rounding.
 
     Parameters
     ----------
@@ -43,8 +43,8 @@ def hull(*solids_or_points: Any) -> Solid | Region:
     Returns
     -------
     Solid or Region
-        Empty if all arguments lie in one plane (in the plane: on one line); in space, up to
-        rounding.
+        Empty if all arguments lie in one plane up to rounding; for regions and plane points, if
+        they lie on one line.
 
     Raises
     ------
@@ -58,10 +58,11 @@ def hull(*solids_or_points: Any) -> Solid | Region:
     Notes
     -----
     The hull of the snapped points is exact. If no point was moved by snapping, every point outside
-    the hull of the others is a corner, however close it lies. Otherwise snapping moves each point
-    by less than a step or a few spacings of its doubles, and points within twice the largest such
-    move of the hull of the others are no corners; so rotated bodies keep their sides. Points left
-    out lie outside by no more than that.
+    the hull of the other points is a corner, however close it lies. Otherwise snapping moves each
+    point by less than a lattice step or a few spacings of doubles at its coordinates. A point whose
+    distance from the hull of the other points is less than twice the largest such motion is not a
+    corner; so rotated bodies keep their plane faces. An omitted point lies outside the result by no
+    more than that distance.
 
     Examples
     --------
@@ -87,15 +88,15 @@ def _hull(given: list[Any]) -> Solid | Region:
 
 
 def hull_of(points: FloatArray, pitch: int | None = None) -> Solid:
-    """Return the convex hull of points, empty if they lie in a plane up to rounding.
+    """Return the convex hull of points; it is empty if they lie in a plane up to rounding.
 
     Parameters
     ----------
     points : (n, 3) float64
         Finite, in model units.
     pitch : int or None
-        Exponent of the lattice step, if the points fit on that lattice; else one that fits is
-        chosen.
+        The preferred exponent of the lattice step. With None, or if the points reach too far for
+        that lattice, a suitable exponent is chosen.
     """
     if len(points) < 4:
         return Solid.empty()
@@ -109,7 +110,7 @@ def hull_of(points: FloatArray, pitch: int | None = None) -> Solid:
 
 
 def lattice_for(points: FloatArray, pitch: int | None) -> int:
-    """Return the pitch of a lattice that holds all points: the given one if possible."""
+    """Return the given pitch if its lattice reaches all points, else a pitch suited to them."""
     largest = float(np.abs(points).max())
     if pitch is not None and largest < (_REACH - 1) * 10.0**pitch:
         return pitch
@@ -122,7 +123,10 @@ def _is_flat(given: Any) -> bool:
 
 
 def _entries(given: Iterable[Any]) -> Iterator[Any]:
-    """Yield solids and arrays of points; flatten lists that contain solids."""
+    """Yield each solid, region and array of points; replace lists that contain solids by entries.
+
+    Raise `InvalidParameterError` for an argument that is none of these.
+    """
     for one in given:
         if isinstance(one, (Solid, Region)):
             yield one

@@ -1,4 +1,4 @@
-"""Solids from level sets of functions."""
+"""Solids of the points at which a function of space exceeds a level."""
 
 from collections.abc import Callable, Iterator
 from itertools import product
@@ -15,17 +15,18 @@ from ...shapes.primitives import box
 from ...solid.counting import counted
 from ...solid.solid import Solid
 
-#: A function of many points at once: (n, 3) float64 to (n,).
+#: A function that maps (n, 3) float64 points to (n,) numbers.
 Field: TypeAlias = Callable[[FloatArray], Any]
 
-#: The largest number of points at which a function is sampled. Each takes some 100 bytes, with what
-#: is made of it.
+#: The largest number of points at which a function is sampled. The memory is about 100 bytes per
+#: point.
 _MAX_SAMPLE_POINTS = 50_000_000
 
 #: The number of points in one call of the function.
 _POINTS_PER_CALL = 1 << 20
 
-#: Corners of the quadrilateral between two middles along each axis, as steps from a corner.
+#: The four corners of the common face of two neighbouring cubes, in circular order: offsets of 0 or
+#: 1 cubes along the two axes of the face.
 _AROUND = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
 
 
@@ -59,7 +60,7 @@ def level_set(f: Field, bounds: Any, edge_length: Scalar, *, level: Scalar = 0.0
 
     Notes
     -----
-    Marching tetrahedra on the body-centred lattice, as Manifold has them.
+    The method is marching tetrahedra on the body-centred lattice, as in the library Manifold.
 
     Examples
     --------
@@ -104,11 +105,11 @@ def _box(bounds: Any) -> tuple[FloatArray, FloatArray]:
 
 
 class _Grid:
-    """The corners and centres of cubes, with two extra layers on each side of the box.
+    """The corners and centres of equal cubes that fill a box and two extra layers around it.
 
-    The outermost layer counts as outside, so the surface closes beyond the box; the layer inside it
-    repeats the values at the border of the box. Points are numbered corners first, z fastest, then
-    centres.
+    Points of the outermost layer count as outside, so the surface is closed; the next layer repeats
+    the function's values at the border of the box. Corners are numbered before centres, both with z
+    fastest.
     """
 
     def __init__(self, low: FloatArray, step: FloatArray, counts: IndexArray) -> None:
@@ -121,7 +122,7 @@ class _Grid:
     def of(cls, low: FloatArray, high: FloatArray, edge: float) -> "_Grid":
         """Return the grid of cubes that divide a box evenly, with edges of at most `edge`."""
         with np.errstate(over="ignore"):
-            # If the quotient is a whole number that was rounded up, do not add a cube.
+            # Do not add a cube if rounding lifted a whole quotient above its value.
             counts = np.maximum(np.ceil((high - low) / edge * (1 - 1e-12)), 1.0)
             points = 2 * float(np.prod(counts + 5))
         if points > _MAX_SAMPLE_POINTS:
@@ -133,7 +134,7 @@ class _Grid:
         return cls(low, (high - low) / counts, counts.astype(np.int64))
 
     def points(self, numbers: IndexArray) -> FloatArray:
-        """Return points by their numbers."""
+        """Return the (n, 3) coordinates of points of the grid, given their numbers."""
         middle = numbers >= self._first_middle
         corners = np.stack(np.unravel_index(np.where(middle, 0, numbers), self._corners), axis=1)
         own = np.where(middle, numbers - self._first_middle, 0)
@@ -141,7 +142,10 @@ class _Grid:
         return self._low + self._step * np.where(middle[:, None], middles, corners)
 
     def values(self, f: Field, low: FloatArray, high: FloatArray) -> FloatArray:
-        """Return the function at all points; points beyond the box take the nearest value in it."""
+        """Return the function's values at all points of the grid, (n,) float64.
+
+        A point outside the box gets the value at the nearest point of the box.
+        """
         total = self._first_middle + int(np.prod(self._middles))
         found = np.empty(total)
         for start in range(0, total, _POINTS_PER_CALL):
@@ -151,7 +155,7 @@ class _Grid:
         return found
 
     def _is_rim(self) -> BoolArray:
-        """Say for each point whether it lies in the outermost layer."""
+        """Return a mask, (n,) bool, that is True at the points of the outermost layer."""
         rims = []
         for shape in (self._corners, self._middles):
             rim = np.ones(shape, dtype=bool)
@@ -160,7 +164,7 @@ class _Grid:
         return np.concatenate(rims)
 
     def surface(self, values: FloatArray) -> MeshArrays:
-        """Return the surface between positive values and others, closed."""
+        """Return vertices and faces of the closed surface around the points of positive value."""
         bounded = np.where(self._is_rim(), -np.abs(values), values)
         inside = bounded > 0
         triangles = np.concatenate([_cut(four, inside) for four in self._tetrahedra(inside)])
@@ -171,11 +175,14 @@ class _Grid:
         start, end = self.points(first), self.points(second)
         vertices, same = welded(start + (end - start) * shares[:, None])
         faces = same[corners.reshape(-1, 3)]
-        # If the function is 0 at a point, surface corners of several edges coincide there.
+        # Where the function is 0 at a grid point, surface corners on several edges coincide.
         return vertices, faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
 
     def _tetrahedra(self, inside: BoolArray) -> Iterator[IndexArray]:
-        """Yield the tetrahedra, (n, 4) each, whose corners are not all inside or outside."""
+        """Yield the tetrahedra with corners both inside and outside, as (n, 4) point numbers.
+
+        A tetrahedron joins the centres of two neighbouring cubes and one edge of their common face.
+        """
         corner = np.arange(self._first_middle).reshape(self._corners)
         middle = np.arange(int(np.prod(self._middles))).reshape(self._middles) + self._first_middle
         for axis, edge in product(range(3), range(4)):
@@ -189,7 +196,11 @@ class _Grid:
 
 
 def _beside(corner: IndexArray, axis: int, step: IndexArray) -> IndexArray:
-    """Return the corners of the faces between cubes along an axis, each a step from its lowest."""
+    """Return one corner of each face between two neighbouring cubes along an axis.
+
+    The array `corner` has the numbers of all cube corners. `step` selects the corner of a face: 0
+    or 1 along each of the two axes of the face.
+    """
     places = []
     for k in range(3):
         if k == axis:
@@ -216,12 +227,15 @@ def _asked(f: Field, points: FloatArray) -> FloatArray:
             f" {points[bad[0]].tolist()}."
         )
         raise InvalidMeshError(message, "non_finite", bad[:20].tolist())
-    # Infinite values cannot be interpolated.
+    # Clip infinite values, which cannot be interpolated.
     return np.clip(found, -1e150, 1e150)
 
 
 def _cut(tetrahedra: IndexArray, inside_points: BoolArray) -> IndexArray:
-    """Return triangles in tetrahedra, (n, 3, 2): each corner is given as an edge of two points."""
+    """Return the surface triangles inside tetrahedra, (n, 3, 2) point numbers.
+
+    Each corner of a triangle lies on the edge between the two points that are given for it.
+    """
     inside = inside_points[tetrahedra]
     order = np.argsort(~inside, axis=1, kind="stable")
     chosen, is_even = np.take_along_axis(tetrahedra, order, axis=1), _is_even(order)
@@ -230,7 +244,7 @@ def _cut(tetrahedra: IndexArray, inside_points: BoolArray) -> IndexArray:
     for count, triangle in _TRIANGLES:
         rows = counts == count
         found = np.stack([chosen[rows][:, edge] for edge in triangle], axis=1)
-        # An odd permutation mirrors the tetrahedron.
+        # An odd permutation of the corners mirrors the tetrahedron.
         pieces.append(np.where(is_even[rows][:, None, None], found, found[:, ::-1]))
     return np.concatenate(pieces)
 
@@ -241,8 +255,9 @@ def _is_even(order: IndexArray) -> BoolArray:
     return even
 
 
-#: The number of corners inside, these first, and a triangle by the edges that its corners lie on.
-#: It faces away from the inside if the corners are those at the origin, on x, on y and on z.
+#: For a tetrahedron whose inner corners come first: the number of inner corners, and a triangle of
+#: the surface as three edges, each a pair of corner numbers. Its normal points outside if the
+#: corners are oriented like the origin and the ends of the unit vectors x, y and z.
 _TRIANGLES = [
     (1, [[0, 1], [0, 2], [0, 3]]),
     (2, [[0, 2], [0, 3], [1, 3]]),

@@ -1,4 +1,4 @@
-"""Solids grown, shrunk and rounded by a ball."""
+"""Offsets and rounding of solids by Minkowski sums with a ball."""
 
 from ..._types import Scalar
 from ...errors import invalid_parameter
@@ -8,13 +8,13 @@ from ...solid.counting import counted
 from ...solid.solid import Solid
 from .sums import minkowski
 
-#: Ten steps of the finest lattice: smaller balls are nothing there.
+#: The least radius of a ball, in model units: ten steps of the finest lattice.
 _SMALLEST = 1e-21
 
 
 @counted
 def offset(solid: Solid, r: Scalar, segments: int) -> Solid:
-    """Return the solid with its surface moved outwards (see `Solid.offset`)."""
+    """Return the solid with its surface moved outwards by `r`, or inwards if `r` is negative."""
     distance, around = number(r, "r"), sides_around(4, segments, "segments")
     if not distance:
         return solid
@@ -24,14 +24,17 @@ def offset(solid: Solid, r: Scalar, segments: int) -> Solid:
 
 @counted
 def rounded(solid: Solid, r: Scalar, segments: int, inside: bool) -> Solid:
-    """Return the solid with round edges (see `Solid.rounded`)."""
+    """Return the solid with its edges rounded by radius `r`, the concave ones if `inside`."""
     radius = positive(r, "r")
     first = radius if truth_value(inside, "inside") else -radius
     return offset(offset(solid, first, segments), -first, segments)
 
 
 def _ball(r: float, around: int) -> Solid:
-    """Return a ball with corners at r on each axis: faces perpendicular to an axis move by r."""
+    """Return a polyhedral ball with corners at distance r from the origin on each axis.
+
+    So a Minkowski sum moves faces that are perpendicular to an axis by exactly r.
+    """
     if r < _SMALLEST:
         message = (
             f"r is {r:g}, which is smaller than the finest lattice step; choose 0, or at least"

@@ -11,13 +11,13 @@ from ...shapes.primitives import half_space
 from ...solid.counting import counted, uncounted
 from ...solid.solid import Solid, given_pitch, keeping_pitch, solid_of_mesh
 
-#: The least positive double.
+#: The smallest positive double.
 _LEAST = float(np.nextafter(0, 1))
 
 
 @uncounted
 def split(solid: Solid, normal: str | Vector | Solid, offset: Scalar = 0.0) -> tuple[Solid, Solid]:
-    """Split a solid by a plane or another solid (see `Solid.split`)."""
+    """Split a solid by a plane or another solid into two parts (see `Solid.split`)."""
     if isinstance(normal, Solid):
         return solid & normal, solid - normal
     return sides_of_plane(solid, normal, offset)
@@ -25,13 +25,13 @@ def split(solid: Solid, normal: str | Vector | Solid, offset: Scalar = 0.0) -> t
 
 @counted
 def trim(solid: Solid, normal: str | Vector, offset: Scalar = 0.0) -> Solid:
-    """Return the part on the side to which a plane's normal points (see `Solid.trim`)."""
+    """Return the part of a solid on the side to which a plane's normal points."""
     return solid - half_space(normal, offset)
 
 
 @uncounted
 def decompose(solid: Solid) -> list[Solid]:
-    """Return the connected parts, the largest first (see `Solid.decompose`)."""
+    """Return the connected parts of a solid, the largest first (see `Solid.decompose`)."""
     meshes = connected_parts(solid)
     if len(meshes) == 1:
         return [solid]
@@ -41,12 +41,12 @@ def decompose(solid: Solid) -> list[Solid]:
 
 
 def _part(mesh: Mesh, pitch: int) -> Solid | None:
-    """Return the solid of a part's mesh, on a finer lattice if it would vanish on this one.
+    """Return the solid that a mesh bounds; None if it is too thin for coordinates in doubles.
 
-    Return None if it is too thin for doubles.
+    A finer lattice is chosen if the solid would vanish on the lattice of the given pitch.
     """
     if mesh.volume > mesh.area * 10.0**pitch:
-        # No corner moves by a whole step, so part of the mesh is left.
+        # Snapping moves no corner by a whole lattice step, so the solid cannot vanish.
         return solid_of_mesh(mesh, pitch=pitch)
     largest = float(np.abs(mesh.vertices).max())
     with core_errors():

@@ -14,28 +14,31 @@ from ...parameters import shown
 from ...solid.counting import uncounted
 from ...solid.solid import Solid
 
-#: The place of a solid and the place where it goes along an axis: one name for both, or one each.
+#: The positions along one axis that `align` makes equal: one name ("min", "center" or "max") for
+#: both boxes, or a pair of names, of the moved solid's box and of the target's box.
 Anchor: TypeAlias = str | tuple[str, str]
 
 _SHARES = {"min": Fraction(0), "center": Fraction(1, 2), "max": Fraction(1)}
 
 
 def align(solid: Solid, places: dict[str, Anchor | None], to: "Solid | Vector") -> Solid:
-    """Return the solid moved so that places of its box meet those of another (see `Solid.align`).
+    """Return the solid translated so that positions of its bounding box equal a target's.
 
     Parameters
     ----------
     solid : Solid
     places : dict
-        For each of the axes x, y, z the two places that meet, None for no move.
+        For each of the axes x, y, z the positions that become equal, or None for no translation
+        along it.
     to : Solid or (3,) float
+        The target: a solid's bounding box, or a point.
     """
     named = [_names(axis, place) for axis, place in places.items()]
     own, other = _box(solid), _box(to)
     move = [0.0, 0.0, 0.0]
     for axis, names in enumerate(named):
         if names is not None:
-            # The difference of short decimals is short, and so a whole number of lattice steps.
+            # Exact subtraction keeps short decimals short, so the result is in whole lattice steps.
             move[axis] = float(_at(other, axis, names[1]) - _at(own, axis, names[0]))
     return solid.translate(move)
 
@@ -61,7 +64,7 @@ def _wrong(axis: str, place: Any) -> InvalidParameterError:
 
 @uncounted
 def _box(place: "Solid | Vector") -> FloatArray:
-    """Return lowest and highest coordinates."""
+    """Return the bounding box of a solid or a point, (2, 3): least and greatest coordinates."""
     if not isinstance(place, Solid):
         return np.array([vector3(place, "point")] * 2)
     bounds = place.bounds

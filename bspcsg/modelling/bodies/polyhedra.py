@@ -1,4 +1,4 @@
-"""Closed meshes in lattice steps, with exact tests of directions of faces and edges."""
+"""Closed meshes with integer coordinates, and exact tests of their face and edge directions."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,48 +11,48 @@ from ..._types import FloatArray, IndexArray
 from ...mesh.mesh import surfaces_of
 from .shading import half_edges, unit
 
-#: Whole numbers of any size.
+#: An array of Python integers, which cannot overflow.
 LongArray: TypeAlias = np.ndarray[Any, np.dtype[np.object_]]
 
-#: Yes or no.
+#: An array of truth values.
 Marks: TypeAlias = np.ndarray[Any, np.dtype[np.bool_]]
 
-#: The product of two rounded vectors of length 1 errs by less.
+#: A bound of the rounding error of the dot product of two unit vectors in doubles.
 _DOUBT = 2e-15
 
-#: The number of signs that are computed together. Each takes some ten bytes, and a hundred if
-#: doubles do not decide it.
+#: The number of signs of dot products in one batch. Each takes about 10 bytes, and 100 if doubles
+#: do not decide it.
 _SIGNS_PER_BATCH = 1 << 22
 
-#: The faces of a tetrahedron whose corners 1, 2, 3 are seen from corner 0 clockwise.
+#: The outward faces of a tetrahedron whose corners 1, 2, 3 appear clockwise from corner 0.
 _TETRAHEDRON = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
 
 
 class Vectors(NamedTuple):
-    """Exact vectors, and the same vectors normalized and rounded."""
+    """Vectors, (n, 3), as exact integers (`whole`) and as rounded unit vectors (`units`)."""
 
     whole: LongArray
     units: FloatArray
 
     def at(self, rows: IndexArray | slice) -> "Vectors":
-        """Return some of the vectors."""
+        """Return the vectors at the given row numbers."""
         return Vectors(self.whole[rows], self.units[rows])
 
 
 class Directions(NamedTuple):
-    """Distinct directions, and the number of the direction of each edge or face."""
+    """Distinct directions (`each`), and the row in them for each edge or face (`of`)."""
 
     each: Vectors
     of: IndexArray
 
     def at(self, things: IndexArray) -> Vectors:
-        """Return the directions of some edges or faces."""
+        """Return the direction vectors of edges or faces, given their numbers."""
         return self.each.at(self.of[things])
 
 
 @dataclass(frozen=True, eq=False)
 class Polyhedron:
-    """A closed mesh whose corners are in lattice steps; see `polyhedron_of`."""
+    """A closed triangle mesh with integer points in lattice steps, made by `polyhedron_of`."""
 
     points: IndexArray
     faces: IndexArray
@@ -64,7 +64,7 @@ class Polyhedron:
 
     @cached_property
     def ends(self) -> tuple[IndexArray, IndexArray]:
-        """The start and end corners of each edge."""
+        """The numbers of the start and end point of each edge."""
         forth, back = self._sides
         return self.faces.ravel()[forth], self.faces.ravel()[back]
 
@@ -88,30 +88,33 @@ class Polyhedron:
 
     @cached_property
     def convex(self) -> IndexArray:
-        """The sharp edges at which the solid is convex, or folded to nothing."""
+        """The sharp edges at which the solid is convex, or whose two faces lie back to back."""
         left, right = (self.normals.at(side[self.sharp]).whole for side in self.beside)
         return self.sharp[_dots(_cross(left, right), self.along.at(self.sharp).whole) >= 0]
 
     @cached_property
     def _leaving(self) -> tuple[IndexArray, IndexArray, IndexArray]:
-        """The order of half-edges by start, the first one of each corner, and the corners."""
+        """The half-edges sorted by start point, where each point's group begins, and the points.
+
+        Edge e has the half-edges e and e + (number of edges), which run in opposite directions.
+        """
         starts = np.concatenate(self.ends)
         order = np.argsort(starts, kind="stable")
         corners, first = np.unique(starts[order], return_index=True)
         return order, first, corners
 
     def holds(self, point: IndexArray) -> bool:
-        """Say whether a point is inside a convex polyhedron or on its surface."""
+        """Return True if a point is inside this convex polyhedron or on its surface."""
         away = (point - self.points[self.faces[:, 0]]).astype(object)
         return bool((_dots(self.normals.each.whole[self.normals.of], away) <= 0).all())
 
     def tops(self, rises: Marks) -> tuple[IndexArray, IndexArray]:
-        """Return all pairs of a corner and a column, such that no edge rises from the corner there.
+        """Return all pairs of a corner and a direction in which none of the corner's edges rises.
 
         Parameters
         ----------
         rises : (edges, n) bool
-            Whether an edge rises from its start to its end.
+            Whether an edge rises from its start to its end in each of n directions.
         """
         order, first, corners = self._leaving
         leaving = np.concatenate([rises, ~rises])[order]
@@ -120,13 +123,13 @@ class Polyhedron:
 
 
 def in_steps(points: FloatArray, pitch: int) -> FloatArray:
-    """Return points rounded to whole lattice steps."""
+    """Return coordinates divided by the lattice step, not rounded."""
     steps: FloatArray = points * 10.0**-pitch if pitch < 0 else points / 10.0**pitch
     return steps
 
 
 def in_units(steps: IndexArray, pitch: int) -> FloatArray:
-    """Return lattice points in model units."""
+    """Convert points from lattice steps to model units."""
     points: FloatArray = (
         steps / np.float64(10.0**-pitch) if pitch < 0 else steps * np.float64(10.0**pitch)
     )
@@ -136,8 +139,8 @@ def in_units(steps: IndexArray, pitch: int) -> FloatArray:
 def polyhedron_of(points: IndexArray, faces: IndexArray) -> Polyhedron:
     """Return the polyhedron of a closed mesh, without edges of length zero.
 
-    A face without area gets the normal of a neighbour. A shell with only such faces becomes one
-    step wide.
+    A face without area gets the normal of a neighbour. A connected surface of only such faces is
+    replaced by a tetrahedron one lattice step wide.
     """
     points, faces = _with_wide_shells(points, faces)
     faces = _without_short_edges(points, faces)
@@ -152,7 +155,7 @@ def _normals(points: IndexArray, faces: IndexArray) -> LongArray:
 
 
 def _with_wide_shells(points: IndexArray, faces: IndexArray) -> tuple[IndexArray, IndexArray]:
-    """Return corners and faces, with tetrahedra in place of shells that are a line or a point."""
+    """Return the mesh with a tetrahedron in place of each connected surface without area."""
     has_area = (_normals(points, faces) != 0).any(axis=1)
     if has_area.all():
         return points, faces
@@ -166,7 +169,7 @@ def _with_wide_shells(points: IndexArray, faces: IndexArray) -> tuple[IndexArray
 
 
 def _tetrahedron(points: IndexArray) -> IndexArray:
-    """Return the corners of a tetrahedron around collinear points, a step wide."""
+    """Return the 4 corners of a tetrahedron, one lattice step wide, along collinear points."""
     axis = int(np.ptp(points, axis=0).argmax())
     along, *across = np.roll(np.eye(3, dtype=np.int64), -axis, axis=0)
     low, high = points[points[:, axis].argmin()], points[points[:, axis].argmax()]
@@ -175,7 +178,7 @@ def _tetrahedron(points: IndexArray) -> IndexArray:
 
 
 def _without_short_edges(points: IndexArray, faces: IndexArray) -> IndexArray:
-    """Return the faces that remain if each edge of length zero is collapsed."""
+    """Return the faces that remain after each edge of length zero is collapsed to a point."""
     ends = np.stack([faces.ravel(), np.roll(faces, -1, axis=1).ravel()], axis=1)
     short = np.unique(ends[(points[ends[:, 0]] == points[ends[:, 1]]).all(axis=1)])
     if not len(short):
@@ -189,7 +192,10 @@ def _without_short_edges(points: IndexArray, faces: IndexArray) -> IndexArray:
 
 
 def _borrow_normals(normals: LongArray, faces: IndexArray) -> Marks:
-    """Give faces without area the normals of neighbours; return which faces have a normal now."""
+    """Replace zero normals, in place, by normals of neighbouring faces.
+
+    Return a mask, (n,) bool, that is True for each face with a nonzero normal.
+    """
     has_normal: Marks = (normals != 0).any(axis=1)
     if has_normal.all():
         return has_normal
@@ -202,7 +208,7 @@ def _borrow_normals(normals: LongArray, faces: IndexArray) -> Marks:
 
 
 def _directions(vectors: LongArray) -> Directions:
-    """Return the directions of nonzero vectors."""
+    """Return the distinct directions of nonzero integer vectors, and the direction of each."""
     shortest = vectors // np.gcd.reduce(vectors, axis=1)[:, None]
     numbers: dict[tuple[int, ...], int] = {}
     of = [numbers.setdefault(tuple(row), len(numbers)) for row in shortest.tolist()]
@@ -211,10 +217,10 @@ def _directions(vectors: LongArray) -> Directions:
 
 
 def rising(first: Vectors, second: Vectors) -> Marks:
-    """Return for each pair of vectors of two lists whether their product is positive.
+    """Return an (m, n) mask that is True where the dot product of two vectors is positive.
 
-    The second vectors are rotated by an infinitesimal angle, the same in all calls, so that no
-    product is zero.
+    Rows are the `first`, columns the `second` vectors. The second ones are rotated by an
+    infinitesimal angle, the same in all calls, so that no dot product is zero.
     """
     products = first.units @ second.units.T
     signs: Marks = products > 0
@@ -225,7 +231,10 @@ def rising(first: Vectors, second: Vectors) -> Marks:
 
 
 def rising_in_pairs(first: Vectors, second: Vectors) -> Marks:
-    """Do as `rising`, but only for vectors at the same position of both lists."""
+    """Return a mask, (n,) bool, that is True where first[k] and second[k] have a positive product.
+
+    The second vectors are rotated by an infinitesimal angle, so that no dot product is zero.
+    """
     products = np.einsum("ij,ij->i", first.units, second.units)
     signs: Marks = products > 0
     doubtful = np.flatnonzero(np.abs(products) <= _DOUBT)
@@ -235,10 +244,10 @@ def rising_in_pairs(first: Vectors, second: Vectors) -> Marks:
 
 
 def _is_positive(first: LongArray, second: LongArray) -> Marks:
-    """Return whether vectors have positive products with slightly rotated ones.
+    """Return where the dot product of first[k] and the slightly rotated second[k] is positive.
 
-    The rotation axis has a large x, a smaller y and a much smaller z: of the changes along these
-    axes, the first nonzero one decides.
+    The rotation is infinitesimal, and its axis has a large x, a smaller y and a much smaller z. So
+    a dot product of zero gets the sign of the first nonzero component of second[k] x first[k].
     """
     sign = _dots(first, second)
     for change in _cross(second, first).T:
@@ -248,7 +257,10 @@ def _is_positive(first: LongArray, second: LongArray) -> Marks:
 
 
 def blocks(count: int, width: int) -> Iterator[slice]:
-    """Yield ranges that divide rows of some width into batches."""
+    """Yield slices that divide `count` rows into batches of about `_SIGNS_PER_BATCH` entries.
+
+    A row has `width` entries; each batch has at least one row.
+    """
     step = max(1, _SIGNS_PER_BATCH // max(width, 1))
     return (slice(start, start + step) for start in range(0, count, step))
 

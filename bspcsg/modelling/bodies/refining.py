@@ -1,4 +1,4 @@
-"""Refinement of surfaces into smaller triangles."""
+"""Division of the triangles of a surface into smaller ones."""
 
 from typing import Any, TypeAlias
 
@@ -13,23 +13,27 @@ from ...parameters import at_least, positive
 from ...solid.counting import counted
 from ...solid.solid import Solid, given_pitch, keeping_pitch, solid_with
 
-#: More than rounding makes an edge longer, as a factor.
+#: A factor by which rounding never lengthens an edge.
 _ROUNDED = 1 + 2.0**-30
 
-#: Vertices, triangles, and which of the triangles before each lies in.
+#: A refined mesh: vertices, triangles, and for each triangle the row of the original triangle that
+#: contains it.
 Finer: TypeAlias = tuple[FloatArray, IndexArray, IndexArray]
 
-#: Triangles, and the rows of those that they are parts of.
+#: The rows of original triangles, and for each row a part of that triangle, as three vertices.
 _Piece: TypeAlias = tuple[IndexArray, IndexArray]
 
-#: The largest number of triangles of a result. Each takes some 300 bytes while the solid is made,
-#: all of them 3 GB.
+#: The largest number of triangles of a result. Each takes about 300 bytes while the solid is made,
+#: so at most 3 GB in all.
 _MAX_TRIANGLES = 10_000_000
 
 
 @counted
 def refine(solid: Solid, n: Any = None, edge_length: Any = None) -> Solid:
-    """Return the solid with smaller triangles (see `Solid.refine`)."""
+    """Return the solid with each triangle divided, into n² parts or until edges are short enough.
+
+    Give either `n` or `edge_length`, the largest length of an edge in model units.
+    """
     if (n is None) == (edge_length is None):
         raise invalid_parameter("Give exactly one of n and edge_length.")
     mesh = solid.normalized().to_mesh()
@@ -50,7 +54,10 @@ def refine(solid: Solid, n: Any = None, edge_length: Any = None) -> Solid:
 def attributes_on(
     mesh: Mesh, vertices: FloatArray, faces: IndexArray, origins: IndexArray
 ) -> Attributes:
-    """Return the attributes of triangles that lie in the given triangles of a mesh."""
+    """Return the attributes of new triangles, interpolated from a mesh's triangles around them.
+
+    Each new triangle k lies in the triangle `origins[k]` of the mesh.
+    """
     source = np.stack([np.zeros_like(origins), origins], axis=1)
     surface = Surface(vertices, faces, source, np.zeros(len(faces), dtype=bool))
     known = mesh.vertices, mesh.vertices, mesh.faces, np.arange(len(mesh.faces))
@@ -58,7 +65,7 @@ def attributes_on(
 
 
 def divided(vertices: FloatArray, faces: IndexArray, parts: int) -> Finer:
-    """Divide each triangle into parts² similar ones, with evenly spaced new corners."""
+    """Divide each triangle into parts² similar triangles, whose corners are evenly spaced."""
     edges, sides = _edges(faces, len(vertices))
     shares = np.arange(1, parts) / parts
     along = _between(vertices[edges[:, 0]], vertices[edges[:, 1]], shares)
@@ -78,7 +85,10 @@ def divided(vertices: FloatArray, faces: IndexArray, parts: int) -> Finer:
 
 
 def small_triangles(parts: int) -> list[list[tuple[int, int]]]:
-    """Return the parts of one triangle, with corners as steps towards corners 1 and 2."""
+    """Return the parts² parts of a triangle whose sides are divided into `parts` equal steps.
+
+    Each corner of a part is a pair (i, j): i steps from corner 0 towards corner 1, j towards 2.
+    """
     low = [(i, j) for i in range(parts) for j in range(parts - i)]
     high = [(i, j) for i, j in low if i + j < parts - 1]
     upright = [[(i, j), (i + 1, j), (i, j + 1)] for i, j in low]
@@ -88,7 +98,10 @@ def small_triangles(parts: int) -> list[list[tuple[int, int]]]:
 def _grid(
     faces: IndexArray, edges: IndexArray, sides: IndexArray, parts: int, first: int
 ) -> dict[tuple[int, int], IndexArray]:
-    """Return the numbers of corners on triangle sides, by steps towards corners 1 and 2."""
+    """Return the vertex numbers of the points on triangle sides, an array over all faces for each.
+
+    The key (i, j) means i steps from corner 0 towards corner 1, and j towards corner 2.
+    """
     grid = {(0, 0): faces[:, 0], (parts, 0): faces[:, 1], (0, parts): faces[:, 2]}
     for k in range(1, parts):
         ways = ((k, 0), (parts - k, k), (0, parts - k))
@@ -100,17 +113,17 @@ def _grid(
 
 
 def _between(low: FloatArray, high: FloatArray, shares: FloatArray) -> FloatArray:
-    """Return points interpolated between two lists of points, (n, shares, 3)."""
+    """Return points on the segments from low[k] to high[k], (n, shares, 3); share 0 is `low`."""
     weights = shares[:, None]
     points: FloatArray = low[:, None] + (high - low)[:, None] * weights
     return points
 
 
 def halved(vertices: FloatArray, faces: IndexArray, longest: float) -> Finer:
-    """Return the mesh with edges halved until none is longer.
+    """Return the mesh with edges halved until none is longer than `longest`.
 
-    A triangle is divided into two, three or four, depending on how many of its edges are halved, so
-    no corner lies inside an edge.
+    A triangle with one, two or three halved edges is divided into two, three or four, so no
+    vertex lies inside an edge of another triangle.
     """
     refuse_many(least_halved(vertices, faces, longest), "at least ")
     origins = np.arange(len(faces))
@@ -118,7 +131,7 @@ def halved(vertices: FloatArray, faces: IndexArray, longest: float) -> Finer:
         edges, sides = _edges(faces, len(vertices))
         ends = vertices[edges]
         long = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) > longest
-        # Edges that the lattice cannot halve stay.
+        # Do not halve edges so short that the midpoint rounds to an end.
         middles = (ends[:, 0] + ends[:, 1]) / 2
         long &= (middles != ends[:, 0]).any(axis=1) & (middles != ends[:, 1]).any(axis=1)
         if not long.any():
@@ -132,15 +145,15 @@ def halved(vertices: FloatArray, faces: IndexArray, longest: float) -> Finer:
 
 
 def least_halved(vertices: FloatArray, faces: IndexArray, longest: float) -> int:
-    """Return a lower bound of the number of triangles after halving.
+    """Return a lower bound of the number of triangles after all edges are halved to `longest`.
 
     Each triangle is divided into four similar ones until its shortest side is short enough. Then
-    longer sides are cut; each part of a side belongs to a triangle, and each triangle has three
-    sides.
+    the longer sides are cut; each part of a side belongs to one of the final triangles, which have
+    three sides each.
     """
     corners = vertices[faces]
     sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
-    # Edges as short as a few rounding errors cannot be halved.
+    # An edge of four spacings of doubles or less cannot be halved.
     length = max(longest * _ROUNDED, 4 * float(np.spacing(np.abs(vertices).max(initial=0.0))))
     halvings = np.ceil(np.log2(np.maximum(sides.min(axis=1) / length, 1.0)))
     lengths = sides / length / 2 ** halvings[:, None]
@@ -151,9 +164,9 @@ def least_halved(vertices: FloatArray, faces: IndexArray, longest: float) -> int
 def _cut_at(
     vertices: FloatArray, faces: IndexArray, middles: IndexArray
 ) -> tuple[IndexArray, IndexArray]:
-    """Return triangles cut at the middles of their edges; -1 stands for an uncut edge.
+    """Return the parts of triangles cut at midpoints of edges, and each part's original triangle.
 
-    Also return the original triangle of each part.
+    The (m, 3) `middles` are the vertex numbers of the midpoints, -1 for an uncut edge.
     """
     count = (middles >= 0).sum(axis=1)
     pieces = [(np.flatnonzero(count == 0), faces[count == 0])]
@@ -175,7 +188,7 @@ def _quartered(faces: IndexArray, middles: IndexArray, rows: IndexArray) -> list
 
 
 def _cut_once(faces: IndexArray, middles: IndexArray, rows: IndexArray) -> list[_Piece]:
-    """Return the halves of triangles with only the first edge cut."""
+    """Return the two halves of each triangle of `rows`, which is cut only at edge 0."""
     (a, b, c), m = faces[rows].T, middles[rows, 0]
     return [(rows, np.stack([a, m, c], axis=1)), (rows, np.stack([m, b, c], axis=1))]
 
@@ -183,9 +196,9 @@ def _cut_once(faces: IndexArray, middles: IndexArray, rows: IndexArray) -> list[
 def _cut_twice(
     vertices: FloatArray, faces: IndexArray, middles: IndexArray, rows: IndexArray
 ) -> list[_Piece]:
-    """Return three parts of triangles with only the first edge uncut."""
+    """Return the three parts of each triangle of `rows`, which is cut at edges 1 and 2."""
     (a, b, c), (_, m, n) = faces[rows].T, middles[rows].T
-    # Use the shorter diagonal of the remaining quadrilateral.
+    # Divide the quadrilateral beside edge 0 along its shorter diagonal.
     first = _lengths(vertices, a, m) <= _lengths(vertices, b, n)
     fourth, far = np.where(first, m, n), np.where(first, a, b)
     parts = ([n, m, c], [a, b, fourth], [far, m, n])
@@ -198,14 +211,17 @@ def _lengths(vertices: FloatArray, start: IndexArray, end: IndexArray) -> FloatA
 
 
 def _edges(faces: IndexArray, count: int) -> tuple[IndexArray, IndexArray]:
-    """Return the edges, (e, 2), lower corner first, and the edges of each triangle's sides."""
+    """Return the distinct edges, (e, 2) sorted vertex numbers, and each triangle's edges, (m, 3).
+
+    `count` is the number of vertices.
+    """
     ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     keys, sides = np.unique(ends[:, 0] * np.int64(count) + ends[:, 1], return_inverse=True)
     return np.stack([keys // count, keys % count], axis=1), sides.reshape(-1, 3)
 
 
 def refuse_many(count: int, about: str = "") -> None:
-    """Raise `LimitError` for more triangles than a result may have; `about` precedes the number."""
+    """Raise `LimitError` if `count` triangles are too many; the message puts `about` before it."""
     if count > _MAX_TRIANGLES:
         amount = f"{about}{count:,}" if count < _MAX_TRIANGLES**2 else "far too many"
         message = (

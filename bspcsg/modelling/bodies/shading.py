@@ -1,4 +1,4 @@
-"""Normals and curvatures of surfaces."""
+"""Normals and curvatures of solids' surfaces."""
 
 import math
 
@@ -11,13 +11,13 @@ from ...parameters import not_negative
 from ...solid.counting import uncounted
 from ...solid.solid import Solid
 
-#: Cosines of equal angles differ by less.
+#: A bound of the rounding error of the cosine of an angle between faces.
 _ROUNDING = 1e-12
 
 
 @uncounted
 def normals(solid: Solid, sharp_angle: Scalar = 30.0) -> FloatArray:
-    """Return a unit normal for each corner of each triangle (see `Solid.normals`)."""
+    """Return a unit normal for each corner of each triangle, (m, 3, 3) (see `Solid.normals`)."""
     limit = not_negative(sharp_angle, "sharp_angle")
     if limit > 180:
         raise invalid_parameter(f"sharp_angle must be at most 180 degrees, not {limit:g}.")
@@ -35,7 +35,7 @@ def normals(solid: Solid, sharp_angle: Scalar = 30.0) -> FloatArray:
 
 @uncounted
 def curvature(solid: Solid) -> tuple[FloatArray, FloatArray]:
-    """Return the Gaussian and the mean curvature at each vertex (see `Solid.curvature`)."""
+    """Return the Gaussian and the mean curvature at each vertex, two (n,) arrays."""
     mesh = solid.normalized().to_mesh()
     count = len(mesh.vertices)
     sizes = np.linalg.norm(_areas(mesh), axis=1) / 2
@@ -52,13 +52,13 @@ def curvature(solid: Solid) -> tuple[FloatArray, FloatArray]:
 
 
 def _areas(mesh: Mesh) -> FloatArray:
-    """Return the normal of each triangle, with length twice its area."""
+    """Return the normal of each triangle, (m, 3), whose length is twice the triangle's area."""
     a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
     return np.cross(b - a, c - a)
 
 
 def unit(vectors: FloatArray) -> FloatArray:
-    """Return normalized vectors; zero stays zero."""
+    """Return vectors divided by their lengths; a zero vector stays zero."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
     units: FloatArray = np.divide(vectors, lengths, np.zeros_like(vectors), where=lengths > 0)
     return units
@@ -76,9 +76,10 @@ def _angles(mesh: Mesh) -> FloatArray:
 
 
 def half_edges(faces: IndexArray) -> tuple[IndexArray, IndexArray]:
-    """Return the two half-edges of each edge of a closed mesh.
+    """Return the two opposite half-edges of each edge of a closed mesh, as two (e,) arrays.
 
-    Half-edge 3 f + k runs from corner k of face f to the next corner.
+    Half-edge 3 f + k runs from corner k of face f to its next corner. The first array has the
+    half-edges that run from the smaller to the larger vertex number.
     """
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     count = faces.max(initial=0) + 1
@@ -88,7 +89,10 @@ def half_edges(faces: IndexArray) -> tuple[IndexArray, IndexArray]:
 
 
 def _signed_bends(one: FloatArray, other: FloatArray, along: FloatArray) -> FloatArray:
-    """Return the angles between faces at edges, positive where the solid is convex."""
+    """Return the angle between the normals of two faces at each edge, negative if concave.
+
+    `one` is the normal of the face whose boundary runs in the direction `along`.
+    """
     across = np.cross(one, other)
     bends = np.arctan2(np.linalg.norm(across, axis=1), np.einsum("ij,ij->i", one, other))
     signed: FloatArray = np.copysign(bends, np.einsum("ij,ij->i", across, along))
@@ -96,20 +100,24 @@ def _signed_bends(one: FloatArray, other: FloatArray, along: FloatArray) -> Floa
 
 
 def _fans(mesh: Mesh, own: FloatArray, limit: float) -> IndexArray:
-    """Return a number for each triangle corner, equal for corners that no sharp edge separates."""
+    """Return a group number for each triangle corner, (3 m,).
+
+    Corners at one vertex are in the same group unless sharp edges separate them. An edge is sharp
+    if the normals `own` of its faces differ by more than `limit` degrees.
+    """
     forth, back = half_edges(mesh.faces)
     cosines = np.einsum("ij,ij->i", own[forth // 3], own[back // 3])
     flat = cosines >= math.cos(math.radians(limit)) - _ROUNDING
     forth, back = forth[flat], back[flat]
     count = mesh.faces.size
     alone = np.arange(count)
-    # One half-edge starts at the corner where the other ends.
+    # A half-edge starts at the vertex where the opposite half-edge ends.
     pairs = [(alone, alone), (forth, next_side(back)), (next_side(forth), back)]
     linked = [np.stack([here, there, there], axis=1) for here, there in pairs]
     return surfaces_of(np.concatenate(linked), count)[:count]
 
 
 def next_side(side: IndexArray) -> IndexArray:
-    """Return the next half-edge of the same triangle."""
+    """Return, for each half-edge number, the next half-edge of the same triangle."""
     following: IndexArray = side - side % 3 + (side + 1) % 3
     return following

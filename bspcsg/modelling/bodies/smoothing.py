@@ -13,13 +13,13 @@ from .refining import attributes_on, divided, refuse_many, small_triangles
 from .shading import half_edges, next_side, normals, unit
 from .warping import refuse_crossings
 
-#: The sine of the angle from which on two normals name an edge between them.
+#: The sine of the least angle between two normals at which the edge between them counts as sharp.
 _SHARP = 1e-6
 
 
 @counted
 def smooth(solid: Solid, n: int, sharp_angle: Scalar = 60.0) -> Solid:
-    """Return the solid with curved faces, each in n² triangles (see `Solid.smooth`)."""
+    """Return the solid with each face curved and divided into n² triangles (see `Solid.smooth`)."""
     parts = at_least(1, n, "n")
     at_corners = normals(solid, sharp_angle)
     mesh = solid.normalized().to_mesh()
@@ -29,7 +29,7 @@ def smooth(solid: Solid, n: int, sharp_angle: Scalar = 60.0) -> Solid:
     flat, faces, origins = divided(mesh.vertices, mesh.faces, parts)
     vertices = flat.copy()
     weights = _weights(parts)
-    # Triangles compute shared corners identically, so no gaps arise.
+    # Neighbouring triangles compute shared points identically, so no gaps arise.
     patches = _points(mesh, _handles(mesh, at_corners), weights)
     vertices[faces.reshape(len(mesh.faces), -1)] = patches
     refuse_crossings(vertices, faces, "Bent smoothly")
@@ -43,8 +43,8 @@ def smooth(solid: Solid, n: int, sharp_angle: Scalar = 60.0) -> Solid:
 def _handles(mesh: Mesh, at_corners: FloatArray) -> FloatArray:
     """Return the inner control points of the cubic curves over triangle sides, (m, 3, 2, 3).
 
-    A curve starts in the plane perpendicular to the normal; at a sharp edge, in the planes
-    perpendicular to both normals.
+    At each end a curve is perpendicular to the normal there; along a sharp edge, to the normals of
+    both faces.
     """
     forth, back = half_edges(mesh.faces)
     start, end = mesh.faces.ravel()[forth], mesh.faces.ravel()[back]
@@ -58,7 +58,10 @@ def _handles(mesh: Mesh, at_corners: FloatArray) -> FloatArray:
 
 
 def _along(ways: FloatArray, one: FloatArray, other: FloatArray) -> FloatArray:
-    """Return the components of vectors that are perpendicular to two normals each."""
+    """Project vectors to be perpendicular to the normals one[k] and other[k].
+
+    If the normals are nearly equal, the vectors become perpendicular to the mean normal only.
+    """
     mean, edge = unit(one + other), np.cross(one, other)
     is_sharp = np.linalg.norm(edge, axis=1, keepdims=True) > _SHARP
     along = unit(edge)
@@ -69,7 +72,11 @@ def _along(ways: FloatArray, one: FloatArray, other: FloatArray) -> FloatArray:
 
 
 def _points(mesh: Mesh, handles: FloatArray, weights: FloatArray) -> FloatArray:
-    """Return points of the cubic patches over triangles, (m, k, 3), at (k, 3) weights."""
+    """Return k points of the cubic Bézier patch over each triangle, (m, k, 3).
+
+    The (m, 3, 2, 3) `handles` are the inner control points of the sides, the (k, 3) `weights` the
+    barycentric coordinates of the points.
+    """
     corners = mesh.vertices[mesh.faces]
     middle = handles.mean(axis=(1, 2))
     middle = middle + (middle - corners.mean(axis=1)) / 2
@@ -83,6 +90,9 @@ def _points(mesh: Mesh, handles: FloatArray, weights: FloatArray) -> FloatArray:
 
 
 def _weights(parts: int) -> FloatArray:
-    """Return barycentric weights of the corners of a triangle's parts, as in `divided`."""
+    """Return the barycentric coordinates, (3 parts², 3), of corners of a triangle's equal parts.
+
+    The corners are in the order of `small_triangles`.
+    """
     places = np.array(small_triangles(parts), dtype=np.float64).reshape(-1, 2) / parts
     return np.column_stack([1 - places.sum(axis=1), places])

@@ -21,17 +21,19 @@ from .polyhedra import LongArray, in_steps
 from .shading import half_edges, next_side
 from .sweeping import sum_of_convex, swept
 
-#: Corners of convex sets, each an array of shape (n, 3).
+#: The corners of each of several convex solids, as arrays of shape (n, 3).
 ConvexParts: TypeAlias = list[FloatArray]
 
-#: By how much of its volume, and by how many steps a corner, rounding makes a convex solid another.
+#: Tolerances for convex solids: how much larger the hull may be, relative to the solid's volume,
+#: and how far rounding may move corners, in lattice steps.
 _LARGER, _MOVED = 1e-9, 4
 
-#: The largest number of pairs of faces of two solids that are not convex: more would take hours.
+#: The largest product of the face counts of two solids that are not convex. Larger products would
+#: take hours.
 _MAX_FACE_PAIRS = 4_000_000
 
-#: The number of sums that are united together: the result has less surface than all of them, so
-#: this bounds the memory.
+#: The number of Minkowski sums that are united in one batch. A union has fewer faces than its parts
+#: together, so batches bound the memory.
 _SUMS_PER_UNION = 64
 
 
@@ -44,31 +46,32 @@ def minkowski(a: Any, b: Any) -> Solid | Region:
     """Return the Minkowski sum: all sums of a point of one solid and a point of the other.
 
     It is the first solid thickened by the second. The sum of convex solids is the hull of the sums
-    of their corners. If one is convex, the sum is the other one plus all that the convex one sweeps
-    while it moves along the surface. If neither is convex, the one with fewer faces is divided into
-    convex parts, and the sums of the parts are united.
+    of their corners. If only one solid is convex, the sum is the other solid plus the volume that
+    the convex solid sweeps while it moves along the other's surface. If neither is convex, the
+    solid with fewer faces is divided into convex parts, and the sums of the parts are united.
 
     Parameters
     ----------
     a, b : Solid, or Region both
+        Two solids or two regions.
         `a` may be the complement of a bounded solid. So ``~minkowski(~a, b)`` erodes `a`: it
         consists of all points at which `b`, mirrored at the origin, fits into `a`.
 
     Returns
     -------
     Solid or Region
-        Empty if one of them is.
+        Empty if `a` or `b` is empty.
 
     Raises
     ------
     InvalidParameterError
-        If they are not both solids or both regions.
+        If `a` and `b` are not both solids or both regions.
     UnboundedError
-        If `b` reaches to infinity, or `a` and its complement do.
+        If `b` reaches to infinity, or both `a` and its complement reach to infinity.
     LimitError
-        If the convex solid sweeps a body with more than 10 million faces, or if neither is convex
-        and the product of their numbers of faces exceeds 4 million ("too_large"). For regions, if
-        there are more than 20 000 pairs of convex parts.
+        If the convex solid sweeps a volume with more than 10 million faces, or if neither solid is
+        convex and the product of their numbers of faces exceeds 4 million ("too_large"). For
+        regions, if there are more than 20 000 pairs of convex parts.
 
     Notes
     -----
@@ -100,12 +103,12 @@ def minkowski(a: Any, b: Any) -> Solid | Region:
 
 
 def convex_parts(solid: Solid) -> ConvexParts:
-    """Return the corners of convex parts whose union is the solid.
+    """Return the corners of each of the convex parts whose union is a solid.
 
     Raises
     ------
     UnboundedError
-        If it reaches to infinity.
+        If the solid reaches to infinity.
     """
     mesh = solid.normalized().to_mesh()
     if is_convex(solid):
@@ -118,21 +121,22 @@ def convex_parts(solid: Solid) -> ConvexParts:
 
 
 def is_convex(solid: Solid) -> bool:
-    """Say whether a solid equals its hull, up to rounding of corners."""
+    """Return True if a solid equals its convex hull, up to rounding of its corners."""
     mesh = solid.normalized().to_mesh()
     largest = mesh.volume * (1 + _LARGER)
-    # Small holes in a large body hardly change its volume.
+    # The volume alone does not reveal a small cavity, so edges are tested, too.
     return hull_of(mesh.vertices, solid.pitch).volume <= largest and not _bends_inwards(
         mesh, 10.0**solid.pitch
     )
 
 
 def _bends_inwards(mesh: Mesh, step: float) -> bool:
-    """Say whether an edge is concave by more than rounding errors.
+    """Return True if an edge of a mesh is concave by more than rounding of corners explains.
 
-    Rounding moves corners by some steps. At the far corner of the smaller triangle, the plane of
-    the larger one moves more, by the ratio of that corner's distance to the length of the edge or
-    the height of the larger triangle.
+    Rounding moves corners by up to `_MOVED` lattice steps of length `step`. The far corner of the
+    smaller triangle at an edge is compared with the plane of the larger triangle, which may move
+    farther there: by the ratio of that corner's distance to the edge's length or to the larger
+    triangle's height.
     """
     first, second = half_edges(mesh.faces)
     points = mesh.vertices[mesh.faces].reshape(-1, 3)
@@ -151,13 +155,13 @@ def _bends_inwards(mesh: Mesh, step: float) -> bool:
 
 
 def _solid_and_tool(a: Solid, b: Solid) -> tuple[Solid, Solid]:
-    """Return two solids such that the second is convex or has fewer faces."""
+    """Return two solids in such an order that the second is convex or has at most as many faces."""
     first, second = (0 if is_convex(solid) else _face_count(solid) for solid in (a, b))
     return (b, a) if first < second else (a, b)
 
 
 def _swept(solid: Solid, tool: Solid, is_inside: bool = False) -> Solid:
-    """Return the sum of a solid and a tool, or the solid eroded by it."""
+    """Return the Minkowski sum of a solid and a tool; if `is_inside`, the solid eroded by it."""
     _refuse_many(solid, tool)
     combined = setops.intersection if is_inside else setops.union
     hulls = (hull_of(part, tool.pitch) for part in convex_parts(tool))
@@ -192,7 +196,7 @@ def _corners(solid: Solid) -> FloatArray:
 
 
 def _eroded(solid: Solid, tool: Solid) -> Solid:
-    """Return the points at which a tool, mirrored at the origin, fits into a solid."""
+    """Return the points at which a tool fits into a solid, after it is mirrored at the origin."""
     if not solid.is_bounded:
         raise UnboundedError(
             "This solid and its complement both reach to infinity, so its Minkowski sum"
@@ -207,9 +211,9 @@ def _eroded(solid: Solid, tool: Solid) -> Solid:
 
 
 def _between_planes(solid: Solid, tool: Solid) -> Solid:
-    """Return a convex solid with each face moved in as far as the tool reaches.
+    """Return a convex solid eroded by a tool: each face is moved inwards by the tool's extent.
 
-    The exact planes of the input faces are used, since the corners of cut faces are rounded.
+    The exact planes of the input faces are used, since corners made by cuts are rounded.
     """
     reach = _steps(tool)
     tree = solid.normalized().tree
@@ -222,9 +226,10 @@ def _between_planes(solid: Solid, tool: Solid) -> Solid:
 
 
 def _supporting(rows: list[list[int]], points: FloatArray) -> list[list[int]]:
-    """Return planes, normal and offset, moved outwards until they contain all points.
+    """Return planes moved outwards until no point lies outside any of them by more than rounding.
 
-    Rounded bodies are convex only up to some steps. Narrower faces may have any direction.
+    A plane is a row [nx, ny, nz, offset] of integers; all lengths are in lattice steps. A point may
+    lie far outside the plane of a face narrower than a step, whose normal rounding may turn.
     """
     planes = np.array(rows, dtype=np.float64)
     planes /= np.linalg.norm(planes[:, :3], axis=1)[:, None]
@@ -246,7 +251,7 @@ def _in_steps(solid: Solid) -> FloatArray:
 
 
 def _steps(tool: Solid) -> LongArray:
-    """Return the corners in whole lattice steps, as Python integers."""
+    """Return a tool's corners, (n, 3), as Python integers in lattice steps."""
     whole: LongArray = np.rint(_in_steps(tool)).astype(np.int64).astype(object)
     return whole
 
@@ -254,7 +259,11 @@ def _steps(tool: Solid) -> LongArray:
 def _plane_inside(
     normal: list[int], offset: int, reach: LongArray, step: Fraction, tool_step: Fraction
 ) -> Hyperplane:
-    """Return a plane moved by the tool's least reach along its normal, each in own steps."""
+    """Return a plane moved inwards by the extent of a tool along the plane's normal.
+
+    The plane's `normal` and `offset` are in units of `step`, the tool's corners `reach` in units of
+    `tool_step`.
+    """
     least = np.dot(reach, np.array(normal, dtype=object)).min()
     return Hyperplane.of(list(map(Fraction, normal)), offset * step + least * tool_step)
 

@@ -11,14 +11,15 @@ from .touching import swept_mesh
 
 
 def swept(solid: Solid, tool: Solid, is_inside: bool = False) -> Solid:
-    """Return the sum of a bounded solid and a convex one.
+    """Return the Minkowski sum of a bounded solid and a convex tool.
 
-    If `is_inside`, return the complement of the sum of the complement: the eroded solid.
+    If `is_inside`, return the solid eroded by the tool: the complement of the Minkowski sum of the
+    solid's complement and the tool.
 
     Raises
     ------
     LimitError
-        If the swept body has too many faces.
+        If the swept volume has too many faces.
     """
     pitch = _common_pitch(solid, tool)
     points, faces = _swept_mesh(solid, tool, pitch, is_inside)
@@ -27,7 +28,7 @@ def swept(solid: Solid, tool: Solid, is_inside: bool = False) -> Solid:
 
 
 def sum_of_convex(first: Solid, second: Solid) -> Solid:
-    """Return the sum of two convex solids; errors as for `swept`."""
+    """Return the Minkowski sum of two convex solids; errors as for `swept`."""
     pitch = _common_pitch(first, second)
     return hull_of(_swept_mesh(first, second, pitch, False)[0], pitch)
 
@@ -43,7 +44,7 @@ def _swept_mesh(
 
 
 def _common_pitch(solid: Solid, tool: Solid) -> int:
-    """Return the pitch of the finer lattice of two solids, or one whose lattice holds their sum."""
+    """Return the smaller pitch of two solids, or a pitch whose lattice reaches their sum's box."""
     boxes = [_box(one) for one in (solid, tool)]
     return lattice_for(np.concatenate([*boxes, boxes[0] + boxes[1]]), min(solid.pitch, tool.pitch))
 
@@ -64,10 +65,10 @@ def _turned(faces: IndexArray, is_turned: bool) -> IndexArray:
 
 
 def _point_within(tool: Polyhedron) -> IndexArray:
-    """Return the middle of a convex body, or a corner if no lattice point inside is near it.
+    """Return the mean corner of a convex tool, rounded to a lattice point; else a corner.
 
-    If a tool that contains the origin touches no surface, it is inside if the origin is. With the
-    origin in its middle it reaches equally far to all sides, so pieces overlap least.
+    A corner is returned if the rounded point is not in the tool. The point becomes the tool's
+    origin: in the middle it is about equally far from all faces, so swept pieces overlap least.
     """
     middle: IndexArray = np.rint(tool.points.mean(axis=0)).astype(np.int64)
     if tool.holds(middle):

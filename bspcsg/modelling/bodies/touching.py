@@ -1,10 +1,10 @@
 """The sweep of a convex tool along the surface of a solid, as one mesh.
 
-Let the tool grow from the origin. Where it first touches the surface, a corner of the tool touches
-a face, an edge touches an edge, or a face touches a corner. So the body swept outside consists of
-prisms on faces, wedges along convex edges and pyramids at corners. Walls between two pieces cancel,
-and so do the faces of the solid. The remaining mesh winds around each point once for each piece
-that contains it, and once more inside the solid.
+The tool contains the origin. Where it touches the surface from outside, a corner of the tool
+touches a face, an edge touches an edge, or a face touches a corner. So the swept volume outside
+consists of prisms on faces, wedges along convex edges and pyramids at corners. Walls between two
+pieces cancel, and so do the faces of the solid. The remaining mesh has as winding number at each
+point the number of pieces that contain it, plus one inside the solid.
 """
 
 from collections.abc import Iterator
@@ -15,46 +15,46 @@ from ..._types import IndexArray
 from ...errors import LimitError
 from .polyhedra import Marks, Polyhedron, blocks, rising, rising_in_pairs
 
-#: The largest number of faces of pieces in memory. Each takes 24 bytes, and several times as many
-#: while faces cancel each other: 2 GB in all.
+#: The largest number of triangles of all swept pieces together. Each takes 24 bytes, and several
+#: times as much while opposite ones cancel: up to 2 GB in all.
 _MAX_PIECE_FACES = 10_000_000
 
-#: In place of a corner of the tool.
+#: The origin, where the number of a tool's corner is expected.
 _ORIGIN = -1
 
 
 class _Sums:
-    """Numbering of the sums of a corner of a solid and a corner of a tool or the origin."""
+    """Numbers for all sums of a solid's corner and a tool's corner, or the origin."""
 
     def __init__(self, solid: Polyhedron, tool: Polyhedron) -> None:
         self._points = solid.points
         self._ends = np.concatenate([tool.points, np.zeros((1, 3), np.int64)])
 
     def of(self, corners: IndexArray, ends: IndexArray | int) -> IndexArray:
-        """Return the numbers of sums."""
+        """Return the numbers of the sums corners[k] + ends[k], given the corners' numbers."""
         numbers: IndexArray = corners * len(self._ends) + ends % len(self._ends)
         return numbers
 
     def points(self, numbers: IndexArray) -> IndexArray:
-        """Return the positions of sums."""
+        """Return the positions of sums, (n, 3) in lattice steps, given their numbers."""
         corners, ends = np.divmod(numbers, len(self._ends))
         points: IndexArray = self._points[corners] + self._ends[ends]
         return points
 
 
 def swept_mesh(solid: Polyhedron, tool: Polyhedron) -> tuple[IndexArray, IndexArray]:
-    """Return the corners and faces of a mesh that winds around the sum of a solid and a tool.
+    """Return the points and faces of a mesh whose winding number is positive in a Minkowski sum.
 
     Parameters
     ----------
     solid : Polyhedron
     tool : Polyhedron
-        Convex; it contains the origin.
+        A convex polyhedron that contains the origin.
 
     Raises
     ------
     LimitError
-        If the mesh would be too large.
+        If the swept pieces have more than 10 million triangles.
     """
     sums = _Sums(solid, tool)
     tops = _tops_over_faces(solid, tool)
@@ -86,7 +86,7 @@ def _pieces(
 
 
 def _tops_over_faces(solid: Polyhedron, tool: Polyhedron) -> IndexArray:
-    """Return for each face the corner of the tool that is farthest along its normal."""
+    """Return, for each face of a solid, the tool's corner that is farthest along the normal."""
     normals, along = solid.normals.each, tool.along
     found = np.empty(len(normals.units), np.int64)
     for block in blocks(len(found), 2 * len(along.of)):
@@ -97,7 +97,7 @@ def _tops_over_faces(solid: Polyhedron, tool: Polyhedron) -> IndexArray:
 
 
 def _walls_of_faces(solid: Polyhedron, tops: IndexArray, sums: _Sums) -> Iterator[IndexArray]:
-    """Yield the walls of the prism on each face, except those along flat edges, which cancel."""
+    """Yield the walls of the prism on each face, without walls along flat edges, which cancel."""
     start, end = (part[solid.sharp] for part in solid.ends)
     left, right = (side[solid.sharp] for side in solid.beside)
     yield from _wall(start, end, tops[left], sums)
@@ -107,10 +107,11 @@ def _walls_of_faces(solid: Polyhedron, tops: IndexArray, sums: _Sums) -> Iterato
 def _steps_around(
     solid: Polyhedron, tool: Polyhedron
 ) -> Iterator[tuple[IndexArray, IndexArray, IndexArray]]:
-    """Yield the convex edges of the solid, each with the edges of the tool that touch it.
+    """Yield pairs of a convex edge of the solid and an edge of the tool that touches it.
 
-    A plane that turns around an edge, from one face to the other, touches the tool at one corner
-    after another. Each step leads along an edge of the tool, from its start to its end.
+    Let a plane turn around the solid's edge, from one adjacent face to the other. The tool's corner
+    farthest along the normal then passes along edges of the tool. Each such tool edge is given by
+    its start and its end corner.
     """
     steps = tool.sharp
     for block in blocks(len(solid.convex), 4 * len(steps)):
@@ -130,14 +131,14 @@ def _steps_around(
 
 
 def _along_tool(solid: Polyhedron, faces: IndexArray, tool: Polyhedron) -> Marks:
-    """Return for each face of the solid which sharp edges of the tool rise along the normal."""
+    """Return an (m, n) mask: whether sharp edge n of the tool rises along the normal of face m."""
     normals, row = np.unique(solid.normals.of[faces], return_inverse=True)
     edges, column = np.unique(tool.along.of[tool.sharp], return_inverse=True)
     return rising(solid.normals.each.at(normals), tool.along.each.at(edges))[row][:, column]
 
 
 def _facing_corners(solid: Polyhedron, tool: Polyhedron) -> Iterator[tuple[IndexArray, IndexArray]]:
-    """Yield corners of the solid and faces of the tool that touch them from outside."""
+    """Yield pairs of a corner of the solid and a face of the tool that touches it from outside."""
     is_convex = np.zeros(len(solid.points), bool)
     for ends in solid.ends:
         is_convex[ends[solid.convex]] = True
@@ -151,7 +152,10 @@ def _facing_corners(solid: Polyhedron, tool: Polyhedron) -> Iterator[tuple[Index
 def _wedges(
     solid: Polyhedron, edges: IndexArray, start: IndexArray, end: IndexArray, sums: _Sums
 ) -> Iterator[IndexArray]:
-    """Yield the faces of wedges: edges swept by the triangle of a tool's edge and the origin."""
+    """Yield the faces of wedges: each is an edge of the solid plus a triangle.
+
+    The triangle joins the origin to the tool's edge from corner `start` to corner `end`.
+    """
     p, q = (part[edges] for part in solid.ends)
     yield _triangles(sums.of(p, start), sums.of(p, end), sums.of(q, end))
     yield _triangles(sums.of(p, start), sums.of(q, end), sums.of(q, start))
@@ -162,7 +166,7 @@ def _wedges(
 
 
 def _pyramids(corners: IndexArray, bases: IndexArray, sums: _Sums) -> Iterator[IndexArray]:
-    """Yield the faces of pyramids: corners swept by tetrahedra of a tool's faces and the origin."""
+    """Yield the faces of pyramids: each joins a solid's corner to a tool's face added to it."""
     yield sums.of(corners[:, None], bases)
     origins = sums.of(corners, _ORIGIN)
     for k in range(3):
@@ -170,7 +174,10 @@ def _pyramids(corners: IndexArray, bases: IndexArray, sums: _Sums) -> Iterator[I
 
 
 def _wall(p: IndexArray, q: IndexArray, top: IndexArray, sums: _Sums) -> Iterator[IndexArray]:
-    """Yield the faces that edges sweep from the origin to a corner, alike on both sides."""
+    """Yield the two triangles that each edge p q sweeps while it moves to a tool's corner `top`.
+
+    The diagonal does not depend on the order of p and q, so that opposite walls cancel.
+    """
     low, high = np.minimum(p, q), np.maximum(p, q)
     start, end = sums.of(low, _ORIGIN), sums.of(high, top)
     for faces in (

@@ -1,4 +1,4 @@
-"""The distance of two triangles, in doubles or in fractions."""
+"""The distance between two triangles, in doubles or in exact fractions."""
 
 from typing import Any, TypeAlias
 
@@ -6,22 +6,23 @@ import numpy as np
 
 from ..._types import FloatArray
 
-#: Numbers of one kind, float64 or fractions.
+#: An array of float64, or of `Fraction` objects.
 Numbers: TypeAlias = np.ndarray[Any, np.dtype[Any]]
 
 
 def nearest_points(first: Numbers, second: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-    """Return squared distances of triangles that do not cross, and their nearest points.
+    """Return the squared distances and nearest points of pairs of triangles that do not cross.
 
     Parameters
     ----------
     first, second : (k, 3, 3)
-        Corners of triangles with area: float64, or an array of fractions for exact answers.
+        Corners of triangles with area: float64, or `Fraction` objects for exact results.
 
     Returns
     -------
     (k,), (k, 3), (k, 3)
-        Numbers of the same kind: squared distances, and points of first and second triangles.
+        The squared distances, and the nearest points on the first and the second triangles, in
+        the same number type.
 
     Notes
     -----
@@ -42,11 +43,12 @@ def nearest_points(first: Numbers, second: Numbers) -> tuple[Numbers, Numbers, N
 
 
 def least_gaps(first: FloatArray, second: FloatArray) -> FloatArray:
-    """Return lower bounds of the squared distances of triangles, up to rounding.
+    """Return lower bounds, (k,), of the squared distances of pairs of triangles, up to rounding.
 
     Parameters
     ----------
     first, second : (k, 3, 3) float64
+        Corners of the triangles.
     """
     ways = second.mean(axis=1) - first.mean(axis=1)
     lengths = np.linalg.norm(ways, axis=1)
@@ -90,7 +92,10 @@ def _quotient(a: Numbers, b: Numbers) -> Numbers:
 
 
 def _of_edges(first: Numbers, second: Numbers, i: int, j: int) -> tuple[Numbers, Numbers, Numbers]:
-    """Return squared distances and nearest points of pairs of edges (Ericson 2005, 5.1.9)."""
+    """Return squared distances and nearest points of edge i of `first` and edge j of `second`.
+
+    Edge k runs from corner k to corner k - 2 (Ericson 2005, 5.1.9).
+    """
     p, u = first[:, i], first[:, i - 2] - first[:, i]
     q, v = second[:, j], second[:, j - 2] - second[:, j]
     r = p - q
@@ -103,7 +108,11 @@ def _of_edges(first: Numbers, second: Numbers, i: int, j: int) -> tuple[Numbers,
 
 
 def _feet(points: Numbers, triangles: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-    """Return projections onto the triangles' planes, squared distances, and which are inside."""
+    """Project each point onto the plane of one triangle.
+
+    Return the projections, (k, 3), the squared distances, (k,), and where a projection lies in its
+    triangle, (k,) bool.
+    """
     a = triangles[:, 0]
     u, v, w = triangles[:, 1] - a, triangles[:, 2] - a, points - a
     n = _cross(u, v)

@@ -15,19 +15,20 @@ from ...solid.counting import counted
 from ...solid.moving import AttributedMesh
 from ...solid.solid import Solid, given_pitch, solid_with
 
-#: A function of all corners at once: (n, 3) float64 to the same shape.
+#: A function that maps all corners, (n, 3) float64, to points of the same shape.
 PointMap: TypeAlias = Callable[[FloatArray], Any]
 
-#: The largest number of points, or of pairs of faces, that an error lists.
+#: The largest number of points, or pairs of faces, that an error lists.
 _MAX_PLACES_LISTED = 20
 
-#: Of the largest coordinate: a mended vertex moves by a few roundings, 2**-53 each.
+#: A bound of the motion of a mended vertex, relative to the largest coordinate: a few roundings,
+#: 2**-53 each.
 _ROUNDING = 2.0**-40
 
 
 @counted
 def warp(solid: Solid, f: PointMap, winding: WindingRule | None = None) -> Solid:
-    """Return the solid with its corners moved by a function (see `Solid.warp`)."""
+    """Return the solid with its corners mapped by a function (see `Solid.warp`)."""
     rule = None if winding is None else winding_rule(winding)
     if not callable(f):
         raise invalid_parameter(f"f must be a function, not {shown(f)}.")
@@ -45,9 +46,9 @@ def warp(solid: Solid, f: PointMap, winding: WindingRule | None = None) -> Solid
 
 
 def _uncrossed(moved: AttributedMesh, before: FloatArray, given: int | None) -> AttributedMesh:
-    """Return a moved mesh that does not cross itself, given its vertices before the move.
+    """Return a mesh with its crossings by rounding mended, given its vertices before the warp.
 
-    Touching surfaces that cross by rounding are mended; other crossings raise an error.
+    Raise `InvalidMeshError` for faces that cross by more than rounding.
     """
     held = moved.held_pitch(given)
     pitch = moved.suited_pitch() if held is None else held
@@ -61,13 +62,13 @@ def _uncrossed(moved: AttributedMesh, before: FloatArray, given: int | None) -> 
 
 
 def _farthest(vertices: FloatArray, pitch: int | None) -> float:
-    """Return a bound on how far mending, rounding and one lattice step can move a point."""
+    """Return an upper bound of a point's motion by mending, rounding and lattice snapping."""
     step = 0.0 if pitch is None else 10.0**pitch
     return float(np.abs(vertices).max()) * _ROUNDING + step
 
 
 def _moved(f: PointMap, points: FloatArray) -> FloatArray:
-    """Return the moved points, checked for shape and finite numbers."""
+    """Return the points mapped by `f`; raise an error for a wrong shape or a nonfinite number."""
     moved = points_array(f(points.copy()))
     if moved.shape != points.shape:
         raise invalid_parameter(
@@ -86,7 +87,7 @@ def _moved(f: PointMap, points: FloatArray) -> FloatArray:
 
 
 def refuse_crossings(vertices: FloatArray, faces: IndexArray, when: str) -> None:
-    """Raise `InvalidMeshError` if faces cross or overlap; `when` begins the sentence."""
+    """Raise `InvalidMeshError` if faces cross or overlap; its message begins with `when`."""
     found = crossings(vertices, faces, 0.0)
     if len(found.pairs):
         raise _refusal(found, vertices, faces, when)

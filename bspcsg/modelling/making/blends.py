@@ -1,9 +1,9 @@
 """Chamfers and fillets of edges between planes.
 
-Each edge has a cutter: the part of the wedge of its two planes beyond the new surface, up to the
-planes at its ends. Concave edges are convex edges of the complement; their cutters are added
-instead of removed. Round corners of three edges have a separate cutter, between the three planes
-and a ball.
+A cutter is the part of the solid between an edge and the new surface, bounded by the edge's two
+planes and the planes at its ends. Concave edges are convex edges of the complement; their cutters
+are added instead of removed. A round corner of three edges has a separate cutter, between the three
+planes and a ball.
 """
 
 import math
@@ -35,38 +35,40 @@ from .stages import carried, ready, refused
 #: The largest number of edges in one call. Each adds a mesh and four half-spaces to one expression.
 _MAX_EDGES = 10_000
 
-#: The smallest distance between two stations, as a share of the size of the blend: nearer ones do
-#: not show the direction of the edge.
+#: The smallest distance between the two end sections of a cutter, relative to the blend's size.
+#: Nearer sections do not determine the direction of the edge.
 _MIN_STATION_GAP = 1e-6
 
-#: The least sine between an edge and a plane at its end: the cutter must reach a hundred times as
-#: far beyond the end as it is wide.
+#: The least sine of the angle between an edge and a plane at its end. At this sine the cutter must
+#: extend past the end by a hundred times its width.
 _FLATTEST = 0.01
 
-#: Faces whose cosine is nearer to one lie on each other: their fillet, ten thousand times as wide
-#: as its radius, has no room.
+#: The least value of one minus the cosine of the angle between two faces. At this value a fillet is
+#: ten thousand times as wide as its radius, and has no room.
 _FOLDED = 2e-8
 
-#: Two edges of a corner are mirror images if their cosines to the third differ by less than this:
-#: the new surfaces then meet within a millionth of their size of the mirror.
+#: Two of the three edges at a corner count as mirror images if the cosines of their angles to the
+#: third edge differ by less. The new surfaces then meet at the mirror plane up to a millionth of
+#: their size.
 _SYMMETRICAL = 1e-6
 
-#: The overlap of cutters behind the mirror between them, as a share of their size, so that no gap
-#: is left.
+#: How far two mirrored cutters overlap across their mirror plane, relative to the blend's size, so
+#: that no gap is left.
 _OVERLAP = 0.01
 
 
 @dataclass(frozen=True, eq=False)
 class _Profile:
-    """The cross-section of the new surface along an edge.
+    """The cross-section of a chamfer or fillet.
 
     Parameters
     ----------
     size : float
-        The width of a chamfer, the radius of a fillet.
+        The width of a chamfer or the radius of a fillet, in model units.
     steps : int
-        Chords of the arc; 1 for a chamfer.
+        The number of chords of the arc; 1 for a chamfer.
     is_round : bool
+        True for a fillet.
     """
 
     size: float
@@ -75,7 +77,7 @@ class _Profile:
 
 
 class _Blend:
-    """Cutters for some edges of a solid."""
+    """The solids to remove or add at selected edges, so that they become chamfers or fillets."""
 
     def __init__(
         self, skeleton: Skeleton, chosen: IndexArray, profile: _Profile, pitch: int
@@ -90,7 +92,7 @@ class _Blend:
 
     @cached_property
     def widths(self) -> FloatArray:
-        """The distance of the new surface from each edge on its faces, (e,), 0 if not selected."""
+        """The distance from each edge to the border of its blend, (e,); 0 for unselected edges."""
         own = sorted(self.chosen)
         widths = np.zeros(len(self.skeleton.ends))
         widths[own] = self.profile.size
@@ -102,7 +104,7 @@ class _Blend:
 
     @cached_property
     def caps(self) -> list[int]:
-        """The faces with all edges selected and no room for their strips side by side."""
+        """The faces whose edges are all selected, and which are too narrow for separate blends."""
         faces = np.unique(self.skeleton.sides[sorted(self.chosen)]).tolist()
         return [
             face
@@ -112,18 +114,18 @@ class _Blend:
         ]
 
     def cap_tool(self, face: int, sign: int) -> Solid:
-        """Return the tool that cuts along the whole outline of a face."""
+        """Return the tool that blends all edges of a face: to remove, or to add if sign is -1."""
         angles = np.arange(self.profile.steps + 1) / self.profile.steps
         cosines, sines = np.array([cos_sin(90 * angle) for angle in angles]).T
         profile = self.profile.size * np.column_stack([1 - cosines, sines])
         return cap_tool(self.skeleton, face, sign, profile, self.pitch)
 
     def sign(self, edge: int) -> int:
-        """Return 1 for a convex edge, -1 for a concave one."""
+        """Return 1 for a convex edge and -1 for a concave edge."""
         return 1 if self.skeleton.is_convex[edge] else -1
 
     def cutter(self, edge: int) -> Solid:
-        """Return the cutter of an edge: removed from a convex one, added to a concave one."""
+        """Return the solid to remove at a convex edge, or to add at a concave edge."""
         sign = self.sign(edge)
         parts = [self.prism(edge)]
         parts += [self.planes.inside(face, sign) for face in self.skeleton.sides[edge].tolist()]
@@ -132,14 +134,14 @@ class _Blend:
         return _evaluated(intersection(parts))
 
     def _ends(self, edge: int, place: int) -> list[Solid]:
-        """Return the half-spaces that limit the cutter at one end of an edge."""
+        """Return the solids, mostly half-spaces, that limit an edge's cutter at end 0 or 1."""
         vertex, sign = int(self.skeleton.ends[edge, place]), self.sign(edge)
         others = sorted(self.skeleton.faces_at(vertex) - set(self.skeleton.sides[edge].tolist()))
         along = self.skeleton.directions[edge] * (1 - 2 * place)
         leans = [sign * float(self.skeleton.normals[face] @ along) for face in others]
         if all(lean < 0 for lean in leans):
             return [self.planes.inside(face, sign) for face in others]
-        # The edge ends outside a plane: the cutter stops there, or meets its neighbour's.
+        # The edge ends outside a plane: its cutter stops there, or meets a neighbouring cutter.
         (face,) = others
         outside = ~self.planes.inside(face, sign, beyond=False)
         partners = [
@@ -150,11 +152,11 @@ class _Blend:
         return [outside | self.prism(partners[0]) if partners else outside]
 
     def _mitres(self, edge: int, place: int) -> list[Solid]:
-        """Return half-spaces that limit an edge's cutter at a corner of three edges.
+        """Return half-spaces that limit an edge's cutter where exactly three edges meet.
 
-        If the corner is symmetrical, or its third edge is of the other kind, the bisecting plane
-        through the third edge separates the cutters of the two neighbours. Otherwise cutters would
-        reach past short neighbours.
+        The plane that bisects the angle between this edge and another selected edge separates their
+        cutters, so that none extends past a short neighbour. This applies if both are symmetrical
+        to the third edge, or if the third edge is concave and they are convex, or vice versa.
         """
         vertex = int(self.skeleton.ends[edge, place])
         around = self.skeleton.edges_at(vertex)
@@ -175,12 +177,12 @@ class _Blend:
         return found
 
     def _away(self, edge: int, vertex: int) -> FloatArray:
-        """Return the unit vector along an edge, away from one of its ends."""
+        """Return the unit vector along an edge, away from the given end vertex."""
         along: FloatArray = self.skeleton.directions[edge]
         return along if self.skeleton.ends[edge, 0] == vertex else -along
 
     def refuse_corners(self) -> None:
-        """Raise an error if selected edges meet in a way for which there is no cutter."""
+        """Raise an error if selected edges meet at a corner that no cutter can blend."""
         vertices = np.unique(self.skeleton.ends[sorted(self.chosen)])
         for vertex in vertices.tolist():
             edges = self.skeleton.edges_at(vertex)
@@ -210,7 +212,7 @@ class _Blend:
                 )
 
     def _is_cone(self, vertex: int) -> bool:
-        """Say whether all edges at a vertex are behind all planes there, or all in front."""
+        """Return True if the faces at a vertex form a convex cone, or its complement does."""
         normals = self.skeleton.normals[sorted(self.skeleton.faces_at(vertex))]
         edges = self.skeleton.edges_at(vertex)
         away = np.where(self.skeleton.ends[edges, 0] == vertex, 1, -1)[:, None]
@@ -219,25 +221,25 @@ class _Blend:
         return bool((leans < _FLATTEST).all())
 
     def is_round_corner(self, vertex: int) -> bool:
-        """Say whether three edges meet at a vertex whose fillets need a ball between them."""
+        """Return True if exactly three edges meet at a vertex, and all of them get fillets."""
         edges = self.skeleton.edges_at(vertex)
         is_full = len(edges) == 3 and all(edge in self.chosen for edge in edges)
         return self.profile.is_round and is_full
 
     def corners(self) -> list[int]:
-        """Return the vertices that become part of a ball."""
+        """Return the numbers of the vertices that are replaced by a part of a ball."""
         vertices = np.unique(self.skeleton.ends[sorted(self.chosen)]).tolist()
         return [vertex for vertex in vertices if self.is_round_corner(vertex)]
 
     def corner_cutter(self, vertex: int) -> Solid:
-        """Return the body between three planes and the ball that touches them."""
+        """Return the solid between a vertex of three faces and the ball that touches the faces."""
         faces = self.corner_faces(vertex)
         sign = self.sign(self.skeleton.edges_at(vertex)[0])
         middle = self._ball(vertex)
         directions = patch_directions(sign * self.skeleton.normals[faces], self.profile.steps)
         inner = self._snapped(middle + self.profile.size * directions)
         reach = math.dist(middle, self.skeleton.vertices[vertex]) / self.profile.size
-        # Multiples of lattice vectors, so that the sides are planes.
+        # Multiples of lattice vectors keep the sides planar.
         outer = inner + math.ceil(3 * reach) * (inner - self._snapped(middle))
         patch, rim = patch_faces(self.profile.steps), _rim(self.profile.steps)
         after = np.roll(rim, -1)
@@ -252,14 +254,14 @@ class _Blend:
         return _evaluated(intersection(shell, planes))
 
     def corner_faces(self, vertex: int) -> list[int]:
-        """Return the three faces at a vertex, counter-clockwise on the ball seen from outside."""
+        """Return the three faces at a vertex, counter-clockwise seen from outside the solid."""
         faces = sorted(self.skeleton.faces_at(vertex))
         sign = self.sign(self.skeleton.edges_at(vertex)[0])
         turned = np.linalg.det(sign * self.skeleton.normals[faces]) < 0
         return faces[::-1] if turned else faces
 
     def _ball(self, vertex: int) -> FloatArray:
-        """Return the centre of the ball that touches three planes."""
+        """Return the centre of the ball that touches the three faces at a vertex, (3,)."""
         sign = self.sign(self.skeleton.edges_at(vertex)[0])
         normals = sign * self.skeleton.normals[sorted(self.skeleton.faces_at(vertex))]
         away = np.linalg.solve(normals, np.full(3, -self.profile.size))
@@ -269,7 +271,7 @@ class _Blend:
         return np.round(points, -self.pitch) if self.pitch < 0 else points
 
     def prism(self, edge: int) -> Solid:
-        """Return the prism that is cut away along an edge; it reaches far past both ends."""
+        """Return the prism between an edge and its blend, extended past both ends of the edge."""
         if edge not in self._prisms:
             self._prisms[edge] = self._prism(edge)
         return self._prisms[edge]
@@ -278,7 +280,7 @@ class _Blend:
         arcs = [self._snapped(self._station(edge, place)) for place in (0, 1)]
         rings = np.array([self._ring(edge, arc) for arc in arcs])
         if np.linalg.norm(rings[1] - rings[0], axis=1).min() < _MIN_STATION_GAP * self.profile.size:
-            # There is no room between the balls at both ends.
+            # The balls at the two ends of the edge nearly coincide.
             rings[1] = rings[0] + self.profile.size * self.skeleton.directions[edge]
         step = rings[1] - rings[0]
         times = max(self._reach(edge, rings, place) for place in (0, 1))
@@ -294,23 +296,23 @@ class _Blend:
         return self._body(points, triangles)
 
     def _body(self, points: FloatArray, triangles: IndexArray) -> Solid:
-        """Return a solid, on a coarser lattice if it does not fit on this one."""
+        """Return the solid of a mesh, on a coarser lattice if it is too large for `self.pitch`."""
         try:
             return Solid(points, triangles, pitch=self.pitch)
         except LimitError:
             return Solid(points, triangles)
 
     def _station(self, edge: int, place: int) -> FloatArray:
-        """Return the cross-section of the new surface at one end, from left to right face."""
+        """Return the section of the blend at end 0 or 1 of an edge, from left to right face."""
         vertex = int(self.skeleton.ends[edge, place])
         if self.is_round_corner(vertex):
             return self._ball(vertex) + self._arc(edge)
         return np.asarray(self.skeleton.vertices[vertex] + self.section(edge))
 
     def section(self, edge: int) -> FloatArray:
-        """Return the cross-section of the new surface of an edge, from the left to the right face.
+        """Return the corners of an edge's blend in cross-section, from the left to the right face.
 
-        Coordinates are relative to a point of the edge.
+        The (k, 3) coordinates are relative to a point of the edge.
         """
         if edge not in self._sections:
             self._sections[edge] = self._section(edge)
@@ -325,12 +327,15 @@ class _Blend:
         return np.asarray(middle + self._arc(edge))
 
     def _arc(self, edge: int) -> FloatArray:
-        """Return the arc across an edge, relative to the axis of the fillet."""
+        """Return points of the fillet's arc across an edge, (k, 3), relative to its centre."""
         normals = self.sign(edge) * self.skeleton.normals[self.skeleton.sides[edge]]
         return self.profile.size * arc_directions(normals[0], normals[1], self.profile.steps)
 
     def _ring(self, edge: int, arc: FloatArray) -> FloatArray:
-        """Return the prism's section, with the first and last chord extended past the faces."""
+        """Return the prism's closed section from the arc of the blend.
+
+        The first and last chord are extended past the faces, and a tip past the edge is added.
+        """
         first, last = 2 * arc[0] - arc[1], 2 * arc[-1] - arc[-2]
         foot = (arc[0] + arc[-1]) / 2
         along = self.skeleton.directions[edge]
@@ -340,7 +345,7 @@ class _Blend:
         return np.array([first, *arc[1:-1], last, self._snapped(tip)])
 
     def _reach(self, edge: int, rings: FloatArray, place: int) -> int:
-        """Return how many of its lengths the prism must grow to pass the planes at an end."""
+        """Return by how many of its lengths the prism must extend past the planes at end 0 or 1."""
         vertex, along = int(self.skeleton.ends[edge, place]), self.skeleton.directions[edge]
         others = self.skeleton.faces_at(vertex) - set(self.skeleton.sides[edge].tolist())
         sines = np.abs(self.skeleton.normals[sorted(others)] @ along)
@@ -354,33 +359,33 @@ class _Blend:
 
 
 def _evaluated(cutter: Solid) -> Solid:
-    """Return a cutter as an evaluated body.
+    """Return a cutter with its set operations carried out.
 
-    Otherwise all prisms and planes, which reach far beyond it, would meet in one expression.
+    So the expression of the result does not contain the cutter's long prisms and half-spaces.
     """
     return from_leaf(TreeLeaf(cutter.tree))
 
 
 def _across(direction: FloatArray, axis: FloatArray) -> FloatArray:
-    """Return the unit vector of a direction's component perpendicular to a unit axis."""
+    """Return the component of a vector perpendicular to a unit axis, normalized."""
     across = direction - (direction @ axis) * axis
     return np.asarray(across / np.linalg.norm(across))
 
 
 def _rim(steps: int) -> IndexArray:
-    """Return the numbers of the points around a patch, in the order of its corners."""
+    """Return the numbers of the border points of a triangular patch, in circular order."""
     rows = np.arange(steps + 1)
     first = rows * (rows + 1) // 2
     return np.concatenate([first[:-1], (first[-1] + rows)[:-1], (first + rows)[:0:-1]])
 
 
 def chamfer(solid: Solid, edges: EdgeSelection, size: Scalar) -> Solid:
-    """Return the solid with chamfered edges; see `Solid.chamfer`."""
+    """Return the solid with the selected edges chamfered; see `Solid.chamfer`."""
     return _blended(solid, edges, _Profile(positive(size, "size"), 1, False))
 
 
 def fillet(solid: Solid, edges: EdgeSelection, radius: Scalar, segments: int) -> Solid:
-    """Return the solid with rounded edges; see `Solid.fillet`."""
+    """Return the solid with the selected edges rounded; see `Solid.fillet`."""
     around = sides_around(4, segments, "segments")
     size = positive(radius, "radius")
     skeleton, chosen = _selected(edges)
@@ -418,7 +423,7 @@ def _blended(solid: Solid, edges: EdgeSelection, profile: _Profile) -> Solid:
             break
         tidy = _tidy(solid, blend)
         after = skeleton_of(tidy.normalized().to_mesh())
-        # Tidying drops attributes.
+        # Simplification drops attributes.
         solid = solid if mesh.carried is not None else tidy
         reach = float(blend.widths.max())
         chosen = carried(skeleton, rest, after, _new_ends(blend, rest), reach)
@@ -427,13 +432,13 @@ def _blended(solid: Solid, edges: EdgeSelection, profile: _Profile) -> Solid:
 
 
 def _pitch_for(skeleton: Skeleton, pitch: int) -> int:
-    """Return the pitch of cutters: the solid's, or a coarser one if doubles are that coarse."""
+    """Return the pitch of the cutters: the solid's, or one more if coordinates are very large."""
     steps = float(np.abs(skeleton.vertices).max()) / 10.0**pitch
     return pitch + int(steps > LATTICE_REACH / 10)
 
 
 def _once(solid: Solid, blend: _Blend) -> Solid:
-    """Return the solid after all edges of one stage are blended."""
+    """Return a solid with all edges of a blend chamfered or rounded in one set operation."""
     blend.refuse_corners()
     refuse_no_room(blend.skeleton, blend.widths, blend.caps)
     cutters, fillers = _parts(blend)
@@ -441,7 +446,10 @@ def _once(solid: Solid, blend: _Blend) -> Solid:
 
 
 def _tidy(solid: Solid, blend: _Blend) -> Solid:
-    """Return a solid without the tiny steps between rounded faces and new surfaces."""
+    """Return a solid simplified, to remove the tiny steps where faces are off the lattice.
+
+    If all planes at the blended edges are exact, the solid is returned unchanged.
+    """
     ends = np.unique(blend.skeleton.ends[sorted(blend.chosen)])
     around = {face for vertex in ends.tolist() for face in blend.skeleton.faces_at(vertex)}
     if all(blend.planes.is_exact(face) for face in around):
@@ -450,7 +458,10 @@ def _tidy(solid: Solid, blend: _Blend) -> Solid:
 
 
 def _new_ends(blend: _Blend, rest: IndexArray) -> dict[int, FloatArray]:
-    """Return the ends of new surfaces between two edges that are still to be blended."""
+    """Return the corners of cutters that end between two edges still to be blended.
+
+    The key is the face between the two edges; the value has shape (n, 3).
+    """
     skeleton, waiting = blend.skeleton, set(rest.tolist())
     found: dict[int, FloatArray] = {}
     for edge in sorted(blend.chosen):
@@ -464,7 +475,7 @@ def _new_ends(blend: _Blend, rest: IndexArray) -> dict[int, FloatArray]:
 
 
 def _parts(blend: _Blend) -> tuple[Sequence[Solid], Sequence[Solid]]:
-    """Return the bodies to remove, and the bodies to add."""
+    """Return the solids to remove at convex edges, and the solids to add at concave ones."""
     cutters: tuple[list[Solid], list[Solid]] = ([], [])
     near = _SYMMETRICAL * blend.profile.size
     tools = ChainTools(blend.skeleton, blend.section, near, blend.pitch)

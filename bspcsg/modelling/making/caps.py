@@ -1,7 +1,7 @@
-"""Blends along all edges of a face, where some of the edges vanish on the way inwards.
+"""Blends along all edges of a face, if some of the edges shrink to nothing inwards.
 
 The material that remains below such a face is a roof over its outline, whose sides meet above the
-straight skeleton. For a fillet, the roof is bent to the profile of the new surface.
+straight skeleton. For a fillet, each chord of the profile has a roof of its own slope.
 """
 
 from collections.abc import Set
@@ -19,18 +19,22 @@ from .roofs import roof
 from .rooms import face_loops, no_room
 from .skeleton import Skeleton
 
-#: Degrees by which walls may lean that count as square to a face.
+#: Walls count as perpendicular to a face if their angle differs from 90 by less, in degrees.
 _SQUARE = 1e-4
 
-#: Lattice steps by which what is taken off reaches beyond the face and its walls.
+#: Lattice steps by which the removed solid extends past the face and its walls.
 _BEYOND = 20
 
-#: The share of the size by which rounding may lower a roof.
+#: The share of a blend's size by which rounding may lower a roof.
 _SAME = 1e-6
 
 
 def is_cap(skeleton: Skeleton, face: int, chosen: Set[int]) -> bool:
-    """Say whether just the edges of a face are selected, and its walls are perpendicular to it."""
+    """Return True if a face can be blended as a whole.
+
+    All its edges are selected, all are convex or all concave, no other edge at its corners is
+    selected, and the adjacent faces are perpendicular to it.
+    """
     own = np.flatnonzero((skeleton.sides == face).any(axis=1))
     if not set(own.tolist()) <= chosen or len(set(skeleton.is_convex[own].tolist())) > 1:
         return False
@@ -40,22 +44,22 @@ def is_cap(skeleton: Skeleton, face: int, chosen: Set[int]) -> bool:
 
 
 def cap_tool(skeleton: Skeleton, face: int, sign: int, profile: FloatArray, pitch: int) -> Solid:
-    """Return the body to remove below a face, or to add above it if the sign is -1.
+    """Return the solid to remove below a face, or to add above it if the sign is -1.
 
     Parameters
     ----------
     skeleton : Skeleton
     face, sign : int
     profile : (k, 2) float64
-        The new surface from a wall to the face: the distance inside the wall, and the height above
-        its start; both ascend from 0 to the size.
+        The section of the blend from a wall to the face: distance from the wall, and height above
+        the first point; both ascend from 0 to the blend's size.
     pitch : int
-        Of the solid's lattice.
+        The pitch of the solid's lattice.
 
     Raises
     ------
     InvalidParameterError
-        If a part of the face would vanish, or it has more than a thousand corners.
+        If the blend would consume a part of the face, or no roof over the face can be computed.
     """
     frame = _frame(skeleton.normals[face] * sign)
     loops = [points @ frame.T for points in face_loops(skeleton, face)]
@@ -69,13 +73,13 @@ def cap_tool(skeleton: Skeleton, face: int, sign: int, profile: FloatArray, pitc
             place = np.append(part.to_polygons()[0][0], level) @ frame
             raise no_room(skeleton, place, [face])
         roofs.append(above)
-    # Evaluate it, so that it is moved as one mesh. Raise it on feet, so that its floor differs from
-    # that of the blocks.
+    # Evaluate the union, so that it is transformed as one mesh. Extend it downwards, so that its
+    # floor is not in the plane of the blocks' floors.
     whole = union([*roofs, figure.extrude(size).translate(0, 0, -size)]).normalized()
     grown = offset_region(figure, beyond, "miter")
     tools = []
     for (inner, low), (outer, high) in pairwise(profile.tolist()):
-        # The profile bounds a convex body, the intersection of the half-spaces below its lines.
+        # The profile bounds a convex set, the intersection of the half-planes below its chords.
         steep = (high - low) / (outer - inner)
         base = low - steep * inner
         block = grown.extrude(size + beyond - base)
@@ -85,7 +89,10 @@ def cap_tool(skeleton: Skeleton, face: int, sign: int, profile: FloatArray, pitc
 
 
 def _placed(frame: FloatArray, height: float, steep: float) -> FloatArray:
-    """Return the map of z = 0 onto a plane at a height of the frame, with heights scaled."""
+    """Return the (4, 4) matrix that scales z by `steep` and maps z = 0 to a plane of the frame.
+
+    The plane is perpendicular to the frame's third axis, at `height` along it.
+    """
     matrix = np.eye(4)
     matrix[:3, :3] = frame.T * (1, 1, steep)
     matrix[:3, 3] = frame[2] * height
@@ -93,7 +100,7 @@ def _placed(frame: FloatArray, height: float, steep: float) -> FloatArray:
 
 
 def _roof_or_none(figure: Region) -> Solid | None:
-    """Return the roof over a figure, or None if it has too many or ambiguous corners."""
+    """Return the roof over a figure, or None if its corners are too many or ambiguous."""
     try:
         return roof(figure)
     except LimitError:
@@ -101,7 +108,7 @@ def _roof_or_none(figure: Region) -> Solid | None:
 
 
 def _frame(normal: FloatArray) -> FloatArray:
-    """Return two axes perpendicular to a normal, and it, (3, 3); exact along coordinate axes."""
+    """Return an orthonormal frame, (3, 3), with a normal as last row; exact for axis normals."""
     level = np.eye(3)[(int(np.abs(normal).argmax()) + 1) % 3]
     first = level - (level @ normal) * normal
     first /= np.linalg.norm(first)

@@ -1,7 +1,7 @@
-"""Closed chains of edges that are blended as one, such as the rim of a bore.
+"""Closed chains of edges that are blended by one tool, such as the rim of a bore.
 
-Two edges of a corner that are mirror images meet in the bisecting plane, where their sections form
-one ring. So the tool along a whole chain is one mesh through such rings.
+If two consecutive edges are mirror images, their blends have the same section in the plane that
+bisects their angle. So the tool along a chain is one mesh through the sections at its corners.
 """
 
 from collections.abc import Callable, Set
@@ -16,19 +16,22 @@ from ...solid.solid import Solid
 from .rings import solid_of, walls
 from .skeleton import Skeleton
 
-#: The edges of a chain in its order, each with the vertex at its end.
+#: Consecutive edges, as pairs of an edge number and the vertex where the edge ends.
 Chain: TypeAlias = list[tuple[int, int]]
 
-#: The least sine between an edge and the plane between it and the next one, and between a face and
-#: the new surface where that begins.
+#: The least sine of the angle between an edge and the plane that bisects its angle with the next
+#: edge, and of the angle between a face and the blend at its border.
 _FLATTEST = 1e-3
 
-#: Lattice steps by which a mesh reaches beyond faces that its corners may miss by one.
+#: Lattice steps by which a tool extends past a face if rounding may move its corners off the face.
 _BEYOND = 20
 
 
 def closed_chains(skeleton: Skeleton, chosen: Set[int]) -> list[Chain]:
-    """Return the loops of edges of one kind that meet in pairs at corners of three edges."""
+    """Return closed loops of chosen edges, at whose corners exactly three edges meet.
+
+    In a loop, all edges are convex or all are concave.
+    """
     chains, seen = [], set[int]()
     for first in sorted(chosen):
         if first not in seen:
@@ -40,7 +43,10 @@ def closed_chains(skeleton: Skeleton, chosen: Set[int]) -> list[Chain]:
 
 
 def _walked(skeleton: Skeleton, chosen: Set[int], first: int) -> tuple[Chain, bool]:
-    """Return the edges from one on, until no edge or more than one follows."""
+    """Return the chain of chosen edges that begins with `first`, and whether it is closed.
+
+    It ends where no chosen edge or more than one follows, or where convex and concave edges meet.
+    """
     edge, end = first, int(skeleton.ends[first, 1])
     chain = [(edge, end)]
     while True:
@@ -59,16 +65,16 @@ def _walked(skeleton: Skeleton, chosen: Set[int], first: int) -> tuple[Chain, bo
 
 @dataclass(frozen=True, eq=False)
 class ChainTools:
-    """Tools along closed chains, to be removed or added.
+    """Maker of the solids to remove or add along closed chains of edges.
 
     Parameters
     ----------
     skeleton : Skeleton
     section : function
-        Returns, for an edge, the corners of the new surface across it from the left face to the
-        right one, (k, 3), seen from a point of the edge.
+        Returns the section of an edge's blend from the left to the right face, (k, 3), relative to
+        a point of the edge.
     near : float
-        The largest difference of the sections of two edges in their bisecting plane.
+        The largest distance between the sections of two edges in their bisecting plane.
     pitch : int
         The pitch of the result.
     """
@@ -79,7 +85,7 @@ class ChainTools:
     pitch: int
 
     def tool(self, chain: Chain) -> Solid | None:
-        """Return the tool for a chain; None if neighbouring edges are no mirror images."""
+        """Return the tool for a chain; None if two consecutive edges are not mirror images."""
         rings = []
         for (edge, vertex), (after, _) in zip(chain, chain[1:] + chain[:1], strict=True):
             ring = self._ring(edge, after, vertex)
@@ -92,7 +98,10 @@ class ChainTools:
         return _through(np.round(rings, -self.pitch) if self.pitch < 0 else np.array(rings))
 
     def _ring(self, edge: int, after: int, vertex: int) -> FloatArray | None:
-        """Return the common section of two edges in their bisecting plane, if they agree."""
+        """Return the section, (k, 3), that the blends of two edges share in their bisecting plane.
+
+        None means that the two sections differ, or that an edge is nearly parallel to the plane.
+        """
         (third,) = set(self.skeleton.edges_at(vertex)) - {edge, after}
         axis = self.skeleton.directions[third]
         along = np.array([self._along(edge, vertex, -1), self._along(after, vertex, 1)])
@@ -108,7 +117,7 @@ class ChainTools:
         rings = []
         for one, direction, lean in zip((edge, after), along, leans, strict=True):
             corners = self.section(one)
-            # If an edge runs against the chain, its left is the chain's right.
+            # If an edge runs against the chain, exchange its left and right.
             if direction @ self.skeleton.directions[one] < 0:
                 corners = corners[::-1]
             rings.append(corners - np.outer(corners @ normal / lean, direction))
@@ -117,7 +126,7 @@ class ChainTools:
         return np.asarray(self.skeleton.vertices[vertex] + rings[0])
 
     def _along(self, edge: int, vertex: int, sign: int) -> FloatArray:
-        """Return the direction of an edge along the chain: away from a vertex, or towards it."""
+        """Return an edge's unit vector, away from a vertex if sign is 1, towards it if -1."""
         is_start = self.skeleton.ends[edge, 0] == vertex
         direction: FloatArray = self.skeleton.directions[edge]
         return direction * (sign if is_start else -sign)
@@ -125,10 +134,10 @@ class ChainTools:
     def _whole_ring(
         self, edge: int, after: int, vertex: int, ring: FloatArray
     ) -> FloatArray | None:
-        """Return a ring with a corner at the edge, and both ends slightly beyond their faces.
+        """Return a section closed by a corner near the edges' common vertex.
 
-        Where corners may miss faces by a lattice step, the mesh reaches beyond the faces, so that
-        no thin skin is left. Return None if it would reach far.
+        If rounding may move its ends off their faces, the section extends past the faces, so that
+        no thin skin remains. None means that it would extend far, as the blend is nearly tangent.
         """
         sides = np.array([self._sides(edge, vertex, -1), self._sides(after, vertex, 1)])
         ends = []
@@ -145,7 +154,7 @@ class ChainTools:
         return np.array([tip, ends[0][0], *ring[1:-1], ends[1][0]])
 
     def _sides(self, edge: int, vertex: int, sign: int) -> IndexArray:
-        """Return the faces on the left and on the right of an edge along the chain."""
+        """Return the faces on the left and the right of an edge, in the chain's direction."""
         sides: IndexArray = self.skeleton.sides[edge]
         is_forth = self._along(edge, vertex, sign) @ self.skeleton.directions[edge] > 0
         return sides if is_forth else sides[::-1]
@@ -153,7 +162,10 @@ class ChainTools:
     def _outward(
         self, edge: int, after: int, vertex: int, faces: IndexArray, corner: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Return normals away from the material, and the reach beyond each of two faces."""
+        """Return outward normals of two faces, and how far the tool must extend past each.
+
+        The distance is 0 if `corner` is exactly on both faces.
+        """
         normals = self.skeleton.normals[faces]
         if faces[0] == faces[1]:
             is_exact = self._is_level(faces[0], vertex)
@@ -164,14 +176,17 @@ class ChainTools:
         return normals * (1 if self.skeleton.is_convex[edge] else -1), np.full(2, beyond)
 
     def _is_level(self, face: int, vertex: int) -> bool:
-        """Say whether a face is perpendicular to an axis, at a lattice coordinate."""
+        """Return True if a face is perpendicular to an axis and lies at a lattice coordinate."""
         axis = int(np.abs(self.skeleton.normals[face]).argmax())
         height = float(self.skeleton.vertices[vertex, axis])
         is_square = bool(np.abs(self.skeleton.normals[face, axis]) == 1)
         return is_square and whole_steps(height, self.pitch) is not None
 
     def _is_on(self, edge: int, corner: FloatArray) -> bool:
-        """Say whether a snapped corner lies exactly on an edge between two lattice points."""
+        """Return True if a corner, snapped to the lattice, lies exactly on an edge's line.
+
+        Both ends of the edge must be lattice points.
+        """
         ends = self.skeleton.vertices[self.skeleton.ends[edge]]
         snapped = np.round(corner, -self.pitch) if self.pitch < 0 else corner
         rows = [*ends.tolist(), snapped.tolist()]
@@ -185,7 +200,7 @@ class ChainTools:
 
 
 def _through(rings: FloatArray) -> Solid:
-    """Return the solid of the closed mesh through rings, the last joined to the first."""
+    """Return the solid whose surface joins each ring to the next, and the last to the first."""
     closed = np.concatenate([rings, rings[:1]])
     count = rings.shape[1]
     around = np.column_stack([np.arange(count), np.roll(np.arange(count), -1)])

@@ -1,6 +1,6 @@
 """Round holes in plane faces: plain holes, counterbores and countersinks.
 
-Each is a profile of distances from the axis and depths below the face, rotated about a line
+A hole is a profile of (distance from the axis, depth below the face), rotated about a line
 perpendicular to the face.
 """
 
@@ -20,8 +20,8 @@ from ...solid.solid import Solid
 from .faces import FaceSelection, flat_face
 from .skeleton import Skeleton, flatness, skeleton_of
 
-#: A hole begins so many times the rounding of corners before its face, and leaves no skin of it;
-#: they are rounded to steps of the lattice at least.
+#: A hole begins above its face, so that no thin skin remains: by this many times the rounding error
+#: of corners or the lattice step, whichever is larger.
 _BEFORE = 10
 
 
@@ -35,7 +35,7 @@ def hole(
     depth: Scalar | None,
     segments: int,
 ) -> Solid:
-    """Return the solid with round holes; see `Solid.hole`."""
+    """Return the solid with plain round holes; see `Solid.hole`."""
     return _drilled(solid, face, at, [], _bore(r, d), depth, segments)
 
 
@@ -107,7 +107,10 @@ def _drilled(
     depth: Scalar | None,
     segments: int,
 ) -> Solid:
-    """Return the solid minus holes of a bore and a head, given as a profile from its bottom up."""
+    """Return the solid minus holes of radius `bore` with a wider head.
+
+    The `head` is a list of (radius, depth) from its bottom up to the face; empty for none.
+    """
     around = sides_around(3, segments, "segments")
     normal, offset = flat_face(face)
     skeleton = skeleton_of(solid.normalized().to_mesh())
@@ -127,12 +130,15 @@ def _drilled(
 
 
 def _bottom(skeleton: Skeleton, normal: FloatArray, points: FloatArray, bore: float) -> float:
-    """Return a depth below the whole solid."""
+    """Return a depth below the face at which a hole has passed the whole solid."""
     return float((points @ normal).max(initial=0) - (skeleton.vertices @ normal).min()) + bore
 
 
 def _points_on(skeleton: Skeleton, normal: FloatArray, offset: float, at: Any) -> FloatArray:
-    """Return points as (n, 3), checked to lie on faces of the solid in one plane."""
+    """Return the given points as an (n, 3) array.
+
+    Raise `InvalidParameterError` for a point that is not on a face of the solid in the plane.
+    """
     refusal = invalid_parameter(
         "at must be a point of three finite numbers, or a list of such points."
     )
@@ -156,7 +162,7 @@ def _points_on(skeleton: Skeleton, normal: FloatArray, offset: float, at: Any) -
 
 
 def _hold(triangles: FloatArray, normal: FloatArray, point: FloatArray, near: float) -> bool:
-    """Say whether one of the triangles of a plane contains a point, up to rounding."""
+    """Return True if one of several coplanar triangles contains a point, up to rounding."""
     along = np.roll(triangles, -1, axis=1) - triangles
     left = np.cross(along, point - triangles) @ normal
     return bool((left >= -near * np.linalg.norm(along, axis=2)).all(axis=1).any())
@@ -165,7 +171,7 @@ def _hold(triangles: FloatArray, normal: FloatArray, point: FloatArray, near: fl
 def _turned(
     profile: FloatArray, around: int, normal: FloatArray, points: FloatArray
 ) -> list[Solid]:
-    """Return the union of a profile rotated about the normal through each point."""
+    """Return, for each point, the solid of a profile rotated about the normal through the point."""
     vertices, faces = surface_of_revolution(profile, around, closed=False)
     level = np.eye(3)[np.abs(normal).argmin()]
     first = level - (level @ normal) * normal

@@ -14,9 +14,9 @@ from .skeleton import Skeleton, skeleton_of
 
 @owning
 class EdgeSelection(Selection):
-    """Edges of a solid, each between two plane faces and from corner to corner.
+    """A selection of a solid's edges; an edge is the segment between two corners of plane faces.
 
-    All properties are arrays over the edges, for use in conditions.
+    Each property is an array with one entry per edge, for use in conditions.
 
     Examples
     --------
@@ -33,41 +33,44 @@ class EdgeSelection(Selection):
 
     @property
     def ends(self) -> FloatArray:
-        """The start and end of each edge, (n, 2, 3), in model units."""
+        """The start and end point of each edge, (n, 2, 3) float64, in model units."""
         ends: FloatArray = self._skeleton.vertices[self._skeleton.ends[self._numbers]]
         return ends
 
     @property
     def middle(self) -> FloatArray:
-        """The middles, (n, 3), in model units."""
+        """The midpoint of each edge, (n, 3) float64, in model units."""
         return np.asarray(self.ends.mean(axis=1))
 
     @property
     def direction(self) -> FloatArray:
-        """Unit vectors from start to end, (n, 3)."""
+        """The unit vector of each edge from its start to its end, (n, 3) float64."""
         directions: FloatArray = self._skeleton.directions[self._numbers]
         return directions
 
     @property
     def length(self) -> FloatArray:
-        """Lengths, (n,), in model units."""
+        """The length of each edge, (n,) float64, in model units."""
         return np.asarray(np.linalg.norm(self._skeleton.vectors[self._numbers], axis=1))
 
     @property
     def normals(self) -> FloatArray:
-        """Unit normals of the faces on the left and on the right, (n, 2, 3)."""
+        """The outward unit normals of the faces left and right of each edge, (n, 2, 3) float64."""
         normals: FloatArray = self._skeleton.normals[self._skeleton.sides[self._numbers]]
         return normals
 
     @property
     def angle(self) -> FloatArray:
-        """Degrees between the faces through the material, (n,): below 180 convex, above concave."""
+        """The angle between the two faces of each edge, inside the solid, (n,) float64, in degrees.
+
+        It is below 180 for a convex edge and above 180 for a concave edge.
+        """
         angles: FloatArray = self._skeleton.angles[self._numbers]
         return angles
 
     @property
     def is_convex(self) -> BoolArray:
-        """True where the angle is below 180 degrees, (n,)."""
+        """True for each edge whose angle inside the solid is below 180 degrees, (n,) bool."""
         convex: BoolArray = self._skeleton.is_convex[self._numbers]
         return convex
 
@@ -84,12 +87,12 @@ class EdgeSelection(Selection):
 
 
 def edges_of(solid: Solid, *, all: bool, angle: Scalar) -> EdgeSelection:  # noqa: A002
-    """Return the edges of a solid; see `Solid.edges`."""
+    """Return the selection of the edges of a solid; see `Solid.edges`."""
     least = as_bend(angle, truth_value(all, "all"))
     skeleton = skeleton_of(solid.normalized().to_mesh())
     return EdgeSelection(skeleton, np.flatnonzero(bends(skeleton, least)))
 
 
 def selection(edges: EdgeSelection) -> tuple[Skeleton, IndexArray]:
-    """Return the skeleton and the numbers of a selection, for the modules of this package."""
+    """Return the skeleton of the solid, and the numbers of the selected edges in it, (n,)."""
     return edges._skeleton, edges._numbers

@@ -13,27 +13,29 @@ from ...solid.solid import Solid
 from .selection import Selection, as_bend, bends
 from .skeleton import Skeleton, groups, members, skeleton_of
 
-#: Facets of one surface are chords of one curve, much the same in width. A face that is wider than
-#: this many times its neighbour is a plane one beside a round edge.
+#: The largest ratio of the widths of two neighbouring facets that count as one round face. A plane
+#: face beside a round edge is usually wider than that.
 _AS_WIDE = 2.0
 
-#: The number of corners that are measured together: three doubles for each make 24 MB.
+#: The number of corners per batch, which bounds an array of three doubles each to 24 MB.
 _CORNERS_PER_BATCH = 1_000_000
 
 
 @owning
 class FaceSelection(Selection):
-    """Faces of a solid: flat ones, and round ones that consist of flat facets.
+    """A selection of a solid's faces: flat faces, and round faces that consist of flat facets.
 
-    Neighbouring facets that bend little and have similar widths form one face, such as the wall of
-    a bore. All properties are arrays over the faces, for use in conditions.
+    Neighbouring facets with a small angle between them and similar widths form one face, such as
+    the wall of a bore. Each property is an array with one entry per face, for use in conditions.
 
     Parameters
     ----------
     skeleton : Skeleton
+        The plane faces and edges of the solid.
     numbers : (n,) int64
+        The numbers of the selected faces.
     surface : (f,) int64
-        The face to which each flat face of the skeleton belongs.
+        The number of the face that contains each plane face of the skeleton.
 
     Examples
     --------
@@ -55,12 +57,12 @@ class FaceSelection(Selection):
 
     @property
     def area(self) -> FloatArray:
-        """Areas, (n,), in model units squared."""
+        """The area of each face, (n,) float64, in model units squared."""
         return np.asarray(self._sums(np.linalg.norm(self._skeleton.areas, axis=1)))
 
     @property
     def middle(self) -> FloatArray:
-        """The centres of area, (n, 3), in model units; for a round face, it is not on the face."""
+        """The centroid of each face, (n, 3), in model units; not on the face if that is round."""
         skeleton = self._skeleton
         weights = np.linalg.norm(skeleton.areas, axis=1)
         middles = skeleton.vertices[skeleton.triangles].mean(axis=1)
@@ -69,13 +71,13 @@ class FaceSelection(Selection):
 
     @property
     def is_flat(self) -> BoolArray:
-        """True where a face lies in one plane, (n,)."""
+        """True for each face that lies in one plane, (n,) bool."""
         counts = np.bincount(self._surface, minlength=self._total())
         return np.asarray(counts[self._numbers] == 1, dtype=np.bool_)
 
     @property
     def normal(self) -> FloatArray:
-        """Outward unit normals of flat faces, (n, 3); zero for round ones."""
+        """The outward unit normal of each flat face, (n, 3) float64; zero for a round face."""
         first = np.zeros(self._total(), dtype=np.int64)
         first[self._surface] = np.arange(len(self._surface))
         normals = self._skeleton.normals[first[self._numbers]]
@@ -83,11 +85,11 @@ class FaceSelection(Selection):
 
     @property
     def direction(self) -> FloatArray:
-        """The normals, (n, 3)."""
+        """The outward unit normal of each flat face, (n, 3) float64; zero for a round face."""
         return self.normal
 
     def _sums(self, values: FloatArray) -> FloatArray:
-        """Return the sum over each face of a value of each triangle."""
+        """Return the sum of the triangles' values over each selected face, (n,)."""
         of_triangle = self._surface[self._skeleton.face]
         sums = np.bincount(of_triangle, values, minlength=self._total())
         return np.asarray(sums[self._numbers], dtype=np.float64)
@@ -115,7 +117,7 @@ class FaceSelection(Selection):
 
 @uncounted
 def faces_of(solid: Solid, *, all: bool, angle: Scalar) -> FaceSelection:  # noqa: A002
-    """Return the faces of a solid; see `Solid.faces`."""
+    """Return the selection of the faces of a solid; see `Solid.faces`."""
     least = as_bend(angle, truth_value(all, "all"))
     skeleton = skeleton_of(solid.normalized().to_mesh())
     surface = _surfaces(skeleton, least)
@@ -123,7 +125,7 @@ def faces_of(solid: Solid, *, all: bool, angle: Scalar) -> FaceSelection:  # noq
 
 
 def flat_face(faces: FaceSelection) -> tuple[FloatArray, float]:
-    """Return normal and offset of the plane of a selection of one flat face.
+    """Return the unit normal, and the offset along it, of the plane of a single flat face.
 
     Raises
     ------
@@ -143,7 +145,10 @@ def flat_face(faces: FaceSelection) -> tuple[FloatArray, float]:
 
 
 def _surfaces(skeleton: Skeleton, least: float) -> IndexArray:
-    """Return the face of each flat face of a skeleton, after facets that bend little are joined."""
+    """Return the number of the flat or round face that contains each plane face of a skeleton.
+
+    Plane faces belong together if their widths are similar and their angle is below `least`.
+    """
     smooth = np.flatnonzero(~bends(skeleton, least))
     wide = [_widths(skeleton, smooth, side) for side in (0, 1)]
     alike = np.maximum(*wide) <= _AS_WIDE * np.minimum(*wide)
@@ -151,7 +156,7 @@ def _surfaces(skeleton: Skeleton, least: float) -> IndexArray:
 
 
 def _widths(skeleton: Skeleton, edges: IndexArray, side: int) -> FloatArray:
-    """Return the width of the face on one side of each edge, measured from the edge."""
+    """Return how far the plane face on side 0 or 1 of each edge extends from the edge, (n,)."""
     widths = np.zeros(len(edges))
     counts = np.bincount(skeleton.face, minlength=len(skeleton.normals))
     sizes = counts[skeleton.sides[edges, side]]

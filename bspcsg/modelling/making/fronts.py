@@ -1,9 +1,9 @@
-"""Fronts that move inwards from all sides of a figure, for straight skeletons and roofs.
+"""Shrinking outlines ("fronts") of a figure, for straight skeletons and roofs.
 
-Each side of the outlines moves at speed one, parallel to itself. A front changes when a side
-vanishes, or when a reflex corner hits another side; then the sides at that spot are reconnected
-(Aichholzer et al., A Novel Type of Skeleton for Polygons, 1995). Events within `nearness` count as
-simultaneous, so symmetric figures need no special cases.
+Each side of the outlines moves inwards at speed one, parallel to itself. A front changes when a
+side shrinks to a point, or when a reflex corner hits another side; then the sides that meet there
+are reconnected (Aichholzer et al., A Novel Type of Skeleton for Polygons, 1995). Events within a
+distance of `nearness` count as simultaneous, so symmetric figures are not treated separately.
 """
 
 import math
@@ -17,30 +17,30 @@ import numpy as np
 
 from ..._types import BoolArray, FloatArray, IndexArray
 
-#: Sine of the least turn that counts as one.
+#: The least sine of the angle between two sides at a corner that counts as a bend.
 _STRAIGHT = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
 class Walls:
-    """The moving sides.
+    """The lines of a figure's sides, which move inwards at speed one.
 
     Parameters
     ----------
     directions, normals : (n, 2) float64
-        Unit vectors along the sides, and inwards, which is to their left.
+        Unit vectors along the sides, and perpendicular to them, to the left, which is inside.
     """
 
     directions: FloatArray
     normals: FloatArray
 
     def speeds(self, before: IndexArray, after: IndexArray) -> FloatArray:
-        """Return the velocities of corners, given the walls before and after each."""
+        """Return the velocity of each corner, (n, 2), given the walls before and after it."""
         sums = self.normals[before] + self.normals[after]
         return np.asarray(2 * sums / np.square(sums).sum(axis=1)[:, None])
 
     def are_reflex(self, before: IndexArray, after: IndexArray) -> BoolArray:
-        """Say which corners are reflex."""
+        """Return a mask of the reflex corners, given the walls before and after each corner."""
         a, b = self.directions[before], self.directions[after]
         return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] < -_STRAIGHT)
 
@@ -52,15 +52,16 @@ class Front:
     Parameters
     ----------
     node : (n,) int64
-        The node from which each corner started.
+        The skeleton node at which each corner started.
     place : (n, 2) float64
     since : (n,) float64
-        The position and time of that start.
+        The position and the time at which each corner started.
     before, after : (n,) int64
-        The walls that meet there: the one that ends and the one that begins.
+        The walls of the sides that end and begin at each corner.
     following : (n,) int64
-        The number of the next corner.
+        The number of the next corner along the outline.
     walls : Walls
+        The lines of the sides.
     """
 
     node: IndexArray
@@ -76,30 +77,33 @@ class Front:
         return len(self.node)
 
     def at(self, time: float) -> FloatArray:
-        """Return the positions of the corners at a time."""
+        """Return the positions of the corners at a time, (n, 2)."""
         return np.asarray(self.place + self.speeds() * (time - self.since)[:, None])
 
     def speeds(self) -> FloatArray:
-        """Return the velocities of the corners."""
+        """Return the velocities of the corners, (n, 2)."""
         return self.walls.speeds(self.before, self.after)
 
     def next_time(self, now: float, nearness: float) -> float:
-        """Return the time of the next change of the front; infinity if there is none."""
+        """Return the time after `now` at which a side vanishes or is hit; infinity if never."""
         places, speeds = self.at(now), self.speeds()
         sides = self._next_vanishing(places, speeds)
         return now + min(sides, self._next_hit(places, speeds, nearness))
 
     def _lengths(self, places: FloatArray, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the lengths of the sides, negative for inverted ones, and their growth rates."""
+        """Return the signed lengths of the sides, and the rates at which they grow, (n,) each.
+
+        A length is negative if the side runs against its wall's direction.
+        """
         along = self.walls.directions[self.after]
         return tuple(
             ((ends[self.following] - ends) * along).sum(axis=1) for ends in (places, speeds)
         )
 
     def vanished(self, places: FloatArray, nearness: float) -> IndexArray:
-        """Return the sides that have vanished.
+        """Return the numbers of the shrinking sides whose length is at most `nearness`.
 
-        A side may even be inverted by rounding, if others vanished at the same time.
+        A length may be negative by rounding, if other sides vanished at the same time.
         """
         lengths, growth = self._lengths(places, self.speeds())
         return np.flatnonzero((lengths <= nearness) & (growth < 0))
@@ -111,7 +115,7 @@ class Front:
         return max(float(times.min(initial=math.inf)), 0.0)
 
     def _next_hit(self, places: FloatArray, speeds: FloatArray, nearness: float) -> float:
-        """Return the time until a reflex corner first hits a side."""
+        """Return the time until a reflex corner first hits a side; infinity if none does."""
         reflex = np.flatnonzero(self.walls.are_reflex(self.before, self.after))
         normals, along = self.walls.normals[self.after], self.walls.directions[self.after]
         levels = (places * normals).sum(axis=1)
@@ -129,7 +133,7 @@ class Front:
         return float(times[is_hit].min(initial=math.inf))
 
     def touching(self, places: FloatArray, nearness: float) -> tuple[IndexArray, IndexArray]:
-        """Return corners, and the sides in whose interior they lie."""
+        """Return pairs of a corner and a side in whose interior it lies, as arrays of numbers."""
         normals, along = self.walls.normals[self.after], self.walls.directions[self.after]
         away = _products(places, normals) - (places * normals).sum(axis=1)
         corner, side = np.nonzero(np.abs(away) <= nearness)
@@ -139,13 +143,16 @@ class Front:
         return corner[inside], side[inside]
 
 
-#: A part of a side between places where something met: these places, and the wall.
+#: A part of a side between two consecutive spots: the start spot, the end spot, and the wall.
+#: A spot is a point where corners have met.
 Piece: TypeAlias = tuple[int, int, int]
 
 
 @dataclass(frozen=True, eq=False)
 class Meeting:
-    """The contacts at a time.
+    """The contacts of a front's corners and sides at one time.
+
+    A spot is a point at which corners have met; also a single corner has a spot.
 
     Parameters
     ----------
@@ -153,13 +160,13 @@ class Meeting:
     places : (n, 2) float64
         Positions of the corners of the front.
     corners : list of list of int
-        The corners that have met at each spot.
+        The corners at each spot.
     pieces : list of Piece
-        The sides that continue, divided at corners on them; ends are numbers of spots.
+        The parts of sides that continue to move; sides are divided at corners on them.
     ridges : list of (Piece, Piece)
         Pairs of pieces that have met over their whole length.
     pairs : list of list of (int, int)
-        At each spot, pairs of numbers of pieces of which one follows the other.
+        At each spot, the piece that ends and the piece that follows it, as numbers in `pieces`.
     """
 
     time: float
@@ -171,23 +178,26 @@ class Meeting:
 
     @property
     def is_clear(self) -> bool:
-        """True if each continuing piece has a successor."""
+        """True if each piece that continues to move has a successor."""
         return sum(map(len, self.pairs)) == len(self.pieces)
 
     def walls_of(self, pair: tuple[int, int]) -> tuple[int, int]:
-        """Return the walls of two pieces that follow each other."""
+        """Return the walls of the two pieces of a pair, which are numbers in `pieces`."""
         ending, beginning = pair
         return self.pieces[ending][2], self.pieces[beginning][2]
 
     def is_calm(self, spot: int, front: Front) -> bool:
-        """Say whether a spot has a single corner that continues unchanged."""
+        """Return True if a spot has a single corner, whose walls stay the same."""
         [corner, *others] = self.corners[spot]
         walls = int(front.before[corner]), int(front.after[corner])
         return not others and [walls] == [self.walls_of(pair) for pair in self.pairs[spot]]
 
 
 def meeting(front: Front, time: float, nearness: float) -> Meeting:
-    """Return the contacts of a front at a time."""
+    """Return the contacts of a front's corners and sides at a time.
+
+    Distances up to `nearness` count as contact.
+    """
     places = front.at(time)
     ended = front.vanished(places, nearness)
     spots = _met(places, np.column_stack([ended, front.following[ended]]), nearness)
@@ -201,17 +211,17 @@ def meeting(front: Front, time: float, nearness: float) -> Meeting:
 
 
 def _products(one: FloatArray, other: FloatArray) -> FloatArray:
-    """Return the dot products of all pairs of vectors of two lists.
+    """Return the dot products of all pairs of plane vectors of two lists, (m, n).
 
-    For two columns a BLAS library is slower, since its threads would wait for each other.
+    With two columns, a BLAS library is slower, since its threads would wait for each other.
     """
     return np.asarray(one[:, :1] * other[:, 0] + one[:, 1:] * other[:, 1])
 
 
 def _met(places: FloatArray, pairs: IndexArray, nearness: float) -> IndexArray:
-    """Return a number for each place, equal for places that are near each other or paired.
+    """Return a group number for each position, equal for positions near each other or paired.
 
-    This is transitive: places that are both near to a third get the same number.
+    The relation is transitive: two positions that are both near a third are in one group.
     """
     parent = list(range(len(places)))
 
@@ -240,7 +250,10 @@ def _near_pairs(places: FloatArray, nearness: float) -> Iterator[tuple[int, int]
 def _pieces_of(
     front: Front, places: FloatArray, numbers: IndexArray, nearness: float
 ) -> list[Piece]:
-    """Return the sides of a front, divided at the corners on them."""
+    """Return the sides of a front, divided at corners in their interior.
+
+    `numbers` are the spots of the corners.
+    """
     on_side: dict[int, list[tuple[float, int]]] = defaultdict(list)
     for corner, side in zip(*map(np.ndarray.tolist, front.touching(places, nearness)), strict=True):
         along = float((places[corner] - places[side]) @ front.walls.directions[front.after[side]])
@@ -254,7 +267,7 @@ def _pieces_of(
 
 
 def _without_ridges(pieces: Sequence[Piece]) -> tuple[list[Piece], list[tuple[Piece, Piece]]]:
-    """Return the continuing pieces, and the pairs that have met over their whole length."""
+    """Return the pieces that continue to move, and the pairs of opposite pieces that have met."""
     left: dict[tuple[int, int], list[Piece]] = defaultdict(list)
     ridges = []
     for piece in pieces:
@@ -267,10 +280,11 @@ def _without_ridges(pieces: Sequence[Piece]) -> tuple[list[Piece], list[tuple[Pi
 
 
 def _joined(pieces: Sequence[Piece], walls: Walls) -> dict[int, list[tuple[int, int]]]:
-    """Return the pairs of consecutive pieces at each place, as numbers in the list.
+    """Return, for each spot, pairs of a piece that ends and a piece that begins there.
 
-    The inside is to the left of pieces. The partner of a piece that begins at a place is the next
-    piece counter-clockwise, which ends there: between both is a sector of the inside.
+    Pieces are given by their numbers. Between the two pieces of a pair is a sector of the inside,
+    which is left of each piece: counter-clockwise, the ending piece comes next after the beginning
+    one.
     """
     rays: dict[int, list[tuple[float, int, int]]] = defaultdict(list)
     for number, (start, end, wall) in enumerate(pieces):

@@ -1,4 +1,4 @@
-"""Bodies below tables of heights (height maps)."""
+"""Solids below tables of heights (height maps)."""
 
 import io
 import os
@@ -19,22 +19,23 @@ from ...shapes.sweep import strip
 from ...solid.counting import counted
 from ...solid.solid import Solid
 
-#: Height of what is white.
+#: The height of a white pixel.
 BRIGHTEST = 100.0
 
-#: The shares of red, green and blue in brightness.
+#: The weights of red, green and blue in a pixel's brightness.
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 class Heights(NamedTuple):
-    """A table of heights.
+    """A table of heights, and the height of the flat underside.
 
     Parameters
     ----------
     table : (m, n) float64
-        Shorter rows are filled with zeros.
+        The heights; shorter rows of a file are filled with zeros.
     floor : float
-        One below the least height in the file, or 0; filled zeros do not count.
+        The height of the underside. By default it is 0, or the least height minus 1 if that is
+        lower; filled zeros do not count.
     """
 
     table: FloatArray
@@ -49,20 +50,20 @@ def surface(
     floor: Scalar | None = None,
     center: bool = False,
 ) -> Solid:
-    """Return the body under a table of heights.
+    """Return the solid between a table of heights and a flat underside.
 
     Parameters
     ----------
     heights : (m, n) array_like of float, or path
-        Columns along x and rows along y, at least two of each; a text file of such rows; or a PNG
-        picture, from 0 where it is black to 100 where it is white, its last row at y = 0.
+        A table with columns along x and rows along y, at least two of each; a text file of such
+        rows; or a PNG picture, whose black is height 0 and white 100, its last row at y = 0.
     cell : float or (2,) float
-        Distance between columns, and between rows.
+        The distance between columns and between rows, in model units.
     floor : float, optional
-        Height of the flat underside, below all heights. By default 0, or one below the least height
-        where that is lower, as in OpenSCAD.
+        The height of the flat underside, below all heights. By default it is 0, or the least height
+        minus 1 if that is lower, as in OpenSCAD.
     center : bool
-        True if the middle is at x = y = 0, instead of the first corner.
+        True if the middle of the table is at x = y = 0, instead of its first corner.
 
     Raises
     ------
@@ -70,7 +71,7 @@ def surface(
         If the table has another shape, a number is not finite, or the floor is not below all
         heights.
     FormatError
-        If a file is no such table.
+        If a file is not a table of heights or a PNG picture.
     LimitError
         If the solid would have too many corners.
 
@@ -100,7 +101,7 @@ def surface(
 
 
 def heights_of(table: FloatArray) -> Heights:
-    """Return a table with OpenSCAD's default floor."""
+    """Return a table with OpenSCAD's default floor: 0, or the least height minus 1 if lower."""
     return Heights(table, min(float(table.min()) - 1, 0.0))
 
 
@@ -118,13 +119,13 @@ def _table(heights: Any) -> FloatArray:
 
 
 def read_heights(path: Path) -> Heights:
-    """Return the rows of numbers in a text file.
+    """Return the table of heights in a text file.
 
     Raises
     ------
     FormatError
-        If the file cannot be read, a word is no finite number, or there are fewer than two rows or
-        columns.
+        If the file cannot be read, an entry is not a finite number, or there are fewer than two
+        rows or columns.
     """
     lines = limited_content(path).decode("utf-8", errors="replace").splitlines()
     rows = [_row(path, k, line) for k, line in enumerate(lines, 1) if _holds_numbers(line)]
@@ -138,7 +139,7 @@ def read_heights(path: Path) -> Heights:
 
 
 def read_picture(path: Path) -> Heights:
-    """Return the brightness of a PNG picture, bottom row first, from black 0 to white 100.
+    """Return a PNG picture's brightness as heights, bottom row first, from black 0 to white 100.
 
     The brightness of a colour is its luminance (ITU-R BT.709), as in OpenSCAD; opacity is ignored.
 
@@ -153,7 +154,7 @@ def read_picture(path: Path) -> Heights:
     """
     pillow = optional("PIL.Image", "pillow")
     with format_errors(str(path), "PNG"), warnings.catch_warnings():
-        # The check for too large pictures is below.
+        # Pictures that are too large are refused below.
         warnings.simplefilter("ignore", pillow.DecompressionBombWarning)
         picture = pillow.open(io.BytesIO(limited_content(path)), formats=["PNG"])
         refuse_many_corners(2 * picture.width * picture.height, "This surface")
@@ -166,10 +167,10 @@ def read_picture(path: Path) -> Heights:
 
 
 def _colours(picture: Any) -> FloatArray:
-    """Return red, green and blue of each pixel, from 0 to 255."""
+    """Return red, green and blue of each pixel, (rows, columns, 3) float64 from 0 to 255."""
     if not picture.mode.startswith("I"):
         return np.asarray(picture.convert("RGB"), dtype=np.float64)
-    # Use the upper 8 of 16 bits.
+    # Of 16-bit values, use the upper 8 bits.
     upper = np.asarray(picture).astype(np.int64) >> 8
     return np.repeat(upper[:, :, None].astype(np.float64), 3, axis=2)
 
@@ -182,7 +183,7 @@ def _row(path: Path, number: int, line: str) -> list[float]:
     try:
         row = [float(word) for word in line.split()]
     except ValueError:
-        # Do not quote the content: the file may be one that the user must not see.
+        # Do not quote the content, which may be confidential.
         raise FormatError(
             f"{path}:{number}: this line has an entry that is not a number.", "syntax", [number]
         ) from None
@@ -196,10 +197,10 @@ def _row(path: Path, number: int, line: str) -> list[float]:
 
 
 def height_map(heights: Heights, *, centered: bool) -> Solid:
-    """Return the body between a table of heights and its floor.
+    """Return the solid between a table of heights and its floor.
 
-    Columns run along x and rows along y, one unit apart; each field rises to the mean of its
-    corners in its middle.
+    Columns run along x and rows along y, one unit apart. The centre of each square of four table
+    entries has their mean height.
     """
     rows, columns = heights.table.shape
     shift = -(np.array([columns, rows]) - 1) / 2 if centered else np.zeros(2)
@@ -228,7 +229,7 @@ def _middles(heights: FloatArray) -> FloatArray:
 
 
 def _rim(rows: int, columns: int) -> np.ndarray:
-    """Return the numbers of the table's outer corners, counter-clockwise from the first."""
+    """Return the numbers of the entries at the table's border, counter-clockwise from the first."""
     ids = np.arange(rows * columns).reshape(rows, columns)
     sides = (ids[0, :-1], ids[:-1, -1], ids[-1, :0:-1], ids[:0:-1, 0])
     return np.concatenate(sides)

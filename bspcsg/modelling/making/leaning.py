@@ -1,4 +1,4 @@
-"""Extrusions with slanted walls, some of which vanish on the way up."""
+"""Extrusions with slanted walls, some of which end below the top."""
 
 from collections.abc import Sequence
 
@@ -12,10 +12,10 @@ from .roofs import corner_speeds, roof
 
 
 def leaning(contours: Sequence[FloatArray], height: float, inset: float) -> Solid:
-    """Return the extrusion of contours whose walls move inwards on the way up.
+    """Return the extrusion of contours with slanted walls.
 
-    It is the roof over the figure, as steep as the walls, cut off at the height. If walls move
-    outwards, it is the space beside the roof over the surroundings.
+    If walls slant inwards, it is the roof over the figure, as steep as the walls, cut off at the
+    given height. If they slant outwards, it is a box minus the roof over the figure's surroundings.
 
     Parameters
     ----------
@@ -23,14 +23,14 @@ def leaning(contours: Sequence[FloatArray], height: float, inset: float) -> Soli
         Outlines with the inside on their left.
     height : float
     inset : float
-        The distance that walls have moved inwards at this height; negative for outwards.
+        The distance by which the walls are moved inwards at the top; negative for outwards.
     """
     figure = Region(list(contours))
     if inset > 0:
         return _steep(figure, height / inset) & half_space((0, 0, 1), height)
     corners = np.concatenate(figure.to_polygons())
     reach = -inset * max(1.0, float(np.linalg.norm(corner_speeds(figure), axis=1).max()))
-    # The outer walls of the surroundings move inwards, too, and must not reach the result.
+    # The outer border of the surroundings moves inwards, too, and must not reach the result.
     low, high = corners.min(axis=0), corners.max(axis=0)
     around = Region.rectangle(*(high - low + 6 * reach)).translate(low - 3 * reach)
     wide, deep = high - low + 3 * reach
@@ -39,5 +39,5 @@ def leaning(contours: Sequence[FloatArray], height: float, inset: float) -> Soli
 
 
 def _steep(figure: Region, slope: float) -> Solid:
-    """Return the roof over a figure with this slope."""
+    """Return the roof over a figure, with sides of the given slope."""
     return roof(figure).scale((1, 1, slope))

@@ -17,32 +17,33 @@ from .sections import Section, aligned, section_of, shortest_band
 
 @counted
 def loft(profiles: Sequence[Any], *, closed: bool = False) -> Solid:
-    """Return the solid through profiles, with straight walls between consecutive ones.
+    """Return the solid through a sequence of profiles, joined by straight walls.
 
     Parameters
     ----------
     profiles : sequence
-        At least two (three for a closed loft). Each is a pair of a profile (a `Region` or what
-        `extrude` takes) and its height z or (4, 4) matrix; or (n, 3) points of a loop in space. The
-        first or last may be a single point, a tip.
+        At least two profiles (three for a closed loft). Each is a pair of a profile (a `Region` or
+        what `extrude` takes) and its height z or (4, 4) matrix; or (n, 3) points of a loop in
+        space. The first or last profile may be a single point, a tip.
     closed : bool
         True if the last profile is joined to the first.
 
     Raises
     ------
     InvalidParameterError
-        If a profile is invalid or empty, or has other numbers of outlines or holes than the one
-        before (`where` is its number); if there are too few profiles; or if they enclose nothing.
+        If a profile is invalid or empty, or its numbers of outlines and holes differ from the
+        profile before it (`where` is its number); if there are too few profiles; or if they enclose
+        nothing.
     LimitError
         If the solid would have too many corners.
 
     Notes
     -----
-    Each outline or hole is joined to the one of its kind with the nearest middle. Outlines with
-    equal numbers of corners are joined corner by corner, and must run in the same direction;
-    outlines of regions start at the corner that fits best. Outlines with different numbers of
-    corners are joined by the band with the least total edge length, from their first corners on.
-    Points with a positive winding number are inside.
+    Each outline is joined to the outline, and each hole to the hole, with the nearest middle in the
+    next profile. Outlines with equal numbers of corners are joined corner by corner, and must run
+    in the same direction; outlines of regions start at the corner that fits best. Outlines with
+    different numbers of corners are joined by the band with the least total edge length, from their
+    first corners on. Points with a positive winding number are inside.
 
     Examples
     --------
@@ -92,7 +93,7 @@ def _refuse_inner_tips(sections: Sequence[Section], closed: bool) -> None:
 
 
 def _between(low: Section, high: Section, below: int, above: int) -> IndexArray:
-    """Return the walls between two sections, with the given first corner numbers."""
+    """Return the triangles between two sections, given the first corner number of each."""
     faces = []
     for a, c in zip(low.loops, high.loops, strict=True):
         if len(a) == len(c):
@@ -106,7 +107,7 @@ def _between(low: Section, high: Section, below: int, above: int) -> IndexArray:
 
 
 def _outward(vertices: FloatArray, faces: IndexArray) -> Solid:
-    """Return the solid, for either direction of the profiles."""
+    """Return the solid of a mesh, whose faces are reversed if its volume is negative."""
     a, b, c = (vertices[faces[:, corner]] - vertices.mean(axis=0) for corner in range(3))
     volume = float(np.einsum("ij,ij->", np.cross(a, b), c))
     if volume == 0:

@@ -9,7 +9,7 @@ from ...geometry.transform import cos_sin
 
 
 def arc_directions(start: FloatArray, end: FloatArray, steps: int) -> FloatArray:
-    """Return (steps + 1, 3) unit vectors from start to end, evenly along the great circle."""
+    """Return (steps + 1, 3) unit vectors, evenly spaced on the great circle from start to end."""
     degrees = _degrees(start, end)
     rows = [
         _blended([(start, degrees * (1 - k / steps)), (end, degrees * (k / steps))])
@@ -21,14 +21,14 @@ def arc_directions(start: FloatArray, end: FloatArray, steps: int) -> FloatArray
 def patch_directions(corners: FloatArray, steps: int) -> FloatArray:
     """Return unit vectors in a grid over a spherical triangle, row by row from its first corner.
 
-    Row i has i + 1 vectors; the ends of rows and the last row equal those of `arc_directions`.
+    Row i has i + 1 vectors; the vectors on each side of the triangle equal `arc_directions`.
 
     Parameters
     ----------
     corners : (3, 3) float64
-        Unit vectors.
+        The unit vectors of the triangle's corners.
     steps : int
-        Parts of each side.
+        The number of parts of each side.
     """
     sides = [_degrees(corners[k], corners[(k + 1) % 3]) for k in range(3)]
     points = []
@@ -40,7 +40,7 @@ def patch_directions(corners: FloatArray, steps: int) -> FloatArray:
 
 
 def patch_faces(steps: int) -> IndexArray:
-    """Return the triangles of a patch, with the orientation of its corners."""
+    """Return the (steps², 3) triangles of a grid of `patch_directions`, oriented as its corners."""
     faces = []
     for i in range(steps):
         low, high = i * (i + 1) // 2, (i + 1) * (i + 2) // 2
@@ -52,10 +52,10 @@ def patch_faces(steps: int) -> IndexArray:
 def _on_patch(
     corners: FloatArray, sides: list[float], shares: tuple[float, float, float]
 ) -> FloatArray:
-    """Return the directions with these shares of the corners.
+    """Return the unit vector of a spherical triangle with the given shares of its corners.
 
-    The weight of each corner is the sine of its share of an angle. On a side of the patch this
-    angle is that of the side, which gives the even division of the side.
+    The weight of a corner is the sine of its share of an angle. On a side of the triangle, that
+    angle is the side's length in degrees, so equal shares divide the side evenly.
     """
     weighted = []
     for k in range(3):

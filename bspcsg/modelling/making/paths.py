@@ -26,18 +26,18 @@ def helix(
     Parameters
     ----------
     r : float
-        Radius.
+        Radius at the start, in model units.
     lead : float
         Height of one turn; 0 makes a circle or a flat spiral.
     turns : float
         Number of turns. Positive: counter-clockwise seen from above, a right-handed thread;
         negative: clockwise.
     r2 : float, optional
-        Radius at the end, for a helix on a cone.
+        Radius at the end, for a helix on a cone; by default `r`.
     segments : int
-        Points in each turn, at least 3.
+        Number of points per turn, at least 3.
     pitch : float, optional
-        The old name of `lead`; deprecated, since elsewhere a pitch is that of the lattice.
+        The former name of `lead`; deprecated, since elsewhere a pitch is a lattice exponent.
 
     Returns
     -------
@@ -73,17 +73,17 @@ def helix(
 
 
 def spline(points: Any, *, segments: int = 16, closed: bool = False) -> FloatArray:
-    """Return points of a smooth curve through given points.
+    """Return points of a smooth curve (a Catmull-Rom spline) through given points.
 
     Parameters
     ----------
     points : (n, 2) or (n, 3) array_like of float
-        Different from their neighbours; at least 2, or 3 of a closed curve.
+        At least 2 points, or 3 for a closed curve; consecutive points must differ.
     segments : int
-        Chords between one given point and the next.
+        Number of chords between consecutive given points.
     closed : bool
-        True if the curve returns smoothly to its first point, which is then also the last of the
-        result.
+        True if the curve returns smoothly to its first point, which is then also the last point of
+        the result.
 
     Returns
     -------
@@ -92,7 +92,8 @@ def spline(points: Any, *, segments: int = 16, closed: bool = False) -> FloatArr
     Raises
     ------
     InvalidParameterError
-        If there are too few points, or two consecutive points are equal (`where` names them).
+        If there are too few points, or two consecutive points are equal (`where` is the number of
+        the first of them).
     LimitError
         If there would be too many points, or their distances overflow or underflow doubles.
 
@@ -133,7 +134,10 @@ def spline(points: Any, *, segments: int = 16, closed: bool = False) -> FloatArr
 
 
 def _with_neighbours(given: FloatArray, closed: bool) -> FloatArray:
-    """Return the points with one additional point before and one after them."""
+    """Return the given points plus one point before and one after, to define the end tangents.
+
+    For a closed curve, the first point is repeated at the end, too.
+    """
     ring = np.concatenate([given, given[:1]]) if closed else given
     same = np.flatnonzero((ring[1:] == ring[:-1]).all(axis=1))
     if len(same):
@@ -145,7 +149,10 @@ def _with_neighbours(given: FloatArray, closed: bool) -> FloatArray:
 
 
 def _catmull_rom(knots: FloatArray, chords: int) -> FloatArray:
-    """Return the curve between the second point and the last but one."""
+    """Return points of the centripetal Catmull-Rom curve from the second to the last but one knot.
+
+    There are `chords` equal parameter steps between consecutive knots.
+    """
     gaps = np.sqrt(np.linalg.norm(np.diff(knots, axis=0), axis=1))[:, None]
     before, own, after = gaps[:-2], gaps[1:-1], gaps[2:]
     a, b, c, d = knots[:-3], knots[1:-2], knots[2:-1], knots[3:]

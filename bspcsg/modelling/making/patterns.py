@@ -16,8 +16,8 @@ from ...parameters import at_least, number, shown, truth_value
 from ...solid.counting import counted
 from ...solid.solid import Solid
 
-#: The largest number of copies in one pattern. Each is a node of the expression and takes some 2 kB
-#: with its transform.
+#: The largest number of copies in one pattern. Each takes about 2 kB, as a node of the expression
+#: with a transform.
 _MAX_COPIES = 100_000
 
 _Shape = TypeVar("_Shape", Solid, Region)
@@ -31,9 +31,9 @@ def linear_pattern(shape: _Shape, count: int, step: Vector) -> _Shape:
     ----------
     shape : Solid or Region
     count : int
-        Copies with the shape itself, at least 1.
+        Number of copies including the shape itself, at least 1.
     step : (3,) or (2,) float
-        From each one to the next, in model units; for a region two numbers.
+        Vector from each copy to the next, in model units; two numbers for a region.
 
     Raises
     ------
@@ -60,18 +60,18 @@ def polar_pattern(
     axis: str | Vector = "z",
     center: Vector = (0, 0, 0),
 ) -> _Shape:
-    """Return the union of a shape and its copies around an axis.
+    """Return the union of a shape and its copies, rotated about an axis.
 
     Parameters
     ----------
     shape : Solid or Region
-        A region is turned about a point of the plane.
+        A region is rotated about a point of the plane.
     count : int
-        Copies with the shape itself, at least 1.
+        Number of copies including the shape itself, at least 1.
     angle : float
         Degrees between the first copy and the last; 360 divides the full turn evenly.
     axis : {"x", "y", "z"} or (3,) float
-        Counter-clockwise where it points at the viewer.
+        Axis of rotation, which is counter-clockwise if the axis points at the viewer.
     center : (3,) or (2,) float
         A point of the axis.
 
@@ -106,11 +106,12 @@ def grid(shape: _Shape, counts: Sequence[int], steps: Vector, *, center: bool = 
     ----------
     shape : Solid or Region
     counts : (2,) or (3,) int
-        Copies along x, y and z, at least 1 each.
+        Number of copies along x, y and z, at least 1 each.
     steps : (2,) or (3,) float
-        From each one to the next along x, y and z, as many as `counts`.
+        Distance from each copy to the next along x, y and z; as many numbers as in `counts`.
     center : bool
-        True if the shape is in the middle of the grid, instead of at its lowest corner.
+        True if the given shape is in the middle of the grid, instead of at its corner of least
+        coordinates.
 
     Raises
     ------
@@ -168,7 +169,7 @@ def _row(shape: _Shape, copies: int, step: Vector) -> _Shape:
 
 
 def _times(step: Sequence[float], factor: int | Fraction) -> list[float]:
-    """Return a multiple of a step, each number the double nearest to that of its decimal."""
+    """Return a vector times a factor, computed exactly from its decimals and then rounded once."""
     try:
         return [float(exact_number(entry) * factor) for entry in step]
     except OverflowError as error:
@@ -188,7 +189,7 @@ def _united(shapes: Sequence[Any]) -> Any:
 
 
 def _halves(regions: Sequence[Any]) -> Any:
-    """Return the union of regions, neighbours first."""
+    """Return the union of regions: pairs of neighbours are united, then pairs of the results."""
     while len(regions) > 1:
         pairs = zip(regions[::2], regions[1::2], strict=False)
         rest = [regions[-1]] if len(regions) % 2 else []

@@ -1,4 +1,4 @@
-"""Half-spaces of plane faces, exact if the lattice allows it."""
+"""Half-spaces that plane faces bound, exact if the faces' corners are on the lattice."""
 
 import math
 from fractions import Fraction
@@ -12,13 +12,13 @@ from ...solid.leaf import PlaneLeaf
 from ...solid.solid import Solid, from_leaf
 from .skeleton import Skeleton
 
-#: Lattice steps by which a half-space reaches beyond its face, if that is no plane of the lattice:
-#: rounding moved its corners by less than one, and its normal by little more.
+#: Lattice steps by which a half-space extends past a face whose plane is not exact. Rounding moves
+#: the face's corners by less than one step.
 _BEYOND = 20
 
 
 class Planes:
-    """The half-spaces of a solid's faces, made on demand.
+    """The half-spaces that a solid's plane faces bound, computed on demand.
 
     Parameters
     ----------
@@ -40,7 +40,8 @@ class Planes:
         ----------
         face, sign : int
         beyond : bool
-            True to reach slightly beyond a face whose plane is not exact on the lattice.
+            True to extend the half-space slightly past a face whose plane is not exact on the
+            lattice.
         """
         key = face, sign, beyond
         if key not in self._made:
@@ -48,7 +49,7 @@ class Planes:
         return self._made[key]
 
     def is_exact(self, face: int) -> bool:
-        """Say whether the plane of a face is exact on the lattice."""
+        """Return True if all lattice corners of a face lie exactly in one plane."""
         return self._known(face) is not None
 
     def _known(self, face: int) -> Hyperplane | None:
@@ -72,7 +73,7 @@ class Planes:
         return corners
 
     def _lattice_plane(self, face: int) -> Hyperplane | None:
-        """Return the plane of the face's lattice corners, if they all lie in one plane."""
+        """Return the exact plane of a face's lattice corners; None if they are not in one plane."""
         corners = self._corners(face)
         for axis in range(3):
             if np.ptp(corners[:, axis]) == 0:
@@ -91,7 +92,10 @@ class Planes:
         return Hyperplane.of([Fraction(entry) for entry in normal], offsets.pop() * step)
 
     def _lattice_normal(self, face: int) -> tuple[int, int, int] | None:
-        """Return the normal of the largest triangle of a face whose corners are on the lattice."""
+        """Return the integer normal of a face's largest triangle with all corners on the lattice.
+
+        None means that there is no such triangle, or that its area is zero.
+        """
         triangles = self._skeleton.triangles[self._skeleton.face == face]
         a, b, c = (self._skeleton.vertices[triangles[:, k]] for k in range(3))
         order = np.argsort(-np.linalg.norm(np.cross(b - a, c - a), axis=1), kind="stable")

@@ -1,4 +1,4 @@
-"""Walls between rings of corners, and solids of such walls."""
+"""Triangles between consecutive rings of corners, and the solids that they bound."""
 
 import numpy as np
 
@@ -6,23 +6,23 @@ from ..._types import FloatArray, IndexArray
 from ...mesh.weld import welded
 from ...solid.solid import Solid
 
-#: Diagonals whose lengths differ by less than this part are equal.
+#: The relative difference of lengths below which two diagonals count as equal.
 _EQUAL = 1e-5
 
 
 def walls(rings: FloatArray, edges: IndexArray) -> IndexArray:
-    """Return the triangles between consecutive rings, split along shorter diagonals.
+    """Return the triangles between consecutive rings; quadrilaterals have their shorter diagonal.
 
     Parameters
     ----------
     rings : (m, k, 3) float64
     edges : (e, 2) int64
-        Edges of a ring, as corners, with the inside on the left seen from the last ring.
+        Edges of each ring, as pairs of corners. Seen from the last ring, the inside is on the left.
 
     Returns
     -------
     (2 e (m - 1), 3) int64
-        Corner c of ring r is number ``r * k + c``.
+        Triangles as corner numbers: corner c of ring r has number ``r * k + c``.
     """
     start, end = edges.T
     low, high = rings[:-1], rings[1:]
@@ -38,7 +38,7 @@ def walls(rings: FloatArray, edges: IndexArray) -> IndexArray:
 
 
 def solid_of(vertices: FloatArray, faces: IndexArray) -> Solid:
-    """Return the solid of a closed mesh with possibly coincident corners and crossing faces."""
+    """Return the solid of a closed mesh, whose corners may coincide and whose faces may cross."""
     points, same = welded(np.ascontiguousarray(vertices))
     triangles = same[faces]
     proper = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)

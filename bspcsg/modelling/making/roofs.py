@@ -1,4 +1,4 @@
-"""Roofs over plane figures, with all sides equally steep."""
+"""Roofs over plane figures, with a slope of 45 degrees on all sides."""
 
 from collections import defaultdict
 from collections.abc import Sequence
@@ -13,21 +13,22 @@ from ...operations import setops
 from ...solid.solid import Solid
 from .fronts import Front, Meeting, Piece, Walls, meeting
 
-#: The largest number of corners of one part of a figure: time grows with their third power.
+#: The largest number of corners of one connected part of a figure. The time grows with its cube.
 _MAX_CORNERS = 1000
 
-#: What is closer than this part of the figure's size has met.
+#: Corners and sides have met if their distance is below this, relative to the figure's extent.
 _NEAR = 1e-8
 
-#: Roofs whose sides miss more than this part of the figure, or their planes by it, are refused.
+#: The largest relative error of a roof: of the area that its sides cover, and of the distance of
+#: its nodes from the planes of the sides.
 _OFF = 1e-6
 
 
 def roof(figure: Region) -> Solid:
-    """Return the roof over a bounded figure; its height is the arrival time of the front.
+    """Return the roof over a bounded figure, with a slope of 45 degrees on all sides.
 
-    A plane of 45 degrees rises from each side of the outline; the planes meet above the straight
-    skeleton of the figure.
+    A plane rises from each side of the outline; the planes meet above the straight skeleton of the
+    figure.
 
     Raises
     ------
@@ -46,7 +47,7 @@ def roof(figure: Region) -> Solid:
 
 
 def is_convex(figure: Region) -> bool:
-    """Say whether a figure has no reflex corner and hence no hole."""
+    """Return True if a figure has no reflex corner, and hence no hole."""
     for loop in figure.to_polygons():
         front = _first_front([loop])
         if front.walls.are_reflex(front.before, front.after).any():
@@ -55,7 +56,7 @@ def is_convex(figure: Region) -> bool:
 
 
 def corner_speeds(figure: Region) -> FloatArray:
-    """Return the moves of the corners of a figure when its sides move inwards by one, (n, 2)."""
+    """Return the displacement of each corner if all sides move inwards by 1, (n, 2)."""
     return np.concatenate([_first_front([loop]).speeds() for loop in figure.to_polygons()])
 
 
@@ -86,7 +87,7 @@ def _first_front(loops: Sequence[FloatArray]) -> Front:
 
 
 class _Building:
-    """A roof under construction: its nodes, and the edges of each side."""
+    """A roof under construction: its nodes (points), and the edges of each roof side."""
 
     def __init__(self, loops: Sequence[FloatArray]) -> None:
         self._front = _first_front(loops)
@@ -98,7 +99,10 @@ class _Building:
         self._base: list[Piece] = []
 
     def raise_sides(self) -> None:
-        """Move the front until it vanishes."""
+        """Shrink the outline until it vanishes, and record the edges of the roof on the way.
+
+        Raise `LimitError` if doubles cannot decide how the sides meet.
+        """
         now = 0.0
         self._change(now)
         for _ in range(8 * len(self._points)):
@@ -111,7 +115,7 @@ class _Building:
         raise _unclear()
 
     def _change(self, now: float) -> None:
-        """Reconnect the front after the contacts at a time."""
+        """Reconnect the shrinking outline where corners and sides meet at a time."""
         met = meeting(self._front, now, self._nearness)
         if not met.is_clear:
             raise _unclear()
@@ -126,7 +130,10 @@ class _Building:
         self._front = self._next_front(met, nodes)
 
     def _nodes_of(self, met: Meeting) -> dict[int, int]:
-        """Return a new node for each spot with a change, and connect its corners to it."""
+        """Make a roof node at each point where the outline changes, and record the edges to it.
+
+        Return the node number for each such spot of the meeting.
+        """
         front, nodes = self._front, {}
         for spot, corners in enumerate(met.corners):
             if met.time > 0 and met.is_calm(spot, front):
@@ -134,20 +141,20 @@ class _Building:
             x, y = met.places[corners].mean(axis=0).tolist()
             nodes[spot] = len(self._nodes)
             self._nodes.append((x, y, met.time))
-            # Corners on the ground have no previous node.
+            # At time 0 the corners are on the floor, and no edge leads to their nodes.
             for corner in corners if met.time > 0 else ():
                 ahead, behind = int(front.before[corner]), int(front.after[corner])
                 self._trace(int(front.node[corner]), nodes[spot], ahead, behind)
         return nodes
 
     def _trace(self, low: int, high: int, ahead: int, behind: int) -> None:
-        """Record the edge between two nodes that a corner between two walls has traced."""
+        """Record a roof edge between two nodes: the path of a corner between two walls."""
         if ahead != behind:
             self._bounds[ahead].append((low, high))
             self._bounds[behind].append((high, low))
 
     def _next_front(self, met: Meeting, nodes: dict[int, int]) -> Front:
-        """Return the next wavefront: corners without an event, and a new corner at each node."""
+        """Return the shrinking outline after a change: unchanged corners, and new ones at nodes."""
         rows: list[tuple[int, int, int, int]] = []
         origins: list[tuple[float, float, float]] = []
         begun: dict[int, int] = {}
@@ -170,7 +177,7 @@ class _Building:
         Raises
         ------
         LimitError
-            If its sides do not cover the floor, or a node does not lie in its plane.
+            If the roof's sides do not cover the floor, or a node is not in the plane of a side.
         """
         nodes = np.array(self._nodes)
         rings = [(wall, ring) for wall, edges in enumerate(self._bounds) for ring in _rings(edges)]
@@ -184,7 +191,7 @@ class _Building:
             triangles.append(np.array(ring)[triangulate([corners[:, :2]])])
             a, b, c = (nodes[triangles[-1][:, k], :2] for k in range(3))
             across = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-            # Parts covered twice or from below exceed the area.
+            # Overlaps and inverted parts make the sum exceed the area.
             covered += float(np.abs(across).sum()) / 2
         if abs(covered - area) > _OFF * area:
             raise _unclear()
@@ -194,7 +201,7 @@ class _Building:
 
 
 def _rings(edges: Sequence[tuple[int, int]]) -> list[list[int]]:
-    """Return closed rings of directed edges that visit no node twice."""
+    """Divide directed edges into closed rings that visit no node twice, as node numbers."""
     leaving = defaultdict(list)
     for start, end in edges:
         leaving[start].append(end)

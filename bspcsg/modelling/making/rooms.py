@@ -1,4 +1,4 @@
-"""The test whether faces have room for blends along their edges."""
+"""A test whether faces are wide enough for chamfers or fillets along their edges."""
 
 from collections.abc import Iterable, Sequence
 
@@ -9,7 +9,7 @@ from ...bsp import Region
 from ...errors import InvalidParameterError, invalid_parameter
 from .skeleton import Skeleton
 
-#: Edges are parallel if the sine between them is below this.
+#: Edges count as parallel if the sine of their angle is below this.
 _PARALLEL = 1e-7
 
 #: The share of a face's area that rounding may change.
@@ -17,27 +17,27 @@ _SAME = 1e-6
 
 
 def refuse_no_room(skeleton: Skeleton, widths: FloatArray, apart: Iterable[int] = ()) -> None:
-    """Raise an error if strips along edges do not fit side by side on their faces.
+    """Raise an error if the strips that blends remove along edges overlap on a face.
 
     Parameters
     ----------
     skeleton : Skeleton
     widths : (e,) float64
-        The width of the strips on both faces of each edge, 0 for no strip.
+        The width of the strip along each edge, on both of its faces; 0 for no strip.
     apart : iterable of int
-        Faces that need no room.
+        Faces that are not tested.
 
     Raises
     ------
     InvalidParameterError
-        The message names a place, `where` the triangles of the face.
+        The message names a point, `where` the triangles of the face.
     """
     for face in np.setdiff1d(skeleton.sides[widths > 0], list(apart)).tolist():
         _refuse_no_room_on(skeleton, face, widths)
 
 
 def has_room(skeleton: Skeleton, face: int, widths: FloatArray) -> bool:
-    """Say whether the strips along its edges fit on a face."""
+    """Return True if the strips along the edges of a face fit on it without overlap."""
     try:
         _refuse_no_room_on(skeleton, face, widths)
     except InvalidParameterError:
@@ -54,13 +54,13 @@ def _refuse_no_room_on(skeleton: Skeleton, face: int, widths: FloatArray) -> Non
 
 
 def face_loops(skeleton: Skeleton, face: int) -> list[FloatArray]:
-    """Return the corners around a face, (n, 3) each, the face on the left of them."""
+    """Return the corners of each boundary loop of a face, (n, 3); the face is on the left."""
     loops = _loops(skeleton, face)
     return [skeleton.vertices[_ends(skeleton, face, loop)[:, 0]] for loop in loops]
 
 
 def no_room(skeleton: Skeleton, place: FloatArray, faces: Iterable[int]) -> InvalidParameterError:
-    """Return the error for a place without enough room."""
+    """Return the error that says that faces leave no room at a point."""
     point = ", ".join(f"{value:.6g}" for value in place)
     triangles = np.flatnonzero(np.isin(skeleton.face, list(faces)))
     message = (
@@ -71,7 +71,7 @@ def no_room(skeleton: Skeleton, place: FloatArray, faces: Iterable[int]) -> Inva
 
 
 def _loops(skeleton: Skeleton, face: int) -> list[IndexArray]:
-    """Return the loops of edges around a face, the face on their left."""
+    """Return the boundary loops of a face, as edge numbers; the face is on the left."""
     own = np.flatnonzero((skeleton.sides == face).any(axis=1)).tolist()
     begins = {edge: skeleton.ends[edge, int(skeleton.sides[edge, 0] != face)] for edge in own}
     stops = {edge: skeleton.ends[edge, int(skeleton.sides[edge, 0] == face)] for edge in own}
@@ -93,7 +93,7 @@ def _loops(skeleton: Skeleton, face: int) -> list[IndexArray]:
 
 
 def _inset(skeleton: Skeleton, face: int, loop: IndexArray, widths: FloatArray) -> FloatArray:
-    """Return start and end of each edge of a loop after the strips are removed, (n, 2, 3)."""
+    """Return the start and end of each edge of a loop, moved inwards by its width, (n, 2, 3)."""
     inward = _inward(skeleton, face, loop)
     begins = skeleton.vertices[_ends(skeleton, face, loop)[:, 0]]
     corners = np.empty((len(loop), 2, 3))
@@ -137,7 +137,7 @@ def _refuse_overlapping(
     inner: Sequence[FloatArray],
     widths: FloatArray,
 ) -> None:
-    """Raise an error if the rest of a face crosses itself."""
+    """Raise an error if the boundary of a face crosses itself after the strips are removed."""
     whole, left = (_flat(skeleton.normals[face], loops) for loops in (outer, inner))
     signed = sum(map(_area, left))
     if abs(Region(left).area - signed) > _SAME * sum(abs(_area(points)) for points in whole):
@@ -147,7 +147,10 @@ def _refuse_overlapping(
 
 
 def _flat(normal: FloatArray, loops: Sequence[FloatArray]) -> list[FloatArray]:
-    """Project loops of a plane along the axis nearest to its normal, counter-clockwise."""
+    """Project loops of a plane along a coordinate axis to (n, 2) points, keeping orientation.
+
+    The axis is the one nearest to the plane's normal.
+    """
     axis = int(np.abs(normal).argmax())
     plane = [(1, 2), (2, 0), (0, 1)][axis]
     flat = [corners.reshape(-1, 3)[:, plane] for corners in loops]

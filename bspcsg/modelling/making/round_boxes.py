@@ -29,15 +29,17 @@ def rounded_box(
     Parameters
     ----------
     size : float or (3,) float
-        Edge lengths; one number makes a cube.
+        Edge lengths in model units; one number makes a cube.
     *numbers : float
-        The other two edge lengths, if `size` is the first one; and the radius, unless it is named.
+        The lengths along y and z, if `size` is the length along x; then the radius, unless it is
+        given as `r`.
     r : float
-        Radius, at most half of the shortest edge; 0 makes a box.
+        Radius of the edges, at most half of the shortest edge length; 0 makes a plain box.
     segments : int
-        Sides of a full circle, at least 4; each edge has a quarter of them, rounded up.
+        Number of sides of a full circle, at least 4; each edge has a quarter of them, rounded up.
     center : bool
-        True if the middle is at the origin, instead of the lowest corner of the box around it.
+        True if the middle of the box is at the origin. Otherwise its bounding box has its corner of
+        least coordinates there.
 
     Raises
     ------
@@ -77,7 +79,7 @@ def rounded_box(
 
 
 def _rounded(lengths: FloatArray, radius: float, steps: int) -> tuple[FloatArray, IndexArray]:
-    """Return a mesh about the origin, with triangles of any orientation."""
+    """Return vertices and faces of a rounded box centred at the origin; orientations are mixed."""
     unit = patch_directions(np.eye(3), steps)
     signs = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
     vertices = np.concatenate([sign * (lengths / 2 - radius + radius * unit) for sign in signs])
@@ -96,9 +98,9 @@ def _rounded(lengths: FloatArray, radius: float, steps: int) -> tuple[FloatArray
 
 
 def _sides(steps: int) -> list[IndexArray]:
-    """Return for each axis the points of a patch at which an edge along the axis begins.
+    """Return, for each axis, the points of a corner patch at which the edge along that axis begins.
 
-    The side of axis k runs from axis k + 1 to axis k + 2.
+    The points of axis k form the patch's side from axis k + 1 to axis k + 2 (modulo 3).
     """
     rows = np.arange(steps + 1)
     first = rows * (rows + 1) // 2
@@ -111,9 +113,9 @@ def _quads(start: IndexArray, end: IndexArray) -> IndexArray:
 
 
 def _proper(vertices: FloatArray, faces: IndexArray) -> tuple[FloatArray, IndexArray]:
-    """Return the mesh without triangles flattened by a radius of half an edge, facing outwards.
+    """Return a mesh without degenerate triangles, and with all triangles facing outwards.
 
-    The body is convex about its middle, so each triangle alone determines its orientation.
+    The mesh is convex, so the mean of its points decides which side of a triangle is outside.
     """
     points, same = welded(vertices)
     faces = same[faces]

@@ -1,4 +1,4 @@
-"""Sections of a loft: closed loops in space, and the matching of their corners."""
+"""Profiles of a loft as closed loops in space, and the matching of their corners."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,13 +13,13 @@ from ...geometry.polygon import contours_of, runs_clockwise, triangulate, triang
 from ...geometry.transform import apply, matrix_factor, translation
 from ...parameters import number, refuse_many_corners
 
-#: Rolls of an outline that are worse than the best by less than this share are as good.
+#: The relative difference of fit below which two cyclic shifts of an outline count as equally good.
 _EQUAL = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """One profile of a loft in its place.
+    """One profile of a loft, at its position in space.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ class Section:
     flat : list of (n, 2) float64, or None
         The same loops in the profile's plane; None for loops given in space.
     is_region : bool
-        True if the first corners of its outlines are arbitrary.
+        True if the profile is a region, whose outlines start at arbitrary corners.
     """
 
     loops: list[FloatArray]
@@ -40,19 +40,19 @@ class Section:
         return len(self.loops[0]) == 1
 
     def cap(self) -> IndexArray:
-        """Return the triangles inside the loops, facing against the loft's direction."""
+        """Return triangles that fill the loops, (m, 3) corner numbers, oriented like the loops."""
         if self.is_tip:
             return np.zeros((0, 3), np.int64)
         return triangulate_face(self.loops[0]) if self.flat is None else triangulate(self.flat)
 
 
 def section_of(given: Any, place: int) -> Section:
-    """Return a section from a placed profile, or from points in space.
+    """Return a section from a pair (profile, height or matrix), or from points in space.
 
     Raises
     ------
     InvalidParameterError
-        If it is neither; `where` is its number.
+        If `given` is neither, or the profile is empty; `where` is the profile's number, `place`.
     """
     if not isinstance(given, (tuple, list)) or len(given) != 2:
         return Section([_loop(given, place)], None, False)
@@ -89,15 +89,15 @@ def _loop(given: Any, place: int) -> FloatArray:
 
 
 def aligned(low: Section, high: Section, place: int) -> Section:
-    """Return the upper section with its outlines in the order of the lower one's.
+    """Return the upper section with its outlines in the order of the lower section's outlines.
 
-    Outlines of regions have arbitrary first corners, so they are also rotated to fit best.
+    Outlines of regions have arbitrary first corners, so they are also shifted cyclically to fit.
 
     Raises
     ------
     InvalidParameterError
-        If the sections differ in the number of outlines or holes; `where` is the upper one's
-        number.
+        If the sections differ in the number of outlines or holes; `where` is `place`, the number of
+        the upper section.
     """
     if low.flat is None or high.flat is None:
         if len(low.loops) != 1 or len(high.loops) != 1:
@@ -114,7 +114,11 @@ def aligned(low: Section, high: Section, place: int) -> Section:
 
 
 def _order(low: Sequence[FloatArray], high: Sequence[FloatArray], place: int) -> list[int]:
-    """Return for each lower outline the upper outline of its kind with the nearest middle."""
+    """Return, for each outline or hole in `low`, the number of its partner in `high`.
+
+    Outlines are paired with outlines and holes with holes; the pairs with the nearest middles are
+    formed first.
+    """
     holes = [[runs_clockwise(c) for c in contours] for contours in (low, high)]
     if sorted(holes[0]) != sorted(holes[1]):
         raise _other_outlines(place)
@@ -139,10 +143,11 @@ def _other_outlines(place: int) -> Exception:
 
 
 def _best_roll(low: FloatArray, high: FloatArray) -> int:
-    """Return the corner of the upper outline that matches the first corner of the lower one."""
+    """Return the number of the corner of `high` that fits the first corner of `low` best."""
     low, high = low - low.mean(axis=0), high - high.mean(axis=0)
     if len(low) == len(high):
-        # The sum of squared distances of all pairs, for all rolls at once.
+        # The correlation of both outlines for each cyclic shift: the greatest belongs to the least
+        # sum of squared distances.
         products = np.conj(np.fft.rfft(low, axis=0)) * np.fft.rfft(high, axis=0)
         likeness = np.fft.irfft(products.sum(axis=1), len(low))
     else:
@@ -152,15 +157,15 @@ def _best_roll(low: FloatArray, high: FloatArray) -> int:
 
 
 def shortest_band(low: FloatArray, high: FloatArray) -> IndexArray:
-    """Return the triangles between two loops with the least total length of cross edges.
+    """Return the band of triangles between two loops with the least total length of cross edges.
 
-    The first corners of both are joined. Fuchs, Kedem, Uselton 1977, "Optimal surface
+    The first corners of the loops are joined. Fuchs, Kedem, Uselton 1977, "Optimal surface
     reconstruction from planar contours".
 
     Returns
     -------
     (m, 3) int64
-        Corners of the upper loop are counted after those of the lower one.
+        Corner numbers; the corners of `high` are counted after the corners of `low`.
     """
     n, m = (len(loop) if len(loop) > 1 else 0 for loop in (low, high))
     refuse_many_corners((n + 1) * (m + 1), "This loft")
@@ -179,7 +184,10 @@ def shortest_band(low: FloatArray, high: FloatArray) -> IndexArray:
 
 
 def _add_up(cost: FloatArray) -> None:
-    """Add to each pair of corners the least cost of a path to it, diagonal by diagonal."""
+    """Replace each entry of `cost`, in place, by the least sum along a path from entry (0, 0).
+
+    A path increases one index by one in each step.
+    """
     n, m = cost.shape
     cost[0], cost[:, 0] = np.cumsum(cost[0]), np.cumsum(cost[:, 0])
     for total in range(2, n + m - 1):

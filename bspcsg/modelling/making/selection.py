@@ -1,4 +1,4 @@
-"""`Selection`: some of a solid's edges or faces, and methods to choose them."""
+"""`Selection`: a subset of a solid's edges or faces, and methods to choose it."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
@@ -13,26 +13,26 @@ from ...geometry.transform import axis_vector
 from ...parameters import number, shown
 from .skeleton import Skeleton, extent, flatness
 
-#: The cosine of the largest angle between parallel lines, of a thousandth: the lattice turns an
-#: edge of a thousand steps so much.
+#: The least cosine between lines that count as parallel, for an angle of 0.001 radians: snapping to
+#: the lattice may rotate an edge of a thousand steps so much.
 _PARALLEL = 1 - 1e-3**2 / 2
 
-#: A share of the largest value; values that are nearer to each other are one group.
+#: Sorted values belong to one group if neighbours differ by less than this share of the largest.
 _SAME = 1e-6
 
-#: What things are sorted by: an axis, the name of a property, or a function of a selection.
+#: A sort key: an axis, the name of a property, or a function of a selection.
 Key: TypeAlias = "str | Vector | Callable[[Any], Any]"
 
 
 class Selection(ABC):
-    """Some of a solid's edges or faces, in an order.
+    """An ordered subset of a solid's edges or faces, the items.
 
-    All properties are arrays over the edges or faces, for use in conditions. Indexing with a number
-    gives a selection of one, a slice gives several.
+    Each property is an array with one entry per item, for use in conditions. An index gives a
+    selection of one item, a slice a selection of several.
     """
 
-    #: What a message calls them, and the properties by which they can be sorted; the first of these
-    #: is told.
+    #: The name of the items in messages, "edges" or "faces", and the properties that may be sort
+    #: keys; `__repr__` shows the range of the first property.
     _things: ClassVar[str]
     _sizes: ClassVar[tuple[str, ...]]
 
@@ -43,35 +43,41 @@ class Selection(ABC):
     @property
     @abstractmethod
     def middle(self) -> FloatArray:
-        """The middles, (n, 3), in model units."""
+        """The middle of each item, (n, 3) float64, in model units."""
 
     @property
     @abstractmethod
     def direction(self) -> FloatArray:
-        """Unit vectors, (n, 3), or zero if there is no single direction."""
+        """The unit vector along each edge or normal to each flat face, (n, 3); zero otherwise."""
 
     @abstractmethod
     def _flat_faces(self) -> tuple[IndexArray, IndexArray]:
-        """Return flat faces of the skeleton, and the item of the selection with each of them."""
+        """Return pairs of a plane face of the solid and an item that is or touches it.
+
+        Two (k,) arrays: numbers of plane faces, and positions of items in this selection.
+        """
 
     @abstractmethod
     def _between(self, heights: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the least and greatest value at the corners of each item, given all values."""
+        """Return the least and greatest value at the corners of each item, (n,) each.
+
+        `heights` has a value for each vertex of the solid.
+        """
 
     @abstractmethod
     def _total(self) -> int:
-        """Return the total number of items in the solid."""
+        """Return the number of all edges, or all faces, of the solid."""
 
     def _with(self, numbers: IndexArray) -> Self:
         return type(self)(self._skeleton, numbers)
 
     def filter(self, condition: "Callable[[Self], Any] | Any") -> Self:
-        """Return the items for which a condition holds.
+        """Return the selection of the items for which a condition is true.
 
         Parameters
         ----------
         condition : function or (n,) bool
-            The function takes this selection and returns a truth value for each item.
+            A truth value for each item, or a function that takes this selection and returns them.
 
         Raises
         ------
@@ -88,11 +94,11 @@ class Selection(ABC):
         return self._with(self._numbers[given])
 
     def where(self, condition: "Callable[[Self], Any] | Any") -> Self:
-        """Return the items for which a condition holds: another name for `filter`."""
+        """Return the selection of the items for which a condition is true; same as `filter`."""
         return self.filter(condition)
 
     def parallel(self, axis: str | Vector) -> Self:
-        """Return edges, or flat faces by their normals, along an axis in either direction.
+        """Return the edges parallel to an axis, or the flat faces whose normals are parallel to it.
 
         Parameters
         ----------
@@ -109,7 +115,7 @@ class Selection(ABC):
             The plane's normal, which need not have unit length. Or a selection of the same solid:
             edges lie on the faces that they bound, faces on the edges that bound them.
         offset : float, optional
-            The plane contains the points p with ``normal . p == offset``.
+            The plane consists of the points p with ``normal . p == offset``.
 
         Examples
         --------
@@ -147,9 +153,9 @@ class Selection(ABC):
         Parameters
         ----------
         key : str, (3,) float or function
-            "x", "y", "z" or a vector sorts by the position of the middle along it. Otherwise the
-            name of a property, such as "length" or "area"; or a function that takes this selection
-            and returns a number for each item.
+            "x", "y", "z" or a vector sorts by the position of each item's middle along that axis.
+            Otherwise the name of a property, such as "length" or "area"; or a function that takes
+            this selection and returns a number for each item.
 
         Examples
         --------
@@ -160,13 +166,13 @@ class Selection(ABC):
         return self._with(self._numbers[np.argsort(self._values(key)[0], kind="stable")])
 
     def group_by(self, key: Key) -> list[Self]:
-        """Return selections of items with equal values, in ascending order.
+        """Return one selection for each group of items with equal key values, in ascending order.
 
         Parameters
         ----------
         key : str, (3,) float or function
             As for `sort_by`. Consecutive values are equal if they differ by less than a millionth
-            of the largest value, or along an axis, of the solid's size.
+            of the largest value, or for positions along an axis, of the solid's longest extent.
 
         Examples
         --------
@@ -180,7 +186,7 @@ class Selection(ABC):
         return [self._with(self._numbers[part]) for part in np.split(order, starts) if len(part)]
 
     def _values(self, key: Key) -> tuple[FloatArray, float]:
-        """Return a number for each item, and the scale of such numbers."""
+        """Return the key value of each item, (n,), and the scale for their relative tolerance."""
         if isinstance(key, str) and key in self._sizes:
             values = getattr(self, key)
         elif callable(key):
@@ -208,19 +214,19 @@ class Selection(ABC):
             )
 
     def _is_alike(self, other: object) -> bool:
-        """Say whether another selection of the same solid has the same numbering of items."""
+        """Return True if another selection of the same solid has equally numbered items."""
         return type(other) is type(self)
 
     def __or__(self, other: object) -> Self:
-        """Return the items in at least one of two selections of one solid."""
+        """Return the items that are in at least one of two selections of the same solid."""
         return self._joined(other, lambda theirs: np.union1d(self._numbers, theirs))
 
     def __and__(self, other: object) -> Self:
-        """Return the items in both selections of one solid, in this one's order."""
+        """Return the items of this selection that are also in another one of the same solid."""
         return self._joined(other, lambda theirs: self._numbers[np.isin(self._numbers, theirs)])
 
     def __sub__(self, other: object) -> Self:
-        """Return the items that are not in the other selection of this solid."""
+        """Return the items of this selection that are not in another one of the same solid."""
         return self._joined(other, lambda theirs: self._numbers[~np.isin(self._numbers, theirs)])
 
     def _joined(self, other: object, join: "Callable[[IndexArray], IndexArray]") -> Self:
@@ -235,7 +241,7 @@ class Selection(ABC):
         return self._with(np.atleast_1d(self._numbers[index]))
 
     def __iter__(self) -> Iterator[Self]:
-        """Yield each item as a selection of one."""
+        """Yield a selection of one item for each item."""
         return (self[k] for k in range(len(self)))
 
     def __len__(self) -> int:
@@ -243,7 +249,7 @@ class Selection(ABC):
         return len(self._numbers)
 
     def __repr__(self) -> str:
-        """Show the number of items, the total, and the range of sizes."""
+        """Return a text with the number of items, of all in the solid, and the range of sizes."""
         name = self._sizes[0]
         sizes = getattr(self, name)
         told = f", {name} {sizes.min():g} to {sizes.max():g}" if len(self) else ""
@@ -251,7 +257,11 @@ class Selection(ABC):
 
 
 def as_bend(angle: Scalar, every: bool) -> float:
-    """Return the checked angle, in degrees, above which faces have an edge between them."""
+    """Return the angle, in degrees, above which two plane faces have an edge between them.
+
+    Minus infinity, if `every` is true, makes an edge between all plane faces. Raise
+    `InvalidParameterError` for an angle outside 0 to 180.
+    """
     bend = number(angle, "angle")
     if not 0 <= bend < 180:
         raise invalid_parameter(f"angle must be at least 0 and below 180 degrees, not {bend:g}.")
@@ -259,6 +269,6 @@ def as_bend(angle: Scalar, every: bool) -> float:
 
 
 def bends(skeleton: Skeleton, least: float) -> BoolArray:
-    """Say at which edges of a skeleton the faces bend by more than `least` degrees."""
-    # The sides of a regular 12-gon bend by 30 degrees, and must not depend on rounding.
+    """Return a mask, (e,), of edges whose face normals differ by more than `least` degrees."""
+    # Add a tolerance: a 12-gon bends by the common limit of 30 degrees, up to rounding.
     return np.asarray(np.abs(180 - skeleton.angles) > least + _SAME)

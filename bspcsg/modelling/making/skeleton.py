@@ -8,30 +8,30 @@ import numpy as np
 from ..._types import BoolArray, FloatArray, IndexArray
 from ...mesh.mesh import Mesh, surfaces_of
 
-#: Triangles lie in one plane if no corner is farther from it than this share of the mesh's size:
-#: ten steps of the lattice of a body of size one.
+#: Triangles count as coplanar if no corner is farther from the plane than this share of the mesh's
+#: longest extent. For a solid of extent 1, it is ten lattice steps.
 _FLAT = 1e-8
 
-#: The sine between planes that a triangle tells apart, if it is high enough not to be thin.
+#: The sine of the least angle between planes that a triangle distinguishes, unless it is thin.
 _BENT = 0.01
 
 
 @dataclass(frozen=True, eq=False)
 class Skeleton:
-    """Faces, each a group of triangles of one plane, and edges between them.
+    """The plane faces of a mesh, each a group of coplanar triangles, and the edges between faces.
 
     Parameters
     ----------
     vertices : (n, 3) float64
     triangles : (m, 3) int64
     face : (m,) int64
-        The face of each triangle.
+        The number of the face that contains each triangle.
     normals : (f, 3) float64
-        Unit vectors outwards.
+        The outward unit normal of each face.
     ends : (e, 2) int64
-        The start and end vertices of each edge.
+        The start and end vertex of each edge.
     sides : (e, 2) int64
-        The faces on its left and on its right, seen from outside.
+        The faces on the left and the right of each edge, seen from outside.
     """
 
     vertices: FloatArray
@@ -43,24 +43,27 @@ class Skeleton:
 
     @cached_property
     def vectors(self) -> FloatArray:
-        """From the start to the end of each edge, (e, 3)."""
+        """The vector from the start to the end of each edge, (e, 3)."""
         vectors: FloatArray = self.vertices[self.ends[:, 1]] - self.vertices[self.ends[:, 0]]
         return vectors
 
     @cached_property
     def directions(self) -> FloatArray:
-        """Unit vectors along the edges, (e, 3)."""
+        """The unit vector along each edge, (e, 3)."""
         directions: FloatArray = self.vectors / np.linalg.norm(self.vectors, axis=1)[:, None]
         return directions
 
     @cached_property
     def areas(self) -> FloatArray:
-        """The vector area of each triangle, (m, 3)."""
+        """The vector area of each triangle, (m, 3): its normal, with the area as length."""
         return _vector_areas(self.vertices, self.triangles) / 2
 
     @cached_property
     def inward(self) -> FloatArray:
-        """Unit vectors from each edge into its faces, across it, (e, 2, 3)."""
+        """The unit vectors perpendicular to each edge in its left and right face, (e, 2, 3).
+
+        They point from the edge into the face.
+        """
         left, right = (self.normals[self.sides[:, k]] for k in (0, 1))
         across = [np.cross(left, self.directions), np.cross(self.directions, right)]
         stacked = np.stack(across, axis=1)
@@ -69,13 +72,13 @@ class Skeleton:
 
     @cached_property
     def is_convex(self) -> BoolArray:
-        """True where the material is on the inside of the bend, (e,)."""
+        """True for each edge whose angle inside the solid is below 180 degrees, (e,)."""
         bend = np.einsum("ij,ij->i", self.inward[:, 0], self.normals[self.sides[:, 1]])
         return np.asarray(bend < 0)
 
     @cached_property
     def angles(self) -> FloatArray:
-        """Degrees from face to face through the material, (e,)."""
+        """The angle between the two faces of each edge, inside the solid, in degrees, (e,)."""
         one, other = self.inward[:, 0], self.inward[:, 1]
         across = np.linalg.norm(np.cross(one, other), axis=1)
         between = np.degrees(np.arctan2(across, np.einsum("ij,ij->i", one, other)))
@@ -95,16 +98,16 @@ class Skeleton:
         return edges, faces
 
     def edges_at(self, vertex: int) -> list[int]:
-        """Return the edges that end at a vertex."""
+        """Return the numbers of the edges that start or end at a vertex."""
         return self._at[0][vertex]
 
     def faces_at(self, vertex: int) -> set[int]:
-        """Return the faces that meet at the end of an edge."""
+        """Return the numbers of the faces at a vertex, which must be an end of an edge."""
         return self._at[1][vertex]
 
 
 def skeleton_of(mesh: Mesh) -> Skeleton:
-    """Return the faces and edges of a closed mesh."""
+    """Return the plane faces of a closed mesh, and the edges between them."""
     vertices, triangles = mesh.vertices, mesh.faces
     if not len(triangles):
         none = np.zeros((0, 2), np.int64)
@@ -125,17 +128,17 @@ def skeleton_of(mesh: Mesh) -> Skeleton:
 
 
 def flatness(vertices: FloatArray) -> float:
-    """Return the largest allowed distance of corners from the plane of their face."""
+    """Return the largest distance at which a corner counts as lying in a face's plane."""
     return _FLAT * extent(vertices)
 
 
 def extent(vertices: FloatArray) -> float:
-    """Return the longest side of the bounding box of corners, 0 without corners."""
+    """Return the longest side of the bounding box of points, or 0 without points."""
     return float(np.ptp(vertices, axis=0).max()) if len(vertices) else 0.0
 
 
 def _segments(triangles: IndexArray, count: int) -> tuple[IndexArray, IndexArray]:
-    """Return each edge of triangles once, and the triangles on its left and right."""
+    """Return the distinct edges of triangles, (s, 2), and the triangles left and right of each."""
     starts, ends = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     owner = np.repeat(np.arange(len(triangles)), 3)
     forth = starts < ends
@@ -157,9 +160,10 @@ def _away(
     segments: IndexArray,
     owners: IndexArray,
 ) -> FloatArray:
-    """Return the distance of the smaller triangle at each segment from the larger one's plane.
+    """Return, for each segment, how far its smaller triangle is from its larger one's plane.
 
-    The distance is infinite if they are folded onto each other.
+    It is the distance of the corner opposite the segment; infinite if the normals of the two
+    triangles point in opposite directions.
     """
     size = np.linalg.norm(areas, axis=1)
     first_is_large = size[owners[:, 0]] >= size[owners[:, 1]]
@@ -173,7 +177,7 @@ def _away(
 
 
 def _are_thin(vertices: FloatArray, triangles: IndexArray, areas: FloatArray) -> BoolArray:
-    """Say which triangles are so thin that their plane is ambiguous."""
+    """Return a mask of the triangles that are so thin that rounding may rotate their plane."""
     around = vertices[triangles] - vertices[np.roll(triangles, 1, axis=1)]
     longest = np.linalg.norm(around, axis=2).max(axis=1)
     thin = np.linalg.norm(areas, axis=1) <= flatness(vertices) / _BENT * longest
@@ -183,7 +187,7 @@ def _are_thin(vertices: FloatArray, triangles: IndexArray, areas: FloatArray) ->
 def _with_one_plane(flat: IndexArray, away: FloatArray, is_thin: BoolArray) -> IndexArray:
     """Return pairs of coplanar triangles; a thin triangle is paired with its best neighbour only.
 
-    Otherwise a thin triangle along an edge would join the two faces that meet there.
+    A thin triangle along an edge may seem coplanar with both faces there, and must not join them.
     """
     kept = [flat[~is_thin[flat].any(axis=1)]]
     is_placed = ~is_thin
@@ -196,7 +200,7 @@ def _with_one_plane(flat: IndexArray, away: FloatArray, is_thin: BoolArray) -> I
         _, first = np.unique(ready[:, 1], return_index=True)
         kept.append(ready[first])
         is_placed[ready[:, 1]] = True
-    # Faces that consist only of thin triangles.
+    # Pairs within faces that consist only of thin triangles.
     kept.append(flat[~is_placed[flat].any(axis=1)])
     return np.concatenate(kept)
 
@@ -217,9 +221,9 @@ def _mended(
     flat: IndexArray,
     is_thin: BoolArray,
 ) -> IndexArray:
-    """Return the face of each triangle after coplanar faces are joined.
+    """Return the face of each triangle, (m,), after adjacent coplanar faces are joined.
 
-    A thin triangle between two coplanar faces belongs to one of them and separates them.
+    Such faces arise where a thin triangle, which belongs to one of them, lies between both.
     """
     is_wide = np.bincount(face, ~is_thin) > 0
     pairs = np.unique(face[flat], axis=0)
@@ -241,7 +245,7 @@ def _mended(
 
 
 def members(face: IndexArray, chosen: IndexArray) -> tuple[IndexArray, IndexArray]:
-    """Return the triangles of chosen faces, and the position of each one's face there."""
+    """Return the triangles of the faces `chosen`, and the index in `chosen` for each triangle."""
     counts = np.bincount(face)
     starts, sizes = np.cumsum(counts) - counts, counts[chosen]
     place = np.repeat(np.arange(len(chosen)), sizes)
@@ -250,14 +254,14 @@ def members(face: IndexArray, chosen: IndexArray) -> tuple[IndexArray, IndexArra
 
 
 def groups(pairs: IndexArray, count: int) -> IndexArray:
-    """Return the number of the connected group of each of `count` items."""
+    """Return a group number for each of `count` items, equal for items that pairs connect."""
     loops = np.repeat(np.arange(count), 2).reshape(-1, 2)
     links = np.concatenate([loops, pairs])
     return surfaces_of(links[:, [0, 1, 1]], count)[:count]
 
 
 def _ascending(segments: IndexArray, sides: IndexArray) -> tuple[IndexArray, IndexArray]:
-    """Return segments turned so that the lower face is on their left."""
+    """Return segments and sides, reversed so that the smaller face number is on the left."""
     turned = sides[:, 0] > sides[:, 1]
     segments = np.where(turned[:, None], segments[:, ::-1], segments)
     return segments, np.sort(sides, axis=1)
@@ -266,7 +270,10 @@ def _ascending(segments: IndexArray, sides: IndexArray) -> tuple[IndexArray, Ind
 def _runs(
     vertices: FloatArray, segments: IndexArray, sides: IndexArray
 ) -> tuple[IndexArray, IndexArray]:
-    """Return edges: segments between the same two faces, joined where they continue each other."""
+    """Join consecutive segments between the same two faces to edges.
+
+    Return the start and end vertex of each edge, (e, 2), and its two faces, (e, 2).
+    """
     if not len(segments):
         return segments, sides
     degree = np.bincount(segments.ravel(), minlength=len(vertices))
@@ -290,9 +297,10 @@ def _runs(
 
 
 def _without_loops(pairs: IndexArray, count: int) -> IndexArray:
-    """Return the pairs of segments that continue each other, without closed loops.
+    """Return pairs of consecutive segments, without the pairs that form closed loops.
 
-    Planes meet in lines, but faces that are plane only within a tolerance can meet in a loop.
+    Exact planes meet in lines, but faces that are planar only within a tolerance can meet in a
+    loop.
     """
     run = groups(pairs, count)
     has_start = np.zeros(count, dtype=np.bool_)

@@ -1,4 +1,4 @@
-"""Frames along a path: the axes of a swept profile."""
+"""Frames along a path: the axes of a swept profile at each point."""
 
 import math
 from collections.abc import Callable
@@ -12,37 +12,38 @@ from ...errors import LimitError, invalid_parameter
 from ...geometry.arrays import doubles
 from ...parameters import word
 
-#: The way in which the profile turns as it goes.
+#: The rule by which a profile rotates along a path.
 Frame: TypeAlias = Literal["parallel", "fixed"]
 
-#: Ends that are nearer than this share of the path's size are one point.
+#: A path is closed if the distance of its ends, relative to its extent, is at most this.
 _SAME = 1e-9
 
-#: The cosine of 175 degrees: where a path turns back further, its mitre is 23 times as long as the
-#: profile is wide.
+#: The cosine of 175 degrees, the largest turn of a path at a point. The mitre is then 23 times as
+#: long as the profile is wide.
 _SHARPEST = -0.9962
 
-#: A direction is upright if its sine to the z axis is below this.
+#: A direction is parallel to the z axis if the sine of their angle is below this.
 _UPRIGHT = 1e-9
 
 
 @dataclass(frozen=True)
 class Spine:
-    """A path with the frames that carry a profile along it.
+    """A path, and the axes of a swept profile at each of its points.
 
     Parameters
     ----------
     points : (n, 3) float64
-        Each point once, also for a closed path.
+        The points of the path; a closed path does not repeat its first point.
     shares : (n,) float64
-        The share of the length up to each point, from 0 to 1.
+        The path's length up to each point, as a share of its whole length.
     right, up : (n, 3) float64
-        Unit vectors of the profile's axes, perpendicular to the path.
+        The unit vectors of the profile's x and y axis, perpendicular to the path.
     bend : (n, 3) float64
-        Unit vectors towards which the path turns, or zero.
+        The unit vectors towards which the path turns, or zero where it is straight.
     stretch : (n,) float64
         The factor by which a mitre stretches the profile along `bend`.
     closed : bool
+        True if the last point is joined to the first.
     """
 
     points: FloatArray
@@ -54,7 +55,7 @@ class Spine:
     closed: bool
 
     def ring(self, place: int, profile: FloatArray) -> FloatArray:
-        """Return the corners of a profile, (k, 2), placed at one point of the path, (k, 3)."""
+        """Return the (k, 3) corners in space of a (k, 2) plane profile at path point `place`."""
         across = profile[:, :1] * self.right[place] + profile[:, 1:] * self.up[place]
         along = (across @ self.bend[place])[:, None] * self.bend[place]
         ring: FloatArray = self.points[place] + across + along * (self.stretch[place] - 1)
@@ -67,9 +68,10 @@ def path_points(path: Any) -> tuple[FloatArray, bool]:
     Raises
     ------
     InvalidParameterError
-        If it has fewer than two points, another shape, or a coordinate that is not finite.
+        If the path has fewer than two different points, another shape, or a coordinate that is not
+        finite.
     LimitError
-        If doubles cannot measure it.
+        If a distance of its points overflows or underflows doubles.
     """
     points = doubles(
         path, invalid_parameter("A path must be an array of points, of shape (n, 2) or (n, 3).")
@@ -98,7 +100,7 @@ def path_points(path: Any) -> tuple[FloatArray, bool]:
 
 
 def divided(points: FloatArray, closed: bool, slices: int) -> FloatArray:
-    """Return the path with additional points, for about `slices` equal parts."""
+    """Return the path with additional points, so that it has about `slices` equal parts."""
     ends = np.roll(points, -1, axis=0) if closed else points[1:]
     starts = points[: len(ends)]
     lengths = np.linalg.norm(ends - starts, axis=1)
@@ -111,12 +113,13 @@ def divided(points: FloatArray, closed: bool, slices: int) -> FloatArray:
 
 
 def spine_of(points: FloatArray, closed: bool, frame: Any) -> Spine:
-    """Return the frames along a path.
+    """Return a path with the axes of a swept profile at each point.
 
     Raises
     ------
     InvalidParameterError
-        If the path turns back on itself, or runs upright in a fixed frame; `where` names the point.
+        If the path turns by more than 175 degrees, or is parallel to the z axis in a fixed frame;
+        `where` lists the numbers of such points.
     """
     directions, lengths = _directions(points, closed)
     before = np.roll(directions, 1, axis=0) if closed else np.vstack([directions[:1], directions])
@@ -137,7 +140,7 @@ def spine_of(points: FloatArray, closed: bool, frame: Any) -> Spine:
 
 
 def slipped(spine: Spine) -> float:
-    """Return the rotation of the frame after one round of a closed path, in radians."""
+    """Return the angle in radians by which a closed path rotates its frame; 0 if it is open."""
     if not spine.closed:
         return 0.0
     first = np.cross(spine.right[0], spine.up[0])
@@ -162,7 +165,10 @@ def _refuse_turning_back(points: FloatArray, before: FloatArray, after: FloatArr
 
 
 def _level(points: FloatArray, middle: FloatArray) -> FloatArray:
-    """Return horizontal unit vectors perpendicular to the path, with the z axis on their left."""
+    """Return horizontal unit vectors perpendicular to the path directions `middle`, (n, 3).
+
+    They are the z axis times the direction (vector product), normalized.
+    """
     x, y = -middle[:, 1], middle[:, 0]
     size = np.hypot(x, y)
     upright = np.flatnonzero(size < _UPRIGHT)
@@ -177,14 +183,14 @@ def _level(points: FloatArray, middle: FloatArray) -> FloatArray:
 
 
 def _carried(middle: FloatArray, directions: FloatArray, closed: bool) -> FloatArray:
-    """Return unit vectors perpendicular to the path, carried along with the least rotation."""
+    """Return unit vectors perpendicular to the path, (n, 3), that do not rotate about it."""
     right = np.empty_like(middle)
     right[0] = _first(middle[0])
     for k in range(1, len(middle)):
         step = directions[k - 1]
         right[k] = _turned(_turned(right[k - 1], middle[k - 1], step), step, middle[k])
     if closed:
-        # Rounding adds up along the way.
+        # Rounding errors accumulate along the path.
         right /= np.linalg.norm(right, axis=1, keepdims=True)
     return right
 
@@ -196,10 +202,13 @@ def _first(direction: FloatArray) -> FloatArray:
 
 
 def _turned(vector: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-    """Return a vector after the shortest rotation of one direction to another."""
+    """Return a vector rotated by the smallest rotation that maps direction `start` to `end`.
+
+    The vector must be perpendicular to `start`.
+    """
     turned: FloatArray = vector - (vector @ end) / (1 + start @ end) * (start + end)
     return turned
 
 
-#: A number at the end of the path, or what it is at each share of its length.
+#: A parameter along a path: its value at the end, or a function of the share of the path's length.
 Along: TypeAlias = float | Callable[[FloatArray], Any]

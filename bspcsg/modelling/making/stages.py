@@ -1,8 +1,8 @@
 """The order in which convex and concave edges that meet are blended.
 
-If an edge ends between two edges of the other kind, it comes first: the two then continue along the
-end of its new surface, all of one kind. After each stage, the remaining selected edges are found
-again on the new solid.
+If a convex edge ends between two concave edges, or vice versa, it is blended first: the two others
+then continue along the end of its blend. After each stage, the remaining selected edges are found
+on the new solid.
 """
 
 from collections.abc import Mapping
@@ -13,19 +13,19 @@ from ..._types import BoolArray, FloatArray, IndexArray
 from ...errors import InvalidParameterError, invalid_parameter
 from .skeleton import Skeleton, flatness
 
-#: Faces of one plane have normals whose cosine is at least this.
+#: Faces count as parallel if the cosine of the angle between their normals is at least this.
 _ALONG = 1 - 1e-12
 
-#: Unit normals that differ by no more are of one plane: a fillet of 360 chords bends by 0.017 at
-#: each, and so little that rounding is seen has no blend.
+#: Two adjacent faces count as coplanar if their unit normals differ by no more. Neighbouring chords
+#: of a fillet of 360 chords differ by 0.017.
 _EVEN = 1e-4
 
-#: Points are the same that are as near as corners of two faces between the same planes may be.
+#: Points count as equal if their distance is at most this many times the flatness of the skeleton.
 _SAME = 4
 
 
 def ready(skeleton: Skeleton, chosen: IndexArray) -> IndexArray:
-    """Return the selected edges that can be blended now, before all others.
+    """Return the selected edges that are blended in the next stage.
 
     Parameters
     ----------
@@ -35,7 +35,8 @@ def ready(skeleton: Skeleton, chosen: IndexArray) -> IndexArray:
     Raises
     ------
     InvalidParameterError
-        If edges of both kinds meet in another way than one between two, or wait for each other.
+        If convex and concave edges meet at a corner of more than three edges, or each of several
+        edges would have to be blended before another.
     """
     own = set(chosen.tolist())
     before = {
@@ -45,8 +46,8 @@ def ready(skeleton: Skeleton, chosen: IndexArray) -> IndexArray:
         for edge in skeleton.edges_at(vertex)
         if edge in own and edge != first
     }
-    # Edges that share a corner of one kind come together, since it becomes part of a ball;
-    # otherwise take as few edges as possible.
+    # Blend connected edges of one kind together, since their common corner becomes part of a ball.
+    # If there are none to blend now, take as few edges as possible.
     free = own - _with_their_like(skeleton, own, set(before)) or set(before.values()) - set(before)
     if own and not free:
         vertex = int(skeleton.ends[min(before), 0])
@@ -60,7 +61,10 @@ def ready(skeleton: Skeleton, chosen: IndexArray) -> IndexArray:
 
 
 def _between_two(skeleton: Skeleton, chosen: set[int], vertex: int) -> int | None:
-    """Return the selected edge that ends between two of the other kind, one of them selected."""
+    """Return the edge at a vertex that ends between two edges of the other kind.
+
+    The kinds are convex and concave. None means that all selected edges there are of one kind.
+    """
     edges = skeleton.edges_at(vertex)
     kinds = {bool(skeleton.is_convex[edge]) for edge in edges if edge in chosen}
     if len(kinds) < 2:
@@ -77,7 +81,10 @@ def _between_two(skeleton: Skeleton, chosen: set[int], vertex: int) -> int | Non
 
 
 def _with_their_like(skeleton: Skeleton, chosen: set[int], waiting: set[int]) -> set[int]:
-    """Return the waiting edges, and all edges of their kind connected with them."""
+    """Return the waiting edges, and all chosen edges connected to them of the same kind.
+
+    The kinds are convex and concave.
+    """
     found, ahead = set(waiting), list(waiting)
     while ahead:
         edge = ahead.pop()
@@ -97,19 +104,20 @@ def carried(
     ends: Mapping[int, FloatArray],
     reach: float,
 ) -> IndexArray:
-    """Return the edges of the new solid that correspond to those still to be blended.
+    """Return the edges of the new solid that correspond to edges still to be blended.
 
     Parameters
     ----------
     skeleton : Skeleton
-        Before the stage.
+        The skeleton of the solid before the stage.
     rest : (k,) int64
-        Edges of that skeleton.
+        The edges of that skeleton that are still to be blended.
     after : Skeleton
+        The skeleton of the new solid.
     ends : dict of int to (n, 3) float64
-        The end corners of the new surfaces on each face between two edges of `rest`.
+        For each face between two edges of `rest`, the corners of blends that end on it.
     reach : float
-        The largest amount by which new surfaces lengthen an edge.
+        The largest length by which a blend can lengthen an edge.
 
     Returns
     -------
@@ -118,7 +126,7 @@ def carried(
     Raises
     ------
     InvalidParameterError
-        If nothing is left of an edge.
+        If no part of an edge of `rest` remains.
     """
     near = _SAME * flatness(skeleton.vertices)
     is_meant = np.zeros(len(after.ends), dtype=np.bool_)
@@ -138,13 +146,13 @@ def carried(
 
 
 def _are_even(skeleton: Skeleton) -> BoolArray:
-    """Say at which edges the two faces are coplanar up to rounding."""
+    """Return a mask, (e,), of the edges whose two faces are coplanar up to rounding."""
     normals = skeleton.normals[skeleton.sides]
     return np.asarray(np.linalg.norm(normals[:, 1] - normals[:, 0], axis=1) <= _EVEN)
 
 
 def _lie_on(skeleton: Skeleton, edge: int, after: Skeleton, near: float, reach: float) -> BoolArray:
-    """Say which edges overlap an edge of the previous solid."""
+    """Return a mask of the edges of the new solid that overlap an edge of the previous solid."""
     start, along = skeleton.vertices[skeleton.ends[edge, 0]], skeleton.directions[edge]
     length = float(np.linalg.norm(skeleton.vectors[edge]))
     away = after.vertices[after.ends] - start
@@ -156,13 +164,13 @@ def _lie_on(skeleton: Skeleton, edge: int, after: Skeleton, near: float, reach: 
 
 
 def _run_along(normal: FloatArray, corners: FloatArray, after: Skeleton, near: float) -> BoolArray:
-    """Say which edges of a face run between given points."""
+    """Return a mask of the edges that join two of the points `corners` on a face with a normal."""
     on_face = (after.normals[after.sides] @ normal >= _ALONG).any(axis=1)
     gaps = np.linalg.norm(after.vertices[after.ends][:, :, None] - corners, axis=3)
     return np.asarray(on_face & (gaps.min(axis=2, initial=np.inf) <= near).all(axis=1))
 
 
 def refused(skeleton: Skeleton, vertex: int, reason: str) -> InvalidParameterError:
-    """Return the error for a corner that has no blend."""
+    """Return the error that a corner cannot be blended, for the given reason."""
     point = ", ".join(f"{value:.6g}" for value in skeleton.vertices[vertex])
     return invalid_parameter(f"At ({point}) {reason}.", [vertex])

@@ -26,12 +26,12 @@ from ...solid.solid import Solid
 from .rings import solid_of, walls
 from .spine import Along, Frame, Spine, divided, path_points, slipped, spine_of
 
-#: Corners of a turned profile that are nearer to those of the profile than this share of its size
-#: are the same.
+#: Corners of a rotated profile equal corners of the original profile if they differ by at most this
+#: share of its extent.
 _SAME = 1e-9
 
-#: The largest number of corners that are compared each with each. A pair takes three doubles, so
-#: this many corners take 100 MB.
+#: The largest number of corners of which all pairs are compared. A pair takes three doubles, so all
+#: pairs take 100 MB.
 _MAX_CORNERS_COMPARED = 2000
 
 
@@ -52,34 +52,36 @@ def sweep(
     profile : object
         A `Region`, or what `extrude` takes. Its origin moves along the path.
     path : (n, 3) or (n, 2) array_like of float
-        Corners of a polyline. It is closed if the last one is the first one; it may cross itself.
+        Corners of a polyline. It is closed if its last corner equals its first; it may cross
+        itself.
     twist : float or function
         Rotation of the profile at the end in degrees, clockwise seen from there, as in `extrude`;
         or a function that takes shares of the length, (k,) from 0 to 1, and returns degrees.
     scale : float or function
-        Size at the end relative to the start, 0 or more; or a function as for `twist` that returns
-        (k,) sizes.
+        Scale factor at the end, 0 or more, where the start has 1; or a function that takes shares
+        of the length, as for `twist`, and returns factors, (k,).
     frame : {"parallel", "fixed"}
-        "parallel": the profile rotates no more than the path. "fixed": its x axis stays horizontal
-        and its y axis as upright as possible. Both start in the latter position; on a path that
-        starts upwards, with x along x.
+        "parallel": the profile does not rotate about the path. "fixed": its x axis stays horizontal
+        and its y axis as upright as possible. Both start with x horizontal; on a path that starts
+        along z, x is along the x axis.
     segments : int
-        Slices of a full turn of `twist`, and of the length under a function, at least 3.
+        Number of slices for a full turn of `twist`, or for the whole length if a function is given;
+        at least 3.
 
     Raises
     ------
     InvalidParameterError
         If the path has fewer than two different points, turns by more than 175 degrees at a point,
-        or runs upright in a fixed frame (`where` names its points); or if on a closed path the
-        profile ends with another size or, except for symmetry, another rotation than at the start.
+        or is parallel to z in a fixed frame (`where` lists the points); or if on a closed path the
+        profile at the end differs from the profile at the start in scale or rotation.
     LimitError
         If the solid would have too many corners.
 
     Notes
     -----
     Corners of the path are mitred, so that straight parts have the profile as cross-section. Points
-    with a positive winding number of the swept surface are inside: overlaps are united; in a bend
-    tighter than the profile's width, parts that run backwards lower the winding number.
+    at which the swept surface has a positive winding number are inside, so overlaps are united. In
+    a bend tighter than the profile's width, inverted parts lower the winding number.
 
     Examples
     --------
@@ -93,7 +95,7 @@ def sweep(
     around = sides_around(3, segments, "segments")
     points, closed = path_points(path)
     slices = _slices(twist, scale, around)
-    # Check before the path is divided, which takes a second for so many points.
+    # Check before the path is divided, since dividing takes a second for very many points.
     refuse_many_corners(max(len(points), slices) * max(len(corners), 1), "This sweep")
     points = divided(points, closed, slices)
     refuse_many_corners(len(points) * len(corners), "This sweep")
@@ -137,16 +139,16 @@ def pipe(
     path : (n, 3) or (n, 2) array_like of float
         As for `sweep`; corners are mitred.
     r, d : float
-        Radius, or diameter instead.
+        Radius or diameter of the outside, in model units; give one of them.
     inner, inner_d : float, optional
-        Radius of the bore, below `r`, or its diameter instead; 0, the default, for a bar.
+        Radius or diameter of the bore, less than the outside; by default 0, which makes a bar.
     segments : int
-        Sides around, at least 3.
+        Number of sides of the cross-section, at least 3.
 
     Raises
     ------
     InvalidParameterError
-        As for `sweep`, or if the bore is not below the radius.
+        As for `sweep`, or if the bore is not narrower than the outside.
 
     Examples
     --------
@@ -167,14 +169,17 @@ def pipe(
 
 
 def _slices(twist: Along, scale: Along, around: int) -> int:
-    """Return the least number of parts of the path."""
+    """Return the least number of parts into which a sweep divides its path, for its twist."""
     if callable(twist) or callable(scale):
         return around
     return math.ceil(min(abs(number(twist, "twist")) / 360 * around, MAX_CORNERS)) or 1
 
 
 def _along(given: Along, start: float, spine: Spine, name: str) -> FloatArray:
-    """Return the value of a parameter at each point of a path, and at the closing point."""
+    """Return the value of `twist` or `scale` at each point of a path, (n,).
+
+    A number is reached linearly from `start`. On a closed path, the value at the end is added.
+    """
     shares = np.append(spine.shares, 1.0) if spine.closed else spine.shares
     if not callable(given):
         return start + (number(given, name) - start) * shares
@@ -199,7 +204,10 @@ def _placed(corners: FloatArray, turn: float, size: float) -> FloatArray:
 
 
 def _same_corners(last: FloatArray, first: FloatArray, edges: IndexArray) -> IndexArray:
-    """Return for each corner of the closing ring the equal corner of the first ring."""
+    """Return, for each corner of the last ring of a closed sweep, the equal corner of the first.
+
+    Raise `InvalidParameterError` if the rings differ.
+    """
     tolerance = _SAME * float(np.abs(first - first.mean(axis=0)).max())
     same = np.arange(len(first))
     if np.abs(last - first).max() <= tolerance:

@@ -13,16 +13,16 @@ from ...errors import InvalidParameterError, invalid_parameter
 from ...geometry.arrays import axes_of
 from ...parameters import function_of, positive, refuse_many_corners, sides_around
 
-#: Degrees; outlines that bend by no more go round a curve, but for rounding.
+#: The least turn, in degrees, at which a corner is rounded or cut. Smaller turns belong to curves.
 _SMOOTH = 30 + 1e-6
 
-#: The share of an edge that rounding may change.
+#: The relative error of an edge's length by rounding.
 _SAME = 1e-9
 
-#: The part of a chord by which rounding may lengthen an arc.
+#: The share of a chord by which rounding may lengthen an arc.
 _PART = 1e-6
 
-#: Which corners are meant: a function of points, (n, 2), that returns truth values; None for all.
+#: The choice of corners: a function of (n, 2) points that returns (n,) truth values; None for all.
 Corners: TypeAlias = Callable[[FloatArray], Any] | None
 
 
@@ -35,19 +35,23 @@ class _Cut:
     size : float
         The radius of the arc, or the distance from the corner to the line's ends.
     around : int
-        Sides of a full circle; 0 for a line.
+        The number of sides of a full circle; 0 for a straight line.
     """
 
     size: float
     around: int
 
     def setbacks(self, turns: FloatArray) -> FloatArray:
-        """Return the length of each corner's cut along its edges."""
+        """Return how far from each corner the cut meets its edges, given the turns in radians."""
         round_: FloatArray = self.size * np.tan(np.abs(turns) / 2)
         return round_ if self.around else np.full(len(turns), self.size)
 
     def points(self, corner: FloatArray, ahead: FloatArray, turn: float) -> FloatArray:
-        """Return the points that replace a corner, given the direction before it."""
+        """Return the points, (k, 2), that replace a corner.
+
+        `ahead` is the unit vector of the edge that ends at the corner, `turn` the angle to the next
+        edge, in radians.
+        """
         if not self.around:
             after = _turned(ahead, np.array([turn]))[0]
             return np.array([corner - self.size * ahead, corner + self.size * after])
@@ -58,13 +62,13 @@ class _Cut:
 
 
 def fillet_region(figure: Region, r: Scalar, corners: Corners, segments: int) -> Region:
-    """Return a region with round corners; see `Region.fillet`."""
+    """Return a region whose corners are rounded with radius `r`; see `Region.fillet`."""
     around = sides_around(4, segments, "segments")
     return _recut(figure, _Cut(positive(r, "r"), around), corners)
 
 
 def chamfer_region(figure: Region, size: Scalar, corners: Corners) -> Region:
-    """Return a region with corners cut off; see `Region.chamfer`."""
+    """Return a region whose corners are cut off at distance `size`; see `Region.chamfer`."""
     return _recut(figure, _Cut(positive(size, "size"), 0), corners)
 
 
@@ -97,7 +101,7 @@ def _recut_loop(points: FloatArray, cut: _Cut, corners: Corners) -> FloatArray:
 
 
 def _turned(vector: FloatArray, angles: FloatArray) -> FloatArray:
-    """Return a vector turned by each of some angles, (n, 2)."""
+    """Return a plane vector rotated by each of n angles in radians, (n, 2)."""
     x, y = vector
     cosines, sines = np.cos(angles), np.sin(angles)
     return np.column_stack([x * cosines - y * sines, x * sines + y * cosines])
@@ -117,10 +121,10 @@ def _selected(corners: Corners, points: FloatArray) -> BoolArray:
 
 
 def _without_crossings(figure: Region, loops: list[FloatArray]) -> Region:
-    """Return the region of new outlines, or raise an error if they cross each other."""
+    """Return the region that new outlines bound; raise an error if outlines cross."""
     made = Region(loops, pitch=figure.pitch)
-    # Crossing outlines have winding numbers other than 0 and 1 between them. Snapping of corners
-    # causes such areas of at most a step along all outlines.
+    # Where outlines cross, winding numbers are not only 0 and 1. Snapping alone causes such areas
+    # of at most one lattice step times the length of the outlines.
     crossed = made ^ Region(loops, winding="even-odd", pitch=figure.pitch)
     length = math.fsum(outline.length for outline in made.outlines)
     if crossed.area > length * 10.0**figure.pitch:

@@ -12,8 +12,8 @@ from ...geometry.arrays import doubles
 from ...geometry.transform import cos_sin
 from ...parameters import number, positive, refuse_many_corners
 
-#: The largest number of control points of a curve. With more of them, the sums that give its points
-#: cancel so far that rounding errors show.
+#: The largest number of control points of a Bézier curve. With more, rounding errors of its points
+#: become visible by cancellation.
 _MAX_CONTROL_POINTS = 32
 
 
@@ -27,22 +27,22 @@ def arc(
     center : (2,) float
     r : float
     start, stop : float
-        Directions in degrees, from the x axis on counterclockwise. The arc runs clockwise if `stop`
-        is below `start`, and may go round more than once.
+        Angles in degrees, counter-clockwise from the x axis. The arc runs clockwise if `stop` is
+        less than `start`, and may be longer than a full circle.
     tolerance : float
         The largest distance between a chord and the arc, in model units.
 
     Returns
     -------
     (n, 2) float64
-        At equal angles.
+        Points at equal angles.
 
     Raises
     ------
     InvalidParameterError
         If a number is not finite, or the radius or the tolerance is not above 0.
     LimitError
-        If that takes too many points.
+        If the arc would have too many points.
 
     Examples
     --------
@@ -55,7 +55,7 @@ def arc(
     radius, chord = positive(r, "r"), positive(tolerance, "tolerance")
     first, last = number(start, "start"), number(stop, "stop")
     widest = 2 * math.acos(max(1 - chord / radius, -0.5))
-    # Relative to the radius, the tolerance is below the precision of doubles.
+    # `widest` is 0 if the tolerance is below the precision of doubles, relative to the radius.
     turn = abs(math.radians(last - first))
     steps = turn / widest if widest else math.inf
     refuse_many_corners(steps, "This arc")
@@ -65,7 +65,7 @@ def arc(
 
 
 def _directions(angles: FloatArray) -> FloatArray:
-    """Return the points of the unit circle at angles in degrees, exact at whole quarters."""
+    """Return points of the unit circle, (n, 2), at angles in degrees; exact at multiples of 90."""
     turns = np.radians(angles)
     points = np.column_stack([np.cos(turns), np.sin(turns)])
     for at in np.flatnonzero(np.fmod(angles, 90) == 0):
@@ -86,14 +86,14 @@ def bezier(points: Any, *, tolerance: Scalar = 0.01) -> FloatArray:
     Returns
     -------
     (n, d) float64
-        At equal steps of the parameter.
+        Points at equal steps of the curve's parameter.
 
     Raises
     ------
     InvalidParameterError
         If there are fewer than two control points or more than 32, or a number is not finite.
     LimitError
-        If that takes too many points.
+        If the curve would have too many points.
 
     Examples
     --------
@@ -106,8 +106,8 @@ def bezier(points: Any, *, tolerance: Scalar = 0.01) -> FloatArray:
     degree = len(controls) - 1
     with np.errstate(over="ignore"):
         bend = np.linalg.norm(np.diff(controls, n=2, axis=0), axis=1).max(initial=0.0)
-    # The second derivative is degree (degree - 1) bend at most; chords of a step h are off by an
-    # eighth of h² times that.
+    # The second derivative is at most degree (degree - 1) bend. The distance between a chord of
+    # parameter step h and the curve is at most h² / 8 times that.
     steps = math.sqrt(degree * (degree - 1) / 8) * math.sqrt(bend / chord)
     refuse_many_corners(steps, "This curve")
     return bezier_points(controls, max(math.ceil(steps), 1))

@@ -12,20 +12,20 @@ from ...bsp.trees.facets import chosen_pitch
 from ...errors import InvalidMeshError, invalid_parameter
 from ...geometry.arrays import doubles
 
-#: A point in steps of the lattice, and its number.
+#: A lattice point: x and y in lattice steps, and its number in the input.
 _Corner: TypeAlias = tuple[int, int, int]
 
-#: Roundings of a computed point, by the spacing of doubles at the largest coordinate.
+#: The error of a computed coordinate, in spacings of doubles at the largest coordinate.
 _COMPUTED = 4.0
 
 
 def hull_of_region(figure: Region) -> Region:
-    """Return the convex hull of a region (see `Region.hull`)."""
+    """Return the convex hull of a region; see `Region.hull`."""
     return hull_of_figures([figure])
 
 
 def hull_of_figures(figures: Sequence[Any]) -> Region:
-    """Return the convex hull of regions and of points of the plane, (n, 2) each."""
+    """Return the convex hull of all given regions and (n, 2) arrays of points."""
     clouds = [_points_of(figure) for figure in figures]
     points = np.concatenate([np.zeros((0, 2)), *clouds])
     pitches = [one.pitch for one in figures if isinstance(one, Region) and not one.is_empty]
@@ -55,15 +55,15 @@ def _points_of(figure: Any) -> FloatArray:
 def hull_region(points: FloatArray, pitch: int | None = None) -> Region:
     """Return the convex hull of points in the plane; empty if they lie on a line up to rounding.
 
-    The hull of the snapped points is exact. If snapping moves points, those that may lie outside
-    only by rounding are no corners, as in space (see `bspcsg.hull`).
+    The hull of the snapped points is exact. If snapping moves points, a point that lies outside
+    the hull of the other points only by rounding is not a corner, as in `bspcsg.hull`.
 
     Parameters
     ----------
     points : (n, 2) float64
-        Finite, in model units; they are snapped to the lattice first.
+        Finite points in model units; they are snapped to the lattice first.
     pitch : int, optional
-        Exponent of the lattice step; by default one that suits the points.
+        Exponent of the lattice step; by default it is chosen to suit the points.
     """
     if len(points) < 3:
         return Region.empty()
@@ -80,16 +80,20 @@ def hull_region(points: FloatArray, pitch: int | None = None) -> Region:
 
 
 def _moved_by(exact: FloatArray, steps: FloatArray) -> float:
-    """Return the largest move of a point by rounding, in steps; 0 if all are on the lattice."""
+    """Return the largest error of a point by snapping to the lattice, in lattice steps.
+
+    It is 0 if all points are on the lattice.
+    """
     moved = float(np.hypot(*(exact - steps).T).max())
     largest = float(np.abs(steps).max())
     return moved + _COMPUTED * float(np.finfo(np.float64).eps) * largest if moved else 0.0
 
 
 def _sharp(outline: list[_Corner], most: float) -> list[_Corner]:
-    """Return the corners of a convex outline that are farther than a distance from the rest.
+    """Return a convex outline without corners that lie within `most` of the remaining outline.
 
-    Corners with a clear bend are chosen first; others if they lie farther outside those.
+    First, corners are chosen whose distance from the line through their neighbours exceeds `most`.
+    Then corners are added that lie farther than `most` outside the outline of the chosen ones.
     """
     count = len(outline)
     if most == 0 or count < 3:
@@ -100,7 +104,7 @@ def _sharp(outline: list[_Corner], most: float) -> list[_Corner]:
         if _height(outline[k], outline[k - 1], outline[(k + 1) % count]) > most
     ]
     if len(clear) < 2:
-        # The first corner is the lexicographically least, so the farthest one is clearly distinct.
+        # Start with the first corner and the corner farthest from it.
         far = max(range(count), key=lambda k: _height(outline[k], outline[0], outline[0]))
         clear = [0, far]
     kept: list[_Corner] = []
@@ -112,7 +116,10 @@ def _sharp(outline: list[_Corner], most: float) -> list[_Corner]:
 
 
 def _bends(chain: list[_Corner], most: float) -> list[_Corner]:
-    """Return the corners between two ends that lie farther outside the rest than a distance."""
+    """Return the corners of a chain, without its ends, that are needed within a distance.
+
+    A chain is divided at the corner farthest from its chord while that distance exceeds `most`.
+    """
     kept: list[_Corner] = []
     waiting = [(0, len(chain) - 1)]
     while waiting:
@@ -127,7 +134,10 @@ def _bends(chain: list[_Corner], most: float) -> list[_Corner]:
 
 
 def _height(point: _Corner, start: _Corner, end: _Corner) -> float:
-    """Return the distance of a point from the line through two others, which may coincide."""
+    """Return the distance, in lattice steps, of a point from the line through two other points.
+
+    If the two points coincide, it is the distance from them.
+    """
     x, y = point[0] - start[0], point[1] - start[1]
     along, up = end[0] - start[0], end[1] - start[1]
     length = hypot(along, up)
@@ -135,7 +145,10 @@ def _height(point: _Corner, start: _Corner, end: _Corner) -> float:
 
 
 def _chain(points: list[_Corner]) -> list[_Corner]:
-    """Return the corners of one half of the hull, turning left (Andrew 1979)."""
+    """Return the lower convex hull of points sorted by x and y, or the upper for reverse order.
+
+    This is Andrew's monotone chain (1979); all turns are to the left.
+    """
     chain: list[_Corner] = []
     for point in points:
         while len(chain) >= 2 and not _turns_left(chain[-2], chain[-1], point):

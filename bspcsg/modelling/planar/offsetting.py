@@ -13,32 +13,34 @@ from ...bsp import Region
 from ...errors import InvalidMeshError, LimitError, invalid_parameter
 from ...parameters import SEGMENTS, number, refuse_many_corners, sides_around, word
 
-#: The form of corners where the outline moves away from them.
+#: The shape of an offset outline around a corner from which it moves away.
 Join: TypeAlias = Literal["round", "miter", "square", "bevel"]
 
-#: Mitred corners may reach this many times the distance: as far as they like.
+#: The default limit of mitred corners, in multiples of the distance: practically none.
 _MITER_LIMIT = 1e6
 
-#: Coordinates are brought near this; pyclipper counts in whole numbers of 64 bits.
+#: The bound to which coordinates are scaled for pyclipper, which computes in 64-bit integers.
 _REACH = 2.0**40
 
-#: manifold3d counts in steps of 1e-8, of which 64 bits hold 2**36.
+#: The bound to which coordinates are scaled for manifold3d, which computes in 64-bit multiples of
+#: 1e-8 and so represents values up to 2**36.
 _MANIFOLD_REACH = 2.0**30
 
-#: The largest distance of an offset as a multiple of the size of the figure, which then still has
-#: 2**20 steps of the grid that Clipper counts in.
+#: The largest distance of an offset, as a multiple of the figure's largest coordinate. The figure
+#: then still extends over 2**20 integer steps of Clipper.
 _MAX_GROWTH = 2.0**20
 
-#: OpenSCAD 2021.01 rounds the corners of figures that it combines to this part of a unit.
+#: Steps per model unit to which OpenSCAD 2021.01 rounds the corners of figures that it combines.
 _GRID = 2.0**16
 
-#: Clipper ends the process where coordinates reach 2**62 of these parts.
+#: The bound of coordinates, in model units: Clipper ends the process at 2**62 steps of `_GRID`.
 _GRID_REACH = 2.0**62 / _GRID
 
-#: It counts what pens draw in steps of this part of a unit, a quarter of which arcs are off.
+#: Steps per model unit in which strokes are computed. Their arcs deviate by a quarter of a step.
 _PEN = 10_000.0
 
-#: It joins corners of the result closer than this, and drops those as close to a line, in units.
+#: OpenSCAD merges corners of a result that are closer than this, in model units, and removes
+#: corners that are as close to the line through their neighbours.
 _CLEANED = 0.001
 
 
@@ -50,7 +52,7 @@ def offset_region(
     segments: int = SEGMENTS,
     miter_limit: Scalar = _MITER_LIMIT,
 ) -> Region:
-    """Return a region with its outline moved outwards (see `Region.offset`)."""
+    """Return a region with its outline moved outwards by `delta`, or inwards if it is negative."""
     word(get_args(Join), join, "join")
     distance, limit = number(delta, "delta"), number(miter_limit, "miter_limit")
     sides = sides_around(3, segments, "segments")
@@ -67,7 +69,7 @@ def offset_region(
 
 
 def refuse_far(figure: Region, delta: float) -> None:
-    """Raise `LimitError` if a figure is too small relative to the offset for the precision."""
+    """Raise `LimitError` if an offset exceeds 2**20 times a figure's largest coordinate."""
     size = max(float(np.abs(loop).max()) for loop in figure.to_polygons())
     if delta > _MAX_GROWTH * size:
         message = (
@@ -85,20 +87,21 @@ def grown(
     Parameters
     ----------
     figure : Region
-        Not empty.
+        A region that is not empty.
     delta : float
+        The distance in model units.
     join : {"round", "square", "miter"}
-        The form of corners.
+        The shape of the outline around corners from which it moves away.
     sides : int
-        Sides of a full circle, for round corners.
+        The number of sides of a full circle, for round corners.
     miter_limit : float
-        The limit of mitred corners, in multiples of `delta`; longer ones become square.
+        The largest length of a mitre, in multiples of `delta`; longer mitres become square.
     """
     loops = figure.to_polygons()
     if join == "round":
         refuse_many_corners(_arc_corners(loops, delta, sides), "This offset")
     scale = _scale(loops, delta)
-    # With this tolerance Clipper steps by the sides of a full circle.
+    # With this tolerance Clipper divides a full circle into `sides` sides.
     tolerance = abs(delta) * scale * (1 - np.cos(np.pi / sides))
     pen = pyclipper.PyclipperOffset(miter_limit, tolerance)
     kind = getattr(pyclipper, f"JT_{join.upper()}")
@@ -108,7 +111,7 @@ def grown(
 
 
 def _arc_corners(loops: Sequence[FloatArray], delta: float, sides: int) -> int:
-    """Return an upper bound of the number of corners of all arcs."""
+    """Return an upper bound of the number of corners of an offset with round joins."""
     turned, count = 0.0, 0
     for loop in loops:
         along = np.diff(loop, axis=0, append=loop[:1])
@@ -120,7 +123,7 @@ def _arc_corners(loops: Sequence[FloatArray], delta: float, sides: int) -> int:
 
 
 def _bevelled(figure: Region, delta: float) -> Region:
-    """Return a figure grown with bevelled corners, which pyclipper lacks."""
+    """Return the offset of a figure with bevelled corners, computed by manifold3d."""
     loops = figure.to_polygons()
     scale = _scale(loops, delta, _MANIFOLD_REACH)
     scaled = [loop * scale for loop in loops]
@@ -131,11 +134,12 @@ def _bevelled(figure: Region, delta: float) -> Region:
 
 
 def cleaned(figures: Sequence[Region]) -> Region:
-    """Return the union of figures like OpenSCAD, without the slits and spikes that it removes.
+    """Return the union of figures, without tiny gaps and overlaps, as OpenSCAD computes it.
 
-    With six digits, the sides of rotated shapes may have tiny gaps or overlaps. Shrinking such a
-    figure widens a gap to a slit, and growing it with mitres makes spikes. The result differs from
-    the union by less than a thousandth of a unit. Figures without area after rounding are dropped.
+    With six digits, the sides of rotated shapes may have tiny gaps or overlaps. A negative offset
+    of such a figure widens a gap to a slit, and a mitred positive offset makes spikes. The result
+    differs from the union by less than a thousandth of a unit. Figures without area after rounding
+    are dropped.
 
     Raises
     ------
@@ -162,23 +166,26 @@ def cleaned(figures: Sequence[Region]) -> Region:
 
 
 def _has_area(path: list[list[int]]) -> bool:
-    """Say whether the corners of a path are not collinear, which Clipper requires."""
+    """Return True if the corners of a path are not all on one line, which Clipper requires."""
     (x, y), *others = path
     arms = [(u - x, v - y) for u, v in others if (u, v) != (x, y)]
     return any(arms[0][0] * v != arms[0][1] * u for u, v in arms[1:])
 
 
 def stroked(line: FloatArray, width: float, cap: str, join: str = "miter") -> Region:
-    """Return the stroke of a line, with corners like OpenSCAD's.
+    """Return the area that a stroke of a given width covers along a polyline.
 
     Parameters
     ----------
     line : (n, 2) float64
+        The corners of the polyline.
     width : float
+        The width of the stroke, in model units.
     cap : {"butt", "square", "round"}
-        The form of its ends.
+        The shape of the stroke's ends.
     join : {"miter", "round", "bevel"}
-        The form of its corners; bevelled ones are cut off at half the width from the corner.
+        The shape of the stroke's corners. Bevelled corners are cut off at half the width from the
+        polyline's corner.
     """
     scale = min(_PEN, _scale([line], width))
     pen = pyclipper.PyclipperOffset()
@@ -197,6 +204,6 @@ def _whole_numbers(loops: list[FloatArray], scale: float) -> list[Any]:
 
 
 def _scale(loops: list[FloatArray], delta: float, reach: float = _REACH) -> float:
-    """Return the power of two that scales coordinates to nearly the range of a library."""
+    """Return the largest power of two that scales loops, grown by `delta`, to at most `reach`."""
     largest = max(float(np.abs(loop).max()) for loop in loops) + abs(delta)
     return float(2.0 ** np.floor(np.log2(reach / largest)))

@@ -1,4 +1,4 @@
-"""Projections of solids."""
+"""Projections of solids onto the plane z = 0."""
 
 import numpy as np
 
@@ -7,9 +7,9 @@ from ...solid.solid import Solid
 
 
 def shadow(body: Solid) -> Region:
-    """Return the projection of a solid along z (see `Solid.project`).
+    """Return the projection of a solid along z, as a region.
 
-    It is the area of the triangles that face upwards; their common edges cancel.
+    It is the union of the projected triangles that face upwards; their common edges cancel.
     """
     mesh = body.normalized().to_mesh()
     a, b, c = (mesh.vertices[mesh.faces[:, k]][:, :2] for k in range(3))

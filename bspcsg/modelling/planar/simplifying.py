@@ -8,7 +8,7 @@ from ...parameters import not_negative
 
 
 def simplify_region(figure: Region, tolerance: Scalar) -> Region:
-    """Return a region with fewer corners (see `Region.simplify`)."""
+    """Return a region with fewer corners, whose outlines deviate by at most `tolerance`."""
     limit = not_negative(tolerance, "tolerance")
     if limit == 0 or figure.is_empty or figure.is_full:
         return figure
@@ -19,14 +19,14 @@ def simplify_region(figure: Region, tolerance: Scalar) -> Region:
 
 
 def thinned_loop(loop: FloatArray, tolerance: float) -> FloatArray:
-    """Return the corners of a closed loop that are necessary for its shape within a tolerance.
+    """Return the corners, (k, 2), of a simplified loop that deviates by at most `tolerance`.
 
     Notes
     -----
     The loop is cut at its first corner and the corner farthest from it. Each half is divided at the
-    corner farthest from its chord, until all are within the tolerance (Ramer 1972, Douglas and
-    Peucker 1973). Distances are measured to the chord, not to its line, so the tolerance holds for
-    every point of both loops.
+    corner farthest from its chord, until all corners are within the tolerance (Ramer 1972, Douglas
+    and Peucker 1973). Distances are measured to the chord as a segment, not to its infinite line,
+    so the tolerance holds for every point of both loops.
     """
     count = len(loop)
     far = int(np.linalg.norm(loop - loop[0], axis=1).argmax())
@@ -48,7 +48,7 @@ def thinned_loop(loop: FloatArray, tolerance: float) -> FloatArray:
 
 
 def _distances(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-    """Return the distances of points from a segment."""
+    """Return the distance of each point from the segment between `start` and `end`, (n,)."""
     along = end - start
     length = float(along @ along)
     part = np.clip((points - start) @ along / length, 0, 1) if length else np.zeros(len(points))

@@ -7,7 +7,7 @@ from ...bsp import Region
 from ...errors import LimitError
 from .hulls import hull_region
 
-#: The largest number of pairs of convex parts: more would take hours.
+#: The largest number of pairs of convex parts of two regions. More would take hours.
 _MAX_PART_PAIRS = 20_000
 
 
@@ -20,9 +20,9 @@ def sum_of_regions(a: Region, b: Region) -> Region:
     Raises
     ------
     UnboundedError
-        If one reaches to infinity.
+        If a region reaches to infinity.
     LimitError
-        If there are more than 20 000 pairs of parts ("too_large").
+        If there are more than 20 000 pairs of convex parts ("too_large").
     """
     first, second = a.convex_parts(), b.convex_parts()
     if len(first) * len(second) > _MAX_PART_PAIRS:

@@ -9,7 +9,7 @@ from ..assets import rendered
 
 TITLE = "Binary space partition trees"
 
-#: The chapters in the order of the notes; each is a template of its name.
+#: The chapters of the lecture in order: the name of the template, and the title.
 CHAPTERS = (
     ("hyperplanes", "Hyperplanes and regions"),
     ("autopartitions", "Autopartitions"),
@@ -20,7 +20,7 @@ CHAPTERS = (
     ("space", "In space"),
 )
 
-#: The scripts, what is used before what uses it.
+#: The page's scripts, each after the scripts that it uses.
 SCRIPTS = (
     "kit/draw.js",
     "kit/tree.js",
@@ -40,7 +40,7 @@ SCRIPTS = (
 
 
 def lecture_page(title: str = TITLE) -> str:
-    """Return the page; the same bytes for the same version.
+    """Return the page of the lecture as HTML; it is the same for the same version of bspcsg.
 
     Parameters
     ----------
@@ -63,6 +63,6 @@ def lecture_page(title: str = TITLE) -> str:
 
 
 def _module() -> str:
-    """Return the core as WebAssembly, in base64."""
+    """Return the core of bspcsg, compiled to WebAssembly, as base64 text."""
     data = files("bspcsg.report") / "assets" / "lecture" / "core.wasm"
     return base64.b64encode(data.read_bytes()).decode("ascii")

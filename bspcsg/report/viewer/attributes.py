@@ -1,4 +1,4 @@
-"""Attributes of a mesh as paints: materials, colours, labels and numbers."""
+"""Conversion of a mesh's attributes to paints: materials, colours, labels and numbers."""
 
 from collections.abc import Iterator
 
@@ -10,10 +10,10 @@ from ...attributes.colours import as_bytes, hexadecimal, is_color, opaque
 from ...attributes.material import Material
 from .paint import DISTANCE, PALETTE, Colours, Labels, Paint, Scale
 
-#: The largest number of attributes that a page offers to paint by: nobody looks through more.
+#: The largest number of attributes by which a page can colour faces.
 _MAX_PAINTS = 6
 
-#: The largest number of labels of one attribute: nobody tells more of them apart.
+#: The largest number of distinct values of an attribute that is shown by labels.
 _MAX_LABELS = 1000
 
 #: The colour of faces without a material.
@@ -21,7 +21,7 @@ _PLAIN = Material((0.7, 0.76, 0.82, 1.0))
 
 
 def paints_of(said: Attributes | None) -> tuple[Paint, ...]:
-    """Return paints for the attributes of a mesh, colours and materials first."""
+    """Return at most six paints for the attributes of a mesh, scales of numbers last."""
     if said is None or said.is_empty:
         return ()
     found = [paint for paint in _each(said) if paint is not None]
@@ -56,7 +56,10 @@ def _materials(said: Attributes) -> Labels:
 
 
 def _labels(name: str, values: Values) -> Paint | None:
-    """Return integers, texts and truth values of faces as labels, unless there are too many."""
+    """Return the values of faces as labels; floats, or too many integers, as a scale.
+
+    Return None for too many texts.
+    """
     if values.dtype.kind == "f":
         return _scale(name, values)
     kinds, numbers = np.unique(values, return_inverse=True)

@@ -1,4 +1,4 @@
-"""A mesh with marked defects: holes, crossings, thin walls."""
+"""Layers and landmarks that show the defects of a mesh: holes, crossings, thin walls."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -18,10 +18,10 @@ from .thickness import thickness
 
 _RED, _VIOLET, _PINK, _ORANGE, _YELLOW = "#e0202f", "#8b3fd1", "#d13fa6", "#f08a24", "#d6b400"
 
-#: The largest number of places of one kind that a page offers to look at.
+#: The largest number of landmarks for one kind of defect.
 _MAX_LANDMARKS_PER_KIND = 30
 
-#: Opacity of the mesh where something in it is marked.
+#: The opacity of a mesh that has marked defects.
 _BEHIND = 0.45
 
 
@@ -36,7 +36,7 @@ def marked(
     found : Diagnosis
         The diagnosis of that mesh.
     thin : float, optional
-        Thickness in model units below which a wall is marked.
+        Walls thinner than this, in model units, are marked.
     """
     marks = marks_of(raw)
     layers = list(_marked(marks))
@@ -55,7 +55,7 @@ def marked(
 
 
 def assembled(whole: Examination) -> tuple[list[Layer], list[Landmark]]:
-    """Return layers of the objects of a file, and landmarks at their overlaps."""
+    """Return a layer for each object of a file, and a landmark where two objects overlap."""
     layers = told_apart(layers_of_file(whole.mesh, whole.mesh.name))
     places = [
         Landmark(f"clash: {one.first}, {one.second}", one.place, 2 * one.volume ** (1 / 3))
@@ -88,7 +88,7 @@ def _marked(marks: Marks) -> Iterator[Layer]:
 
 
 def _outlined(marks: Marks, faces: IndexArray, name: str, colour: str) -> Layer:
-    """Return some faces with their edges as lines, since faces may have no area."""
+    """Return a layer of the given faces and of their edges as lines, since faces may be flat."""
     used, renumbered = compacted(marks.faces[faces])
     lines = np.stack([renumbered, np.roll(renumbered, -1, axis=1)], axis=-1).reshape(-1, 2)
     return Layer(name, marks.vertices[used], renumbered, colour, lines=lines)
@@ -113,7 +113,7 @@ def _thinnest(marks: Marks, walls: FloatArray) -> list[Landmark]:
 
 
 def _holes(marks: Marks) -> Iterator[Landmark]:
-    """Yield the holes, those with the longest outline first."""
+    """Yield landmarks at the holes, those with the most open edges first."""
     if not len(marks.open):
         return
     counts = np.bincount(marks.holes)

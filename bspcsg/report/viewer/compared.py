@@ -1,4 +1,4 @@
-"""The page of two superimposed solids and their differences."""
+"""The page that shows two solids at once, and the parts that only one of them has."""
 
 from collections.abc import Sequence
 
@@ -13,16 +13,16 @@ from .layer import COLOURS, Layer
 from .paint import DISTANCE, Scale
 from .view import view_page
 
-#: Colours of what only the first and only the second has.
+#: Colours of the parts that only the first solid has, and that only the second has.
 _ONLY = ("#d7301f", "#2b62b3")
 
-#: Opacity of the two solids, where they differ.
+#: The opacity of both solids if they differ.
 _BEHIND = 0.35
 
-#: The distances of vertices from the other surface are measured if there are no more than this.
+#: The largest number of vertices whose distances from the other solid's surface are measured.
 _MAX_VERTICES_MEASURED = 20_000
 
-#: The paint that shows how far the other surface is.
+#: The name of the paint that shows the distance from the other solid's surface.
 DIFFERENCE = "difference"
 
 
@@ -40,7 +40,7 @@ def compared_page(
     solids : (Solid, Solid)
     names : (str, str)
     found : SetComparison
-        The result of their comparison.
+        The result of comparing the solids.
     notes : sequence of str
         Sentences below the title.
     unit : str
@@ -76,7 +76,7 @@ def _landmarks(found: SetComparison) -> list[Landmark]:
 
 
 def _distances(mesh: Mesh, other: Mesh) -> tuple[Scale, ...]:
-    """Return the distance of each vertex of a mesh from another mesh, unless there are too many."""
+    """Return a paint by the distance of each vertex from `other`; none for too many vertices."""
     used = np.unique(mesh.faces)
     if len(used) > _MAX_VERTICES_MEASURED or not len(other.faces):
         return ()

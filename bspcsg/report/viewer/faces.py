@@ -1,4 +1,4 @@
-"""One colour for each face of layers, for pictures."""
+"""The colour of each face of layers, for pictures, which have one colour for each face."""
 
 import io
 from collections.abc import Sequence
@@ -11,18 +11,18 @@ from ...errors import invalid_parameter
 from .layer import Layer
 from .paint import Colours, Labels, Paint
 
-#: The colour of places without a value on the scale.
+#: The colour of faces without a value on a scale.
 _UNKNOWN = "#9aa2ab"
 
-#: The paints that show layers as their files say they look.
+#: The names of paints that have the colours of the file itself.
 OWN = ("material", "color")
 
-#: The name that stands for the layers' own colours.
+#: The name that stands for one colour for each layer.
 PART = "part"
 
 
 def joined(layers: Sequence[Layer]) -> tuple[FloatArray, IndexArray]:
-    """Return the vertices and faces of all layers as one mesh."""
+    """Return the vertices (n, 3) and faces (m, 3) of all layers, concatenated."""
     starts = np.cumsum([0, *(len(layer.vertices) for layer in layers)]).tolist()
     faces = [layer.faces + start for layer, start in zip(layers, starts, strict=False)]
     return np.concatenate([layer.vertices for layer in layers]), np.concatenate(faces)
@@ -35,8 +35,8 @@ def face_colours(layers: Sequence[Layer], name: str | None = None) -> FloatArray
     ----------
     layers : sequence of Layer
     name : str, optional
-        The name of a paint, or "part"; by default the materials or colours of the layers. Layers
-        without the paint have their own colour.
+        The name of a paint, or "part"; by default the materials or colours of the files. The faces
+        of a layer without the paint have the colour of the layer.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def face_colours(layers: Sequence[Layer], name: str | None = None) -> FloatArray
 
 
 def are_textured(layers: Sequence[Layer]) -> bool:
-    """Say whether a layer has textures, of which each face shows only one colour here."""
+    """Say whether a layer has textures; `face_colours` takes only one colour of them per face."""
     paints = [paint for layer in layers for paint in layer.paints]
     return any(
         isinstance(paint, Labels) and paint.uv is not None and any(paint.images)
@@ -91,7 +91,7 @@ def _of_paint(paint: Paint) -> FloatArray:
 
 
 def _textures(paint: Labels) -> FloatArray:
-    """Return the colour of the picture in the middle of each face; white for faces without one."""
+    """Return the texture's colour at the centroid of each face, (m, 3); white without texture."""
     found = np.ones((len(paint.numbers), 3))
     uv = np.zeros((len(found), 2)) if paint.uv is None else paint.uv.mean(axis=1)
     for label, data in enumerate(paint.images):

@@ -1,4 +1,4 @@
-"""`Landmark`: a point of interest of a model."""
+"""`Landmark`: a named point of a model that a 3D view can show."""
 
 from dataclasses import dataclass
 
@@ -7,14 +7,14 @@ from ..._types import FloatArray
 
 @dataclass(frozen=True, eq=False)
 class Landmark:
-    """A point with a name.
+    """A named point of a model, such as a hole, that a 3D view can show.
 
     Parameters
     ----------
     name : str
-        The name of the place.
+        The label of the point.
     at : (3,) float64
-        In model units.
+        The point, in model units.
     size : float
         The radius of the surroundings to show, in model units.
     """

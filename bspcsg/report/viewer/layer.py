@@ -1,4 +1,4 @@
-"""`Layer`: one mesh of a view, with its appearance."""
+"""`Layer`: one mesh of a 3D view, with its appearance."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -9,16 +9,16 @@ from ..._types import FloatArray, IndexArray
 from ...mesh.weld import welded
 from .paint import Paint
 
-#: Colours of operands in their order, taken again from the start after the last.
+#: Colours of operands in order; after the last colour, the first one is used again.
 COLOURS = ("#6f9bd1", "#e0a458", "#7fb285", "#a98bc9", "#c98b8b", "#79b7bd")
 
-#: Colours of a result, and of where two results differ.
+#: The colour of a result, and of the difference between two results.
 RESULT, DIFFERENCE = "#b4c2d1", "#f0283a"
 
 
 @dataclass(frozen=True, eq=False)
 class Layer:
-    """One mesh of a view.
+    """One mesh of a 3D view, with its appearance.
 
     Parameters
     ----------
@@ -31,11 +31,11 @@ class Layer:
     opacity : float
         From 0 to 1.
     shown : bool
-        True if it is seen at first.
+        True if the layer is visible when the page is opened.
     paints : tuple of Paint
-        Other colourings of its faces that the page offers.
+        Ways to colour the faces that the page offers.
     lines : (k, 2) int64
-        Pairs of vertices, drawn as thick lines in front of all.
+        Pairs of vertices, drawn as thick lines in front of all faces.
     """
 
     name: str
@@ -49,7 +49,10 @@ class Layer:
 
     @property
     def is_closed(self) -> bool:
-        """True if every directed edge has equally many opposites, so that a section is filled."""
+        """True if every edge has as many faces in one direction as in the other.
+
+        Then sections of the mesh can be filled.
+        """
         start, end = self.faces.ravel(), np.roll(self.faces, -1, axis=1).ravel()
         size = max(len(self.vertices), 1)
         low, high = np.minimum(start, end), np.maximum(start, end)
@@ -57,7 +60,10 @@ class Layer:
         return not np.bincount(edge.ravel(), np.sign(end - start)).any()
 
     def simplified(self, cells: int) -> "Layer":
-        """Return the layer with the vertices in each grid cell merged, `cells` along a side."""
+        """Return the layer with the vertices in each cell of a cubic grid merged.
+
+        `cells` is the number of cells along the longest side.
+        """
         if len(self.faces) == 0:
             return self
         low, high = bounds_of([self])
@@ -78,13 +84,13 @@ class Layer:
 
 
 def drawn_points(layers: Sequence[Layer]) -> FloatArray:
-    """Return the vertices that are drawn, (n, 3) float64; the origin if there are none."""
+    """Return the vertices that faces or lines use, (n, 3) float64; the origin if there are none."""
     drawn = [np.union1d(layer.faces, layer.lines) for layer in layers]
     used = [layer.vertices[some] for layer, some in zip(layers, drawn, strict=True) if len(some)]
     return np.concatenate(used) if used else np.zeros((1, 3))
 
 
 def bounds_of(layers: Sequence[Layer]) -> tuple[FloatArray, FloatArray]:
-    """Return lowest and highest coordinates, (3,) each, of all vertices that are drawn."""
+    """Return smallest and largest x, y and z, (3,) each, of all vertices that are drawn."""
     points = drawn_points(layers)
     return points.min(axis=0), points.max(axis=0)

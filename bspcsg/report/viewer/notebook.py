@@ -1,4 +1,4 @@
-"""The view of a solid in a notebook: the interactive one, or a picture."""
+"""Views of solids and regions in a notebook: an interactive 3D view, or a picture."""
 
 from collections.abc import Sequence
 from html import escape
@@ -14,24 +14,24 @@ if TYPE_CHECKING:
     from ...bsp import Picture, Region
     from ...solid.solid import Solid
 
-#: The largest number of triangles in an interactive view, which then takes about two megabytes. A
-#: cell shows a picture of more.
+#: The largest number of triangles in an interactive view, which then takes about two megabytes.
+#: For more triangles a cell shows a picture.
 _MAX_VIEW_TRIANGLES = 200_000
 
-#: The largest number of triangles in a picture of a solid; of more it shows a simplified shape.
+#: The largest number of triangles in a picture of a solid; a solid of more is simplified.
 _MAX_PICTURE_TRIANGLES = 2_000
 
-#: The same for a picture of a region, whose flat triangles are painted faster.
+#: The largest number of triangles in a picture of a region; a region of more is simplified.
 _MAX_REGION_TRIANGLES = 20_000
 
-#: Of the view in a cell, in pixels.
+#: The height of an interactive view in a cell, in pixels.
 _HEIGHT = 440
 
 _SIZE = (480, 360)
 
 
 def solid_html(solid: "Solid") -> str | None:
-    """Return the interactive view of a solid, or a sentence if there is nothing to see.
+    """Return HTML with the interactive view of a solid, or a sentence if it cannot be shown.
 
     Return None if Jinja2 is not installed: the notebook then shows the picture.
     """
@@ -53,9 +53,9 @@ def solid_html(solid: "Solid") -> str | None:
 
 
 def framed(layers: Sequence[Layer], title: str) -> str:
-    """Return the interactive view of layers, in a frame.
+    """Return HTML with the interactive view of layers, in a frame.
 
-    All views of a notebook share one viewer, which the first view contains.
+    All views of a notebook share the code of the viewer, which the first view contains.
     """
     cell = running_cell()
     shared = "" if cell is None else viewer_name()
@@ -68,9 +68,9 @@ def framed(layers: Sequence[Layer], title: str) -> str:
 
 
 def solid_svg(solid: "Solid") -> str | None:
-    """Return a picture of a solid as SVG; above some thousand triangles it is simplified.
+    """Return a picture of a solid as SVG; a solid of too many triangles is simplified.
 
-    Return None in a notebook that takes PNG, too, since it would store both forms.
+    Return None in a notebook if PNG can be made, since the notebook would store both.
     """
     sentence = _obstacle(solid)
     if sentence:
@@ -79,7 +79,7 @@ def solid_svg(solid: "Solid") -> str | None:
 
 
 def solid_png(solid: "Solid") -> bytes | None:
-    """Return the same picture as PNG; None if there is nothing to see, or no Pillow."""
+    """Return a picture of a solid as PNG; None if it cannot be shown, or without Pillow."""
     return None if _obstacle(solid) else _png(_picture(solid))
 
 
@@ -89,7 +89,10 @@ def region_svg(region: "Region") -> str | None:
 
 
 def region_png(region: "Region") -> bytes | None:
-    """Return the same picture as PNG; None also without Pillow."""
+    """Return a picture of a region as PNG.
+
+    Return None if the region is empty or reaches to infinity, or without Pillow.
+    """
     return None if region.is_empty or not region.is_bounded else _png(_figure(region))
 
 
@@ -98,7 +101,7 @@ def _picture(solid: "Solid") -> "Picture":
 
 
 def slab(region: "Region") -> Layer:
-    """Return a region as a slab, whose top is the region."""
+    """Return a layer with a region extruded to a slab, whose top has the region's shape."""
     low, high = held(region.bounds, "the bounds of a region")
     mesh = region.extrude(float((high - low).max())).to_mesh()
     return Layer("region", mesh.vertices, mesh.faces)
@@ -126,7 +129,7 @@ def _has_pillow() -> bool:
 
 
 def _obstacle(solid: "Solid") -> str:
-    """Return the reason why a solid cannot be shown, or nothing."""
+    """Return the reason why a solid cannot be shown, or an empty string if it can."""
     if not solid.is_bounded:
         return "This solid reaches to infinity; intersect it with a box to see a part of it."
     return "This solid is empty." if len(solid.to_mesh().faces) == 0 else ""

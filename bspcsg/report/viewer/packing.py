@@ -1,8 +1,8 @@
-"""Models as JSON values for the viewer in a page; `assets/viewer/unpacking.js` unpacks them.
+"""Packing of models as JSON values for the viewer in a page, which `assets/viewer` unpacks.
 
-Coordinates are 16-bit numbers in the box of the whole model, so that layers that touch still touch,
-or single precision relative to its middle. Integers are stored as differences. Bytes of equal
-significance lie together, which improves compression by gzip.
+Coordinates are 16-bit numbers in the bounding box of the whole model, so that layers that touch
+still touch, or numbers of single precision relative to the centre of that box. Integers are stored
+as differences. Bytes of equal significance are stored together, so that gzip compresses better.
 """
 
 import base64
@@ -18,7 +18,7 @@ from .landmark import Landmark
 from .layer import Layer, bounds_of
 from .paint import Colours, Paint, Scale
 
-#: Steps along each side of the box.
+#: The number of steps along each side of the bounding box, in which coordinates are counted.
 _STEPS = 65535
 
 
@@ -30,17 +30,17 @@ def packed(
     paint: str = "",
     landmarks: Iterable[Landmark] = (),
 ) -> dict[str, Any]:
-    """Return a model as JSON values.
+    """Return a model, with layers and landmarks, as JSON values for the viewer.
 
     Parameters
     ----------
     layers : sequence of Layer
     quantised : bool
-        Sixteen bits for each coordinate; otherwise single precision, for looking closely.
+        True for 16 bits for each coordinate; False for single precision, which shows details.
     unit : str
         The unit of lengths.
     paint : str
-        The name of the paint that is on at first.
+        The name of the paint that is used when the page is opened.
     landmarks : iterable of Landmark
         The points of interest.
     """
@@ -75,7 +75,7 @@ def packed(
 
 
 def compressed(data: bytes) -> str:
-    """Return compressed bytes as text, reproducibly."""
+    """Compress bytes with gzip, and return them as base64; equal bytes give equal text."""
     return base64.b64encode(gzip.compress(data, 9, mtime=0)).decode("ascii")
 
 
@@ -94,7 +94,7 @@ def _looks(layer: Layer) -> dict[str, Any]:
 
 
 def _look(paint: Paint) -> dict[str, Any]:
-    """Return the description of a paint without its values."""
+    """Return a paint as JSON values, without the values of its faces or corners."""
     if isinstance(paint, Colours):
         return {"name": paint.name, "kind": "colours", "at": paint.at}
     if isinstance(paint, Scale):
@@ -122,7 +122,7 @@ def _look(paint: Paint) -> dict[str, Any]:
 
 
 def _painted(paint: Paint) -> list[bytes]:
-    """Return the values of a paint."""
+    """Return the values of a paint for all faces or corners, as blocks of bytes."""
     if isinstance(paint, Colours):
         return [_planes(paint.values.reshape(-1, 4).T)]
     if isinstance(paint, Scale):
@@ -132,9 +132,9 @@ def _painted(paint: Paint) -> list[bytes]:
 
 
 def _steps(placed: FloatArray, half: FloatArray) -> bytes:
-    """Return coordinates from -half to half as differences of integers."""
+    """Return coordinates from -half to half as 16-bit integers, each minus the previous one."""
     scale = _STEPS / np.where(half > 0, 2 * half, np.inf)
-    # A side without length has all its points in the middle.
+    # If a side of the box has no length, all points have step 0 there.
     whole = np.clip(np.rint((placed + half) * scale), 0, _STEPS).astype(np.int64).T
     return _planes(np.diff(whole, axis=1, prepend=0).astype(np.uint16))
 
@@ -149,7 +149,7 @@ def _indices(indices: IndexArray) -> bytes:
 
 
 def _planes(numbers: npt.NDArray[Any]) -> bytes:
-    """Return the lowest bytes of all numbers, then the next ones, up to the highest."""
+    """Return the least significant bytes of all numbers, then their next bytes, and so on."""
     flat = np.ascontiguousarray(numbers).ravel()
     little = flat.astype(flat.dtype.newbyteorder("<"), copy=False)
     return little.view(np.uint8).reshape(-1, flat.itemsize).T.tobytes()

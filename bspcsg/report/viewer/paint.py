@@ -1,4 +1,4 @@
-"""Paints, which colour the faces of a layer: by labels, on a scale, or with explicit colours."""
+"""Paints, ways to colour the faces of a layer: by labels, on a scale, or with explicit colours."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -9,28 +9,29 @@ import numpy.typing as npt
 
 from ..._types import FloatArray, IndexArray
 
-#: The parts of a mesh that have a value each.
+#: The elements of a mesh that have a value each.
 At: TypeAlias = Literal["face", "corner"]
 
-#: Colours of labels in their order, taken again from the start after the last.
+#: Colours of labels in order; after the last colour, the first one is used again.
 PALETTE = (
     "#6f9bd1", "#e0a458", "#7fb285", "#a98bc9", "#c98b8b", "#79b7bd", "#b8a46a", "#8d99ae",
     "#d48fb0", "#94b35c",
 )  # fmt: skip
 
-#: From thin, red, to thick, blue; told apart by whoever sees no red or green, too.
+#: Colours from thin (red) to thick (blue), which colour-blind people can distinguish, too.
 THICKNESS = ("#b2182b", "#ef8a62", "#f3d9c5", "#cfe0ec", "#67a9cf", "#2166ac")
 
-#: From none, grey, to far, dark red.
+#: Colours from the distance 0 (grey) to the largest distance (dark red).
 DISTANCE = ("#dfe4ea", "#fdd49e", "#fc8d59", "#d7301f", "#7f0000")
 
-#: Of the typical value: what is larger has the last colour, so that the rest can be told apart.
+#: Values above this multiple of the median have the last colour of a scale, so that smaller values
+#: can be distinguished.
 _CAP = 3.0
 
 
 @dataclass(frozen=True, eq=False)
 class Labels:
-    """A label for each face.
+    """A paint with one label for each face, such as the name of a material.
 
     Parameters
     ----------
@@ -38,11 +39,11 @@ class Labels:
     numbers : (m,) int64
         The number of the label of each face.
     labels, colours : sequence of str
-        Colours as ``"#rrggbb"``, or ``"#rrggbbaa"`` with an opacity.
+        Text and colour of each label, as ``"#rrggbb"``, or ``"#rrggbbaa"`` with an opacity.
     uv : (m, 3, 2) float64, optional
-        Texture coordinates of the corners in the picture of their label, from the lower left.
+        Texture coordinates of each face's corners in the picture of its label, from the lower left.
     images : sequence of bytes or None
-        The PNG or JPEG file of each label, if it has one.
+        The PNG or JPEG file of each label, None for a label without a picture.
     """
 
     name: str
@@ -53,14 +54,14 @@ class Labels:
     images: Sequence[bytes | None] = ()
 
     def taken(self, faces: IndexArray) -> "Labels":
-        """Return the paint of some faces."""
+        """Return the paint for the given faces only, in the given order."""
         uv = None if self.uv is None else self.uv[faces]
         return replace(self, numbers=self.numbers[faces], uv=uv)
 
 
 @dataclass(frozen=True, eq=False)
 class Scale:
-    """A number for each face or corner.
+    """A paint with one number for each face or corner, shown on a scale of colours.
 
     Parameters
     ----------
@@ -77,17 +78,17 @@ class Scale:
 
     @property
     def at(self) -> At:
-        """The elements that have a value."""
+        """The elements of the mesh that have a number: faces or corners."""
         return "face" if self.values.ndim == 1 else "corner"
 
     @property
     def low(self) -> float:
-        """The value of the first colour."""
+        """The value that has the first colour: the smallest known one."""
         return float(self._known.min()) if len(self._known) else 0.0
 
     @property
     def high(self) -> float:
-        """The value of the last colour, which larger values have, too."""
+        """The value that has the last colour: the largest known one, or three times the median."""
         if not len(self._known):
             return 0.0
         largest, typical = float(self._known.max()), float(np.median(self._known))
@@ -95,7 +96,7 @@ class Scale:
 
     @property
     def is_capped(self) -> bool:
-        """True if there are larger values than `high`."""
+        """True if a value is larger than `high`."""
         return bool(len(self._known)) and float(self._known.max()) > self.high
 
     @property
@@ -103,7 +104,7 @@ class Scale:
         return self.values[np.isfinite(self.values)]
 
     def steps(self, most: int) -> npt.NDArray[np.uint16]:
-        """Return values as integers from 1 to `most`, 0 for unknown ones."""
+        """Return the values, from `low` to `high`, as integers from 1 to `most`, 0 for NaN."""
         low, side = self.low, self.high - self.low
         known = np.isfinite(self.values)
         share = (np.where(known, self.values, low) - low) / (side or 1.0)
@@ -111,13 +112,13 @@ class Scale:
         return np.where(known, numbers, 0).astype(np.uint16)
 
     def taken(self, faces: IndexArray) -> "Scale":
-        """Return the paint of some faces."""
+        """Return the paint for the given faces only, in the given order."""
         return replace(self, values=self.values[faces])
 
 
 @dataclass(frozen=True, eq=False)
 class Colours:
-    """A colour for each face or corner.
+    """A paint with one colour for each face or corner.
 
     Parameters
     ----------
@@ -131,11 +132,11 @@ class Colours:
 
     @property
     def at(self) -> At:
-        """The elements that have a colour."""
+        """The elements of the mesh that have a colour: faces or corners."""
         return "face" if self.values.ndim == 2 else "corner"
 
     def taken(self, faces: IndexArray) -> "Colours":
-        """Return the paint of some faces."""
+        """Return the paint for the given faces only, in the given order."""
         return replace(self, values=self.values[faces])
 
 

@@ -1,4 +1,4 @@
-"""Layers of the objects of a file, and of the solid of a script."""
+"""Making layers of the objects of a file, and of a solid with its operands' origins."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,21 +16,21 @@ from .layer import COLOURS, RESULT, Layer
 from .paint import PALETTE, THICKNESS, Labels, Scale
 from .thickness import thickness
 
-#: The largest number of objects of one file that become parts with a button each. A file with more
-#: objects becomes one part.
+#: The largest number of objects of one file that become a layer each. A file with more objects
+#: becomes one layer.
 _MAX_PARTS = 60
 
-#: The largest number of operands that get a colour each. With more of them no operand gets one.
+#: The largest number of operands that get a colour each; of more operands none gets a colour.
 _MAX_OPERANDS_COLOURED = 200
 
-#: The paint that says which operand a face is from.
+#: The name of the paint, or attribute, that has the operand from which each face comes.
 ORIGIN = "origin"
 
 
 def layers_of_file(raw: RawMesh, name: str) -> list[Layer]:
-    """Return a layer for each object of a file, without distinct colours.
+    """Return a layer for each object of a file, all of one colour.
 
-    Vertices with equal coordinates are merged, so that shading and edges find adjacent faces.
+    Vertices with equal coordinates are merged, so that adjacent faces share vertices.
     """
     faces, objects = raw.faces, [one for one in raw.objects if one[1]]
     vertices = raw.vertices
@@ -55,7 +55,7 @@ def _taken(said: Attributes, faces: IndexArray) -> Attributes:
 
 
 def layers_of_solid(solid: Solid, name: str) -> list[Layer]:
-    """Return the layer of a solid, with a paint by the operand that each face comes from."""
+    """Return the layer of a solid, with a paint by the operand from which each face comes."""
     mesh = solid.normalized().to_mesh()
     layers = layers_of_file(replace(saying(mesh, said_of(mesh)), name=name), name)
     found = _operands(solid)
@@ -67,7 +67,7 @@ def layers_of_solid(solid: Solid, name: str) -> list[Layer]:
 
 
 def with_origin(solid: Solid) -> Solid:
-    """Return a solid whose faces keep an attribute that names the operand they come from."""
+    """Return a solid whose face attribute “origin” names the operand from which a face comes."""
     found = _operands(solid)
     if not found:
         return solid
@@ -84,7 +84,10 @@ def with_origin(solid: Solid) -> Solid:
 
 
 def _operands(solid: Solid) -> list[str]:
-    """Return names for the operands of the operation that made a solid, if there was one."""
+    """Return names for the operands of the set operation that made a solid.
+
+    Return an empty list if no operation made it, or its operands are too many.
+    """
     last = solid.last_operation
     if last is None or not 1 < len(last.operands) <= _MAX_OPERANDS_COLOURED:
         return []
@@ -99,13 +102,13 @@ def _size(operand: Solid) -> str:
 
 
 def with_thickness(layer: Layer) -> Layer:
-    """Return a layer with a paint by thickness."""
+    """Return a layer with one more paint: the thickness of the solid at each face."""
     values = thickness(layer.vertices, layer.faces)
     return replace(layer, paints=(*layer.paints, Scale("thickness", values, THICKNESS)))
 
 
 def told_apart(layers: Sequence[Layer]) -> list[Layer]:
-    """Return layers with distinct colours; a single layer has the colour of results."""
+    """Return layers in different colours; a single layer gets the colour of a result."""
     if len(layers) == 1:
         return [replace(layers[0], colour=RESULT)]
     return [

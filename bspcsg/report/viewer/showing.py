@@ -1,4 +1,4 @@
-"""The function `show`: it displays things in a notebook, or on a page in a browser."""
+"""The function `show`: it shows solids, assemblies and regions in a notebook or a browser."""
 
 import sys
 from collections.abc import Iterator
@@ -19,7 +19,7 @@ from .view import view_page
 
 
 def show(*things: Any) -> None:
-    """Show solids, assemblies and regions (see `bspcsg.show`)."""
+    """Show solids, assemblies and regions in a notebook or a browser (see `bspcsg.show`)."""
     shown = [_seen(thing) for thing in things]
     if is_notebook():
         display: Any = import_module("IPython.display").display
@@ -34,7 +34,7 @@ def _seen(thing: Any) -> Solid | Region | Assembly:
 
 
 def _open(layers: list[Layer]) -> None:
-    """Open a page in the browser, or print its path on standard error."""
+    """Open a page with layers in the browser, or print its path on standard error."""
     path = temporary_page("show")
     page = view_page(told_apart(layers), ", ".join(layer.name for layer in layers))
     write_file(path, [page.encode("utf-8", "replace")])
@@ -44,14 +44,14 @@ def _open(layers: list[Layer]) -> None:
 
 
 def _layers(thing: Solid | Region | Assembly) -> Iterator[Layer]:
-    """Yield the layers of a thing.
+    """Yield the layers of a solid, a region or an assembly.
 
     Raises
     ------
     UnboundedError
-        If it reaches to infinity.
+        If `thing` reaches to infinity.
     InvalidParameterError
-        If it is empty.
+        If `thing` is empty.
     """
     if isinstance(thing, Assembly):
         for part in thing.parts:

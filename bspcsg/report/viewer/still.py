@@ -1,4 +1,4 @@
-"""Small pictures of layers by the painter's algorithm, as data URLs."""
+"""Small pictures of layers, drawn by the painter's algorithm, as data URLs."""
 
 import base64
 import io
@@ -13,28 +13,28 @@ from ...bsp.painting.picture import picture
 from .faces import face_colours, joined
 from .layer import DIFFERENCE, Layer, drawn_points
 
-#: Meshes with more triangles than this are simplified first, to so many cells a side: the triangles
-#: would be smaller than a pixel.
+#: Meshes with more triangles than this are simplified first, to this number of grid cells along the
+#: longest side: the triangles would be smaller than a pixel.
 _MAX_TRIANGLES_DRAWN, _CELLS_PER_SIDE = 6_000, 96
 
-#: The largest number of triangles of a picture 320 pixels wide that shows edges; those of more
-#: triangles would blacken it.
+#: The largest number of triangles of a picture 320 pixels wide that shows edges; more edges would
+#: blacken it.
 _MAX_TRIANGLES_WITH_EDGES = 1_500
 
-#: The largest number of characters of a picture that stays SVG, which is sharp at every size, and
-#: the smallest number of characters of one polygon.
+#: The largest number of characters of a picture that is stored as SVG, not as pixels, and the
+#: smallest number of characters of one polygon in SVG.
 _MAX_PREFERRED_SVG_CHARACTERS, _MIN_POLYGON_CHARACTERS = 5_000, 40
 
-#: The largest number of characters of an SVG picture where no picture of pixels can be made. Above
-#: it there is no picture.
+#: The largest number of characters of an SVG picture if no picture of pixels can be made; a longer
+#: one is omitted.
 _MAX_SVG_CHARACTERS = 150_000
 
-#: Of WebP: from 0 to 100, and how long to search, from 0 to 6.
+#: The quality of WebP pictures, from 0 to 100, and the effort of compression, from 0 to 6.
 _QUALITY, _EFFORT = 66, 3
 
 
 def camera_for(layers: Sequence[Layer], size: tuple[int, int], view: View = "iso") -> Camera:
-    """Return a camera that sees all layers, by default from the front, right and above."""
+    """Return a camera with all layers in its picture, by default from front, right and above."""
     return Camera.named(view, drawn_points(layers), size[0] / size[1])
 
 
@@ -44,13 +44,13 @@ def still(
     size: tuple[int, int] = (320, 240),
     edges: bool = True,
 ) -> str:
-    """Return a picture of opaque layers as a data URL, or nothing if it is too large.
+    """Return a picture of layers, all opaque, as a data URL; an empty string if it is too large.
 
     Parameters
     ----------
     layers : sequence of Layer
     camera : Camera, optional
-        By default one that sees all of them.
+        By default one with all layers in its picture.
     size : (int, int)
         Width and height in pixels.
     edges : bool
@@ -60,7 +60,7 @@ def still(
         return ""
     painted = _painted(layers, camera or camera_for(layers, size), size, edges)
     least = len(painted.painting.source) * _MIN_POLYGON_CHARACTERS
-    # The lower bound first: it avoids writing a long SVG that is thrown away.
+    # Test the lower bound first, to avoid making a long SVG in vain.
     if least <= _MAX_PREFERRED_SVG_CHARACTERS and len(painted.svg) <= _MAX_PREFERRED_SVG_CHARACTERS:
         return _vector(painted.svg)
     pixels = _pixels(painted)
@@ -70,7 +70,7 @@ def still(
 
 
 def rough_picture(layer: Layer, size: tuple[int, int], most: int, view: View = "iso") -> Picture:
-    """Return a picture; above `most` triangles it shows a simplified shape.
+    """Return a picture of a layer; a layer of more than `most` triangles is simplified.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def rough_picture(layer: Layer, size: tuple[int, int], most: int, view: View = "
         Width and height in pixels.
     most : int
     view : str
-        From where.
+        The name of the point of view.
     """
     shape, cells = layer, _CELLS_PER_SIDE
     while len(shape.faces) > most and cells > 1:
@@ -91,7 +91,7 @@ def rough_picture(layer: Layer, size: tuple[int, int], most: int, view: View = "
 def rings(
     places: Sequence[Sequence[float]], camera: Camera, size: tuple[int, int] = (320, 240)
 ) -> str:
-    """Return a data URL of an image with a red ring around each point, as the camera sees it."""
+    """Return a data URL of an SVG with a red ring around each point, as the camera projects it."""
     width, height = size
     flat = camera.flatten(camera.place(np.array(places))) * (height / 2)
     circles = "".join(
@@ -127,7 +127,7 @@ def _vector(svg: str) -> str:
 
 
 def _pixels(painted: Picture) -> str:
-    """Return the picture as WebP, or nothing without Pillow."""
+    """Return a picture as a data URL of WebP; an empty string without Pillow."""
     try:
         from PIL import Image
     except ImportError:

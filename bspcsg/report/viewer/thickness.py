@@ -1,22 +1,23 @@
-"""The thickness of a solid at each of its faces."""
+"""Measuring the thickness of a solid at each of its faces by rays."""
 
 import numpy as np
 
 from ..._types import FloatArray, IndexArray
 from ...bsp import RayCaster
 
-#: Rays begin so far inside, as a share of the mesh's longest side, lest they meet their own face.
+#: The distance behind a face at which its ray begins, so that the ray does not hit that face, as a
+#: share of the mesh's longest side.
 _INSIDE = 1e-7
 
 
 def thickness(vertices: FloatArray, faces: IndexArray) -> FloatArray:
-    """Return the distance from each face's middle through the solid to the opposite side, (m,).
+    """Return the distance from each face's centroid through the solid to the opposite side, (m,).
 
     Parameters
     ----------
     vertices : (n, 3) float64
     faces : (m, 3) int64
-        Their normals point outwards.
+        Faces whose normals point outwards.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The page of one model: the interactive view, with a picture as a fallback."""
+"""The page with the interactive 3D view of one model, and a picture as a fallback."""
 
 from collections.abc import Sequence
 
@@ -35,7 +35,7 @@ def view_page(
     embedded : bool
         True to omit the parts for which a notebook cell has no room.
     paint : str
-        The initial paint; by default colours and materials, if there are any.
+        The name of the initial paint; by default that of materials or colours, if there is one.
     landmarks : sequence of Landmark
         The points of interest that the page offers.
     notes : sequence of str
@@ -43,7 +43,7 @@ def view_page(
     live : str
         The address on its server at which the page checks whether it is out of date.
     shared : str
-        The name of a viewer in the enclosing page; by default the page contains its own.
+        The name of a viewer in the enclosing page; by default the page contains the viewer's code.
 
     Raises
     ------
@@ -67,6 +67,6 @@ def view_page(
 
 
 def _own_colours(layers: Sequence[Layer]) -> str:
-    """Return the paint that shows layers with the look from their files, if there is one."""
+    """Return the name of the paint with the files' own materials or colours, or an empty string."""
     names = {paint.name for layer in layers for paint in layer.paints}
     return next((name for name in OWN if name in names), "")

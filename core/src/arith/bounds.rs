@@ -1,12 +1,12 @@
-//! The widths of the exact numbers of the kernel.
+//! How many bits and limbs the exact integers of the geometric predicates need.
 //!
 //! A bound is a number of bits `b` such that the magnitude is below 2^`b`; the sign takes one bit more. All
 //! bounds follow from one fact: a determinant of order 2, 3 or 4 with entries in [−1, 1] is at most 2, 4 or
 //! 16 (Hadamard 1893), and it is linear in each column. So the bound of a determinant is the sum of its
 //! columns' bounds plus 1, 2 or 4.
 //!
-//! Notation: `p` bounds a lattice coordinate. A corner of a cell lies half a step between
-//! lattice points; it enters doubled, as the homogeneous point (2x, 2y, 2z, 2).
+//! Notation: `p` bounds a lattice coordinate. A corner of a cell lies half a step between lattice points; it
+//! enters doubled, as the homogeneous point (2x, 2y, 2z, 2).
 //!
 //! # Example
 //! ```
@@ -18,26 +18,28 @@
 //! assert_eq!(limbs_for(plane_at_point(COORDINATE_BITS)), 8);
 //! ```
 
-/// Lattice coordinates are below 2^`COORDINATE_BITS` in magnitude.
+/// The number of bits of a lattice coordinate: its magnitude is below 2^`COORDINATE_BITS`.
 ///
-/// Doubles represent every integer up to 2^53, and so every lattice coordinate.
+/// A double represents every integer up to 2^53, and so every lattice coordinate.
 pub const COORDINATE_BITS: u32 = 53;
 
-/// The least integer above all lattice coordinates; points and lines across axes may reach it.
+/// The least integer above all lattice coordinates; points on the line, and lines in the plane that are
+/// perpendicular to an axis, may lie there.
 pub const REACH: i64 = 1 << COORDINATE_BITS;
 
-/// Return whether this is the coordinate of a lattice point.
+/// Return whether an integer is below 2^[`COORDINATE_BITS`] in magnitude, so that it is a lattice coordinate.
 pub const fn is_coordinate(k: i64) -> bool {
     k.unsigned_abs() < REACH.unsigned_abs()
 }
 
-/// Normals of half-spaces are below 2^`HALF_SPACE_NORMAL_BITS`.
+/// The number of bits of a half-space's normal: its components are below 2^`HALF_SPACE_NORMAL_BITS` in
+/// magnitude.
 ///
 /// A plane n·x = d that meets the lattice has |d| < 3·2^(bits + p), no wider than the offset of a plane
 /// through lattice points; the same holds after a motion or refinement that keeps it on the lattice.
 pub const HALF_SPACE_NORMAL_BITS: u32 = normal(COORDINATE_BITS) - 2;
 
-/// Limbs of a component of a plane's normal; as wide as an `i128`.
+/// Limbs of a component of a plane's normal; as many as an `i128` has.
 pub const NORMAL_LIMBS: usize = 2;
 
 /// Limbs of a plane's offset.
@@ -46,157 +48,166 @@ pub const OFFSET_LIMBS: usize = 3;
 /// Limbs of each of the homogeneous coordinates of a point where three planes meet.
 pub const POINT_LIMBS: usize = 6;
 
-/// Normals of short planes are below 2^`SHORT_NORMAL_BITS`: products of two fit a machine word.
+/// The number of bits of a short plane's normal: 2×2 determinants of components then fit an `i128`.
 pub const SHORT_NORMAL_BITS: u32 = 62;
 
-/// Offsets of short planes are below 2^`SHORT_OFFSET_BITS`: values at lattice points fit a machine
-/// word.
+/// The number of bits of a short plane's offset: the plane's values at lattice points then fit an `i128`.
 pub const SHORT_OFFSET_BITS: u32 = 124;
 
-/// Normals of lines in the plane are below 2^`LINE_NORMAL_BITS`: products of two fit a machine word.
+/// The number of bits of the normal of a line in the plane: 2×2 determinants of components then fit an
+/// `i128`.
 pub const LINE_NORMAL_BITS: u32 = 62;
 
-/// Offsets of lines that meet the plane's frame are below 2^`LINE_OFFSET_BITS`.
+/// The number of bits of the offset of a line in the plane, if the line meets the square |x|, |y| ≤
+/// [`REACH`].
 pub const LINE_OFFSET_BITS: u32 = LINE_NORMAL_BITS + COORDINATE_BITS + 2;
 
-/// Limbs of each coordinate of a point where two lines meet, times its weight.
+/// Limbs of each homogeneous coordinate of a point where two lines of the plane meet.
 pub const LINE_MEET_LIMBS: usize = 3;
 
-/// Limbs of a line's value at such a point.
+/// Limbs of a line's value at a point where two other lines of the plane meet.
 pub const LINE_AT_MEET_LIMBS: usize = 4;
 
-/// Limbs of a coordinate of one such point times the weight of another.
+/// Limbs of a homogeneous coordinate of one meet of two lines times the weight of another such meet.
 pub const LINE_CROSS_LIMBS: usize = 5;
 
 /// Limbs of each of the homogeneous coordinates of a point where three short planes meet.
 pub const SHORT_POINT_LIMBS: usize = 4;
 
-/// Limbs of a short plane's value at such a point.
+/// Limbs of a short plane's value at a point where three short planes meet.
 pub const SHORT_PLANE_AT_POINT_LIMBS: usize = 6;
 
-/// Limbs of a coordinate of one such point times the weight of another.
+/// Limbs of a homogeneous coordinate of one meet of three short planes times the weight of another such meet.
 pub const SHORT_CROSS_LIMBS: usize = 8;
 
 /// Limbs of a plane's value at a point where three planes meet.
 pub const PLANE_AT_POINT_LIMBS: usize = 8;
 
-/// Limbs of one plane's value at a corner times another's at such a point.
+/// Limbs of one plane's value at a corner of a cell times another plane's value at a meet of three planes.
 pub const CORNER_TIMES_POINT_LIMBS: usize = 11;
 
-/// Limbs of a coordinate of one such point times the weight of another.
+/// Limbs of a homogeneous coordinate of one meet of three planes times the weight of another such meet.
 pub const CROSS_LIMBS: usize = 12;
 
-/// Limbs of the orientation of three such points in a projection.
+/// Limbs of the orientation of three points, each the meet of three planes, in a projection along an axis.
 pub const ORIENTATION_LIMBS: usize = 18;
 
-/// Limbs of the cosine and sine of an angle between three such points, in a projection.
+/// Limbs of the cosine and sine, up to a factor, of an angle between three points, each the meet of three
+/// planes, in a projection along an axis.
 pub const ANGLE_LIMBS: usize = 24;
 
-/// Limbs of the volume spanned by four such points.
+/// Limbs of the volume, up to a factor, spanned by four points, each the meet of three planes.
 pub const SIDE_LIMBS: usize = 36;
 
-/// Limbs of the sine of the sum of two such angles.
+/// Limbs of the sine, up to a factor, of a sum of two angles, each as wide as [`ANGLE_LIMBS`].
 pub const ANGLES_LIMBS: usize = 48;
 
-/// The bound of a sum of two numbers.
+/// The bound, in bits, of a sum of two integers, from their bounds.
 const fn sum(a: u32, b: u32) -> u32 {
     1 + if a > b { a } else { b }
 }
 
-/// The bound of a 2×2 determinant from those of its columns.
+/// The bound, in bits, of a 2×2 determinant, from the bounds of its columns.
 const fn det2(columns: [u32; 2]) -> u32 {
     columns[0] + columns[1] + 1
 }
 
-/// The bound of a 3×3 determinant from those of its columns.
+/// The bound, in bits, of a 3×3 determinant, from the bounds of its columns.
 const fn det3(columns: [u32; 3]) -> u32 {
     columns[0] + columns[1] + columns[2] + 2
 }
 
-/// The bound of a 4×4 determinant from those of its columns.
+/// The bound, in bits, of a 4×4 determinant, from the bounds of its columns.
 const fn det4(columns: [u32; 4]) -> u32 {
     columns[0] + columns[1] + columns[2] + columns[3] + 4
 }
 
-/// A component of the normal of a plane through three lattice points.
+/// Bound, in bits, on a component of the normal of a plane through three lattice points.
 pub const fn normal(p: u32) -> u32 {
     det3([p, p, 0])
 }
 
-/// The offset of a plane through three lattice points.
+/// Bound, in bits, on the offset of a plane through three lattice points.
 pub const fn offset(p: u32) -> u32 {
     det3([p, p, p])
 }
 
-/// A lattice point against a plane.
+/// Bound, in bits, on a plane's value at a lattice point.
 pub const fn plane_at_lattice_point(p: u32) -> u32 {
     det4([p, p, p, 0])
 }
 
-/// A corner against a plane.
+/// Bound, in bits, on a plane's value at the doubled corner of a cell.
 pub const fn plane_at_corner(p: u32) -> u32 {
     plane_at_lattice_point(p) + 1
 }
 
-/// A corner against an edge in a projection along an axis.
+/// Bound, in bits, on the determinant that orients a cell's doubled corner against a lattice edge, in a
+/// projection along an axis.
 pub const fn edge_at_corner(p: u32) -> u32 {
     det3([p, p, 0]) + 1
 }
 
-/// A corner, and a line along an axis through it, against the meet of two planes.
+/// Bound, in bits, on the determinant that decides on which side of a plane an axis-parallel line through a
+/// cell's doubled corner meets another plane.
 pub const fn plane_pair_at_corner(p: u32) -> u32 {
     det2([normal(p), plane_at_corner(p)])
 }
 
-/// A component of the direction in which two planes meet.
+/// Bound, in bits, on a component of the direction of the line in which two planes meet.
 pub const fn line_direction(p: u32) -> u32 {
     det2([normal(p), normal(p)])
 }
 
-/// The point where a plane cuts an edge, against another plane; two such points of one edge.
+/// Bound, in bits, on the determinant that decides on which side of one plane another plane cuts a lattice
+/// edge, or which of two planes cuts the edge first.
 pub const fn edge_point_at_plane(p: u32) -> u32 {
     det2([plane_at_lattice_point(p), plane_at_lattice_point(p)])
 }
 
-/// The point where a plane cuts an edge, against a cut halfway between lattice planes.
+/// Bound, in bits, on the determinant that decides on which side of a cut, halfway between lattice planes, a
+/// plane cuts a lattice edge.
 pub const fn edge_point_at_cut(p: u32) -> u32 {
     let end_to_cut = sum(p + 1, p + 1);
     det2([end_to_cut, plane_at_lattice_point(p)])
 }
 
-/// The point where two edges of one plane cross in a projection, against another plane.
+/// Bound, in bits, on the determinant that decides on which side of a plane two coplanar lattice edges cross.
 pub const fn edge_crossing_at_plane(p: u32) -> u32 {
     let edge_at_lattice_point = det3([p, p, 0]);
     det2([edge_at_lattice_point, plane_at_lattice_point(p)])
 }
 
-/// The point where two planes meet a cut, against a plane.
+/// Bound, in bits, on a plane's value at the point where two other planes meet a cut across an axis.
 pub const fn plane_pair_in_cut_at_plane(p: u32) -> u32 {
     det3([normal(p), normal(p), plane_at_corner(p)])
 }
 
-/// The weight of a point where three planes meet; a direction of a line against a plane.
+/// Bound, in bits, on the weight of a point where three planes meet, which is also the product of a plane's
+/// normal with the direction of a line of two planes.
 pub const fn point_weight(p: u32) -> u32 {
     det3([normal(p), normal(p), normal(p)])
 }
 
-/// A numerator of a point where three planes meet.
+/// Bound, in bits, on a homogeneous coordinate x, y or z of a point where three planes meet.
 pub const fn point_numerator(p: u32) -> u32 {
     det3([normal(p), normal(p), offset(p)])
 }
 
-/// A point where three planes meet, against a cut halfway between lattice planes.
+/// Bound, in bits, on the value of a cut, halfway between lattice planes, at a point where three planes meet.
 pub const fn point_at_cut(p: u32) -> u32 {
     let cut = p + 1;
     sum(point_numerator(p) + 1, point_weight(p) + cut)
 }
 
-/// A point where three planes meet, against a fourth plane; the order of two on any line.
+/// Bound, in bits, on a plane's value at a point where three planes meet; the same determinant orders two
+/// such points on any line.
 pub const fn plane_at_point(p: u32) -> u32 {
     det4([normal(p), normal(p), normal(p), offset(p)])
 }
 
-/// A corner against one plane times a point where three planes meet against another.
+/// Bound, in bits, on a difference of products, each of one plane's value at a cell's corner and another
+/// plane's value at a meet of three planes.
 pub const fn corner_times_point(p: u32) -> u32 {
     sum(
         plane_at_corner(p) + plane_at_point(p),
@@ -204,38 +215,42 @@ pub const fn corner_times_point(p: u32) -> u32 {
     )
 }
 
-/// The determinant of three differences between a lattice point and a doubled corner.
+/// Bound, in bits, on the determinant of three vectors, each the difference between a doubled lattice point
+/// and a doubled corner of a cell.
 pub const fn determinant_at_corner(p: u32) -> u32 {
     det3([p + 2, p + 2, p + 2])
 }
 
-/// A numerator of one point where three planes meet times the weight of another.
+/// Bound, in bits, on a homogeneous coordinate of one meet of three planes times the weight of another such
+/// meet.
 pub const fn numerator_times_weight(p: u32) -> u32 {
     point_numerator(p) + point_weight(p)
 }
 
-/// The orientation of three points where planes meet, in a projection along an axis.
+/// Bound, in bits, on the orientation of three points, each the meet of three planes, in a projection along
+/// an axis.
 pub const fn point_orientation(p: u32) -> u32 {
     det3([point_numerator(p), point_numerator(p), point_weight(p)])
 }
 
-/// The cosine and sine of the angle between differences below 2^`d`, in a projection along an axis, up to a
-/// factor.
+/// Bound, in bits, on the cosine and sine, up to a factor, of the angle between two vectors with components
+/// below 2^`d`, in a projection along an axis.
 pub const fn angle(d: u32) -> u32 {
     sum(2 * d, 2 * d)
 }
 
-/// The volume that a point spans with three others, from differences below 2^`d`, up to a factor.
+/// Bound, in bits, on the volume, up to a factor, spanned by three vectors with components below 2^`d`.
 pub const fn volume(d: u32) -> u32 {
     det3([d, d, d])
 }
 
-/// The sine of the sum of two such angles, up to a factor.
+/// Bound, in bits, on the sine, up to a factor, of the sum of two angles between vectors with components
+/// below 2^`d`.
 pub const fn sum_of_angles(d: u32) -> u32 {
     sum(2 * angle(d), 2 * angle(d))
 }
 
-/// The limbs needed for signed numbers of magnitude below 2^`bits`.
+/// The number of limbs that signed integers of magnitude below 2^`bits` need.
 pub const fn limbs_for(bits: u32) -> usize {
     (bits as usize + 1).div_ceil(64)
 }

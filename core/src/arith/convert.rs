@@ -1,8 +1,9 @@
-//! Conversions whose correctness the types do not show, each with the reason.
+//! Conversions between number types that may round, saturate or truncate, each with the reason why that is
+//! right.
 
 /// Integers that have a nearest double.
 pub trait Nearest {
-    /// The nearest double.
+    /// The double nearest to the integer.
     fn nearest(self) -> f64;
 }
 
@@ -20,34 +21,34 @@ macro_rules! nearest {
 
 nearest!(i64, u64, i128, u128, usize);
 
-/// The nearest double: exact for integers below 2⁵³ in magnitude, such as lattice coordinates.
+/// The double nearest to an integer; exact for integers below 2⁵³ in magnitude, such as lattice coordinates.
 #[inline]
 pub fn as_double(integer: impl Nearest) -> f64 {
     integer.nearest()
 }
 
-/// A double truncated to an integer, saturated to the range.
+/// A double truncated to an `i64`, saturated to the range of `i64`.
 #[inline]
 #[allow(clippy::cast_possible_truncation, reason = "the cast saturates")]
 pub fn as_whole(x: f64) -> i64 {
     x as i64
 }
 
-/// A double truncated to a wide integer, saturated to the range.
+/// A double truncated to an `i128`, saturated to the range of `i128`.
 #[inline]
 #[allow(clippy::cast_possible_truncation, reason = "the cast saturates")]
 pub fn as_wide(x: f64) -> i128 {
     x as i128
 }
 
-/// The low limb.
+/// The low 64 bits of a 128-bit integer.
 #[inline]
 #[allow(clippy::cast_possible_truncation, reason = "the high limb is left out")]
 pub const fn low_limb(wide: u128) -> u64 {
     wide as u64
 }
 
-/// A count as a number: import ensures that there are fewer than 2³² vertices, faces and so on.
+/// A count as a `u32`: import ensures that there are fewer than 2³² vertices, faces and so on.
 #[inline]
 #[allow(clippy::cast_possible_truncation, reason = "see above")]
 pub const fn as_number(count: usize) -> u32 {
@@ -55,7 +56,7 @@ pub const fn as_number(count: usize) -> u32 {
     count as u32
 }
 
-/// The number of an item in memory as an index.
+/// The 64-bit number of an item in memory as a `usize` index.
 #[inline]
 #[allow(
     clippy::cast_possible_truncation,

@@ -1,4 +1,4 @@
-//! Numbers of two doubles each, for sums with more cancellation than one double allows.
+//! Numbers of two doubles each, for sums that lose too much to cancellation in one double.
 
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
@@ -27,20 +27,20 @@ pub struct DoubleDouble {
 }
 
 impl DoubleDouble {
-    /// The exact difference of two doubles.
+    /// The exact difference `a - b` of two doubles.
     #[inline]
     pub fn difference(a: f64, b: f64) -> Self {
         let (high, low) = two_sum(a, -b);
         Self { high, low }
     }
 
-    /// The nearest double.
+    /// The double nearest to the number.
     #[inline]
     pub fn rounded(self) -> f64 {
         self.high
     }
 
-    /// A double and a much smaller one.
+    /// The exact sum of a double and one of smaller magnitude.
     #[inline]
     fn of(large: f64, small: f64) -> Self {
         let high = large + small;

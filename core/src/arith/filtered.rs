@@ -1,6 +1,7 @@
-//! Results of floating-point filters.
+//! Answers of floating-point filters: certain, or left to an exact computation.
 
-/// The answer of a filter: rounded arithmetic settles a question, or leaves it to an exact computation.
+/// The answer of a filter, which computes in rounded arithmetic: certain, or doubtful, so that an exact
+/// computation must decide.
 ///
 /// # Example
 /// ```
@@ -15,12 +16,12 @@
 pub enum Filtered<T> {
     /// The exact answer.
     Certain(T),
-    /// Undecided: ask an exact computation.
+    /// Rounding errors leave the answer open: an exact computation must decide.
     Doubtful,
 }
 
 impl<T> Filtered<T> {
-    /// This answer, if it is certain.
+    /// Return `Certain(answer)` if `certain`, else `Doubtful`.
     #[inline]
     pub fn when(certain: bool, answer: T) -> Self {
         if certain {
@@ -30,7 +31,7 @@ impl<T> Filtered<T> {
         }
     }
 
-    /// The answer, computed exactly if necessary.
+    /// The certain answer, or else the result of the exact computation.
     #[inline]
     pub fn or_exact(self, exact: impl FnOnce() -> T) -> T {
         match self {
@@ -39,7 +40,7 @@ impl<T> Filtered<T> {
         }
     }
 
-    /// The answer of this filter, or of another one if it is doubtful.
+    /// This answer if it is certain, or else the answer of another filter.
     #[inline]
     pub fn or_else(self, other: impl FnOnce() -> Self) -> Self {
         match self {
@@ -48,7 +49,7 @@ impl<T> Filtered<T> {
         }
     }
 
-    /// Return whether the filter settles the question.
+    /// Return whether the answer is certain.
     #[inline]
     pub fn is_certain(&self) -> bool {
         matches!(self, Self::Certain(_))

@@ -2,7 +2,7 @@
 
 use super::convert::low_limb;
 
-/// The greatest common divisor; `gcd_u128(a, 0)` is `a`.
+/// The greatest common divisor of two 128-bit integers; `gcd_u128(a, 0)` is `a`.
 #[inline]
 pub fn gcd_u128(a: u128, b: u128) -> u128 {
     let (small, large) = if a <= b { (a, b) } else { (b, a) };
@@ -14,7 +14,7 @@ pub fn gcd_u128(a: u128, b: u128) -> u128 {
     }
 }
 
-/// The binary algorithm, while a number has two limbs; neither may be zero.
+/// The greatest common divisor of two nonzero integers, by the binary algorithm.
 fn gcd_long(a: u128, b: u128) -> u128 {
     let twos = (a | b).trailing_zeros();
     let (mut a, mut b) = (a >> a.trailing_zeros(), b >> b.trailing_zeros());
@@ -29,7 +29,7 @@ fn gcd_long(a: u128, b: u128) -> u128 {
     u128::from(gcd_odd(low_limb(a), low_limb(b))) << twos
 }
 
-/// The greatest common divisor of one-limb numbers; `gcd(a, 0)` is `a`.
+/// The greatest common divisor of two 64-bit integers; `gcd(a, 0)` is `a`.
 #[inline]
 pub fn gcd(a: u64, b: u64) -> u64 {
     if a == 0 || b == 0 {
@@ -39,7 +39,7 @@ pub fn gcd(a: u64, b: u64) -> u64 {
     gcd_odd(a >> a.trailing_zeros(), b >> b.trailing_zeros()) << twos
 }
 
-/// The binary algorithm on odd numbers.
+/// The greatest common divisor of two odd integers, by the binary algorithm.
 #[inline]
 fn gcd_odd(mut a: u64, mut b: u64) -> u64 {
     while a != b {

@@ -11,9 +11,9 @@ use super::sign::Sign;
 
 /// A signed integer of `N` 64-bit limbs, in two's complement.
 ///
-/// The limbs are little-endian. Arithmetic is exact. Callers ensure that results fit, by the widths in
-/// [`bounds`](super::bounds); where one does not, the operation panics, in every build. Products need no
-/// check where the result has the limbs of both factors.
+/// The limbs are little-endian. Arithmetic is exact: callers choose widths by [`bounds`](super::bounds) so
+/// that results fit, and an operation whose result does not fit panics, in every build. A product with at
+/// least as many limbs as both factors together always fits.
 ///
 /// Values are meant to stay within the symmetric range |x| < 2^(64 `N` − 1).
 ///
@@ -33,7 +33,7 @@ pub struct Int<const N: usize> {
 }
 
 impl<const N: usize> Int<N> {
-    /// The number of bits, the sign included.
+    /// The width of the integer in bits, the sign bit included.
     #[allow(clippy::cast_possible_truncation, reason = "a small constant")]
     pub const BITS: u32 = 64 * N as u32;
 
@@ -43,13 +43,13 @@ impl<const N: usize> Int<N> {
     /// One.
     pub const ONE: Self = Self::from_i64(1);
 
-    /// The integer with these little-endian two's complement limbs.
+    /// The integer with the given little-endian two's complement limbs.
     #[inline]
     pub const fn from_limbs(limbs: [u64; N]) -> Self {
         Self { limbs }
     }
 
-    /// The little-endian two's complement limbs.
+    /// The limbs of the integer, little-endian, in two's complement.
     #[inline]
     pub const fn limbs(&self) -> &[u64; N] {
         &self.limbs
@@ -74,14 +74,14 @@ impl<const N: usize> Int<N> {
         Self { limbs }
     }
 
-    /// The same value in `M >= N` limbs.
+    /// The same integer in `M >= N` limbs.
     #[inline]
     pub const fn widen<const M: usize>(&self) -> Int<M> {
         const { assert!(M >= N) };
         self.resize()
     }
 
-    /// The same value in `M <= N` limbs, or `None` if it does not fit.
+    /// The same integer in `M <= N` limbs, or `None` if it does not fit.
     #[inline]
     pub fn narrow<const M: usize>(&self) -> Option<Int<M>> {
         const { assert!(M <= N) };
@@ -89,7 +89,7 @@ impl<const N: usize> Int<N> {
         (low.resize::<N>() == *self).then_some(low)
     }
 
-    /// The value as an `i128`, or `None` if it does not fit.
+    /// The integer as an `i128`, or `None` if it does not fit.
     #[inline]
     pub fn to_i128(&self) -> Option<i128> {
         let low: Int<2> = self.resize();
@@ -109,13 +109,13 @@ impl<const N: usize> Int<N> {
         Int { limbs }
     }
 
-    /// All ones if the value is negative, else zero.
+    /// A limb of 64 ones if the integer is negative, else 0.
     #[inline]
     const fn sign_limb(&self) -> u64 {
         (self.limbs[N - 1].cast_signed() >> 63).cast_unsigned()
     }
 
-    /// The sign.
+    /// The sign of the integer.
     #[inline]
     pub fn sign(&self) -> Sign {
         if self.is_negative() {
@@ -127,22 +127,22 @@ impl<const N: usize> Int<N> {
         }
     }
 
-    /// Return whether the value is zero.
+    /// Return whether the integer is zero.
     #[inline]
     pub fn is_zero(&self) -> bool {
         self.limbs.iter().fold(0, |all, limb| all | limb) == 0
     }
 
-    /// Return whether the value is below zero.
+    /// Return whether the integer is below zero.
     #[inline]
     pub const fn is_negative(&self) -> bool {
         self.limbs[N - 1].cast_signed() < 0
     }
 
-    /// The absolute value.
+    /// The absolute value of the integer.
     ///
     /// # Panics
-    /// If that is 2^(64 `N` − 1).
+    /// If the integer is −2^(64 `N` − 1), whose absolute value does not fit.
     #[inline]
     #[must_use]
     pub fn abs(self) -> Self {
@@ -152,13 +152,13 @@ impl<const N: usize> Int<N> {
         }
     }
 
-    /// Return whether the value is −2^(64 `N` − 1), whose negative does not fit.
+    /// Return whether the integer is −2^(64 `N` − 1), whose negative does not fit.
     #[inline]
     fn is_minimum(&self) -> bool {
         self.limbs[N - 1] == 1 << 63 && self.limbs[..N - 1].iter().all(|&limb| limb == 0)
     }
 
-    /// The absolute value as an unsigned number, correct for every value.
+    /// The absolute value as unsigned little-endian limbs; correct for every integer, the least included.
     #[inline]
     pub(super) fn magnitude(&self) -> [u64; N] {
         let sign = self.sign_limb();
@@ -172,13 +172,13 @@ impl<const N: usize> Int<N> {
         limbs
     }
 
-    /// The number of bits of the absolute value; 0 for zero.
+    /// The number of significant bits of the absolute value; 0 for zero.
     #[inline]
     pub fn bit_length(&self) -> u32 {
         bit_length(&self.magnitude())
     }
 
-    /// The nearest double, ties to even; infinite where the value exceeds the doubles.
+    /// The double nearest to the integer, ties to even; infinite where the integer exceeds the doubles.
     #[inline]
     pub fn to_f64(&self) -> f64 {
         let nearest = round::limbs_to_f64(&self.magnitude());
@@ -194,7 +194,7 @@ impl<const N: usize> Int<N> {
     /// The product must lie in the symmetric range of `R` limbs; for `R >= N + B` it always fits.
     ///
     /// # Panics
-    /// If it does not.
+    /// If the product does not fit into `R` limbs.
     #[inline]
     #[must_use]
     #[allow(
@@ -218,21 +218,21 @@ impl<const N: usize> Int<N> {
         product
     }
 
-    /// The product with an `i64`, in `R` limbs; it must fit.
+    /// The product with an `i64`, in `R` limbs; panics if it does not fit.
     #[inline]
     #[must_use]
     pub fn mul_i64<const R: usize>(self, other: i64) -> Int<R> {
         self.mul(&Int::<1>::from_i64(other))
     }
 
-    /// The product with an `i128`, in `R` limbs; it must fit.
+    /// The product with an `i128`, in `R` limbs; panics if it does not fit.
     #[inline]
     #[must_use]
     pub fn mul_i128<const R: usize>(self, other: i128) -> Int<R> {
         self.mul(&Int::<2>::from_i128(other))
     }
 
-    /// The residue in `[0, p)`, for `p` one of [`P1`](super::P1) and [`P2`](super::P2).
+    /// The residue of the integer modulo `p`, in `0..p`; `p` is [`P1`](super::P1) or [`P2`](super::P2).
     #[inline]
     pub fn rem_u61(&self, p: u64) -> u64 {
         let top = self.limbs[N - 1].cast_signed();
@@ -247,7 +247,7 @@ impl<const N: usize> Int<N> {
     /// The remainder of the absolute value on division by `divisor`, which is not zero.
     ///
     /// # Panics
-    /// If it is.
+    /// If `divisor` is zero.
     #[inline]
     pub fn rem_u128(&self, divisor: u128) -> u128 {
         assert!(divisor != 0, "division by zero");
@@ -257,7 +257,7 @@ impl<const N: usize> Int<N> {
         }
     }
 
-    /// The quotient by `divisor`, which is not zero and divides the value.
+    /// The quotient by `divisor`, which must be nonzero and divide the integer without remainder.
     #[inline]
     #[must_use]
     pub fn div_exact_u128(&self, divisor: u128) -> Self {
@@ -274,7 +274,7 @@ impl<const N: usize> Int<N> {
         Self { limbs: rest }
     }
 
-    /// The floor of the value divided by 2^`bits`, for `bits < 128`.
+    /// The integer divided by 2^`bits` and rounded down, for `bits < 128`.
     #[inline]
     fn shift_right(&self, bits: u32) -> Self {
         let (whole, part) = ((bits / 64) as usize, bits % 64);
@@ -287,7 +287,7 @@ impl<const N: usize> Int<N> {
     }
 }
 
-/// Panics because a result does not fit into this many limbs.
+/// Panics with the message that `what` does not fit into `limbs` limbs.
 #[cold]
 #[inline(never)]
 pub(super) fn exceeds(what: &str, limbs: usize) -> ! {

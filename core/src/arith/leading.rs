@@ -1,12 +1,12 @@
-//! Numbers by their leading bits, and quotients that these decide.
+//! Integers by their leading bits, and quotients that these bits suffice to round.
 
 use super::convert::low_limb;
 use super::round::nearly_to_f64;
 
-/// Bits of the lower part of a [`Split`].
+/// The number of bits of the lower part of a [`Split`].
 pub const SPLIT_BITS: u32 = 40;
 
-/// An integer high·2^[`SPLIT_BITS`] + low, in two machine words each.
+/// The integer high·2^[`SPLIT_BITS`] + low, with 0 ≤ low < 2^[`SPLIT_BITS`].
 ///
 /// Nothing checks that sums fit: callers bound them.
 #[derive(Clone, Copy, Debug)]
@@ -16,7 +16,7 @@ pub struct Split {
 }
 
 impl Split {
-    /// high·2^[`SPLIT_BITS`] + low, for a high part below 2^126 in magnitude.
+    /// The integer high·2^[`SPLIT_BITS`] + low, for any low part and a high part below 2^126 in magnitude.
     #[inline]
     pub const fn new(high: i128, low: i128) -> Self {
         Self {
@@ -25,33 +25,33 @@ impl Split {
         }
     }
 
-    /// The sum; its high part must be below 2^126 in magnitude.
+    /// The sum of two split integers; its high part must be below 2^126 in magnitude.
     #[inline]
     #[must_use]
     pub const fn plus(&self, other: &Self) -> Self {
         Self::new(self.high.wrapping_add(other.high), self.low + other.low)
     }
 
-    /// The negative.
+    /// The integer with its sign reversed.
     #[inline]
     #[must_use]
     pub const fn negated(&self) -> Self {
         Self::new(self.high.wrapping_neg(), -self.low)
     }
 
-    /// Return whether the value is zero.
+    /// Return whether the integer is zero.
     #[inline]
     pub const fn is_zero(&self) -> bool {
         self.high | self.low == 0
     }
 
-    /// Return whether the value is below zero.
+    /// Return whether the integer is below zero.
     #[inline]
     pub const fn is_negative(&self) -> bool {
         self.high < 0
     }
 
-    /// The leading bits of a positive value.
+    /// The leading bits of the integer, which must be positive.
     #[inline]
     pub fn leading(&self) -> Leading {
         let (high, low) = (self.high.cast_unsigned(), self.low.cast_unsigned());
@@ -66,8 +66,8 @@ impl Split {
     }
 }
 
-/// The leading bits of a positive number: (bits + part)·2^exponent with 2^127 ≤ bits < 2^128 and 0 ≤ part ≤
-/// bits·2^-63.
+/// The leading 128 bits of a positive number, which is (bits + part)·2^exponent with 2^127 ≤ bits < 2^128 and
+/// 0 ≤ part ≤ bits·2^-63.
 #[derive(Clone, Copy, Debug)]
 pub struct Leading {
     bits: u128,
@@ -75,7 +75,7 @@ pub struct Leading {
 }
 
 impl Leading {
-    /// A positive integer.
+    /// The leading bits of a positive integer, which they represent exactly.
     #[inline]
     pub const fn of(number: u128) -> Self {
         let spare = number.leading_zeros();
@@ -85,7 +85,8 @@ impl Leading {
         }
     }
 
-    /// The product of an exact number, or one cut at 64 bits or lower, with a factor.
+    /// The leading bits of the product with an integer factor; the number must be exact, or inexact only
+    /// below its leading 64 bits.
     #[inline]
     #[must_use]
     pub fn times(&self, factor: u64) -> Self {
@@ -96,7 +97,7 @@ impl Leading {
         }
     }
 
-    /// The double nearest to the quotient, if the leading bits decide it.
+    /// The double nearest to the quotient of two numbers, or `None` if their leading bits do not decide it.
     ///
     /// A numerator n·(1 + a) of 127 bits over a denominator d·(1 + b) of 64, with 0 ≤ a ≤ 2^-63 and 0 ≤ b <
     /// 2^-63 + 2^-63: as n/d is below 2^64, the ratio is more than n/d − 4 and at most n/d + 2. So it
@@ -108,14 +109,14 @@ impl Leading {
         nearly_to_f64(quotient, UNSURE, self.exponent - denominator.exponent - 63)
     }
 
-    /// The leading 64 bits.
+    /// The leading 64 bits of the number.
     #[inline]
     const fn top(&self) -> u64 {
         (self.bits >> 64) as u64
     }
 }
 
-/// A bound on the error of the quotient of leading bits.
+/// A bound on the error of a quotient that is computed from leading bits, in units of its last bit.
 const UNSURE: u64 = 8;
 
 #[cfg(test)]
@@ -123,7 +124,7 @@ mod tests {
     use super::super::{ratio_to_f64, Int};
     use super::*;
 
-    /// Numbers of all lengths up to `bits`, in random order.
+    /// Positive integers of all lengths up to `bits` bits, in pseudorandom order.
     fn numbers(bits: u32) -> impl Iterator<Item = i128> {
         let mut state = 0x9E37_79B9_7F4A_7C15_F39C_C060_5CED_C835_u128;
         std::iter::repeat_with(move || {

@@ -1,15 +1,16 @@
-//! Unsigned numbers as arrays of limbs, little-endian.
+//! Unsigned integers as little-endian arrays of 64-bit limbs.
 //!
-//! The loops under [`Int`](super::Int) and the rounding. All wrap on purpose and say so explicitly,
-//! independent of the build's overflow checks.
+//! These are the loops under [`Int`](super::Int) and under the rounding to doubles. All operations wrap
+//! explicitly, so the build's overflow checks change nothing.
 
 use super::convert::{as_number, low_limb};
 
-/// The most limbs by which a product may be truncated; these are computed to check that they are empty.
+/// The largest number of top limbs that a product may lack; the code computes them anyway, to check that they
+/// only repeat the sign.
 pub(super) const MAX_TRUNCATED_LIMBS: usize = 2;
 
-/// The low `R >= A + B - MAX_TRUNCATED_LIMBS` limbs of the product of two unsigned numbers, and the
-/// limbs above.
+/// The product of two unsigned integers: its low `R >= A + B - MAX_TRUNCATED_LIMBS` limbs, and the limbs
+/// above these.
 #[inline]
 pub(super) fn unsigned_product<const A: usize, const B: usize, const R: usize>(
     a: &[u64; A],
@@ -28,7 +29,7 @@ pub(super) fn unsigned_product<const A: usize, const B: usize, const R: usize>(
     (product, top)
 }
 
-/// A limb of a number, or one above its last limb.
+/// The limb at index `place` of an integer whose limbs from `R` on are in `top`.
 #[inline(always)]
 #[allow(
     clippy::inline_always,
@@ -56,8 +57,8 @@ pub(super) const fn multiply_add(a: u64, b: u64, c: u64, d: u64) -> (u64, u64) {
     (low_limb(wide), (wide >> 64) as u64)
 }
 
-/// Subtracts `subtrahend & mask` from the limbs of `number` from `start` on; `top` has the limbs above its
-/// last.
+/// Subtracts `subtrahend & mask`, shifted by `start` limbs, from an integer whose limbs from `R` on are in
+/// `top`.
 ///
 /// The borrow out of the subtrahend's last limb is dropped: a product has no limb for it.
 #[inline]
@@ -75,7 +76,7 @@ pub(super) fn subtract_masked<const R: usize, const B: usize>(
     }
 }
 
-/// `a + b + carry` and the carry out.
+/// The low limb of `a + b + carry`, and whether the sum exceeds a limb.
 #[inline]
 pub(super) const fn carrying_add(a: u64, b: u64, carry: bool) -> (u64, bool) {
     let (sum, first) = a.overflowing_add(b);
@@ -83,7 +84,7 @@ pub(super) const fn carrying_add(a: u64, b: u64, carry: bool) -> (u64, bool) {
     (sum, first | second)
 }
 
-/// `a - b - borrow` and the borrow out.
+/// The low limb of `a - b - borrow`, and whether the difference is negative.
 #[inline]
 pub(super) const fn borrowing_sub(a: u64, b: u64, borrow: bool) -> (u64, bool) {
     let (difference, first) = a.overflowing_sub(b);
@@ -91,7 +92,7 @@ pub(super) const fn borrowing_sub(a: u64, b: u64, borrow: bool) -> (u64, bool) {
     (difference, first | second)
 }
 
-/// The remainder by a divisor of one limb.
+/// The remainder of an unsigned integer on division by a divisor of one limb.
 #[inline]
 pub(super) fn remainder_short<const N: usize>(limbs: &[u64; N], divisor: u64) -> u64 {
     limbs.iter().rev().fold(0, |rest, &limb| {
@@ -99,7 +100,7 @@ pub(super) fn remainder_short<const N: usize>(limbs: &[u64; N], divisor: u64) ->
     })
 }
 
-/// The remainder by a divisor of two limbs.
+/// The remainder of an unsigned integer on division by a divisor of two limbs.
 pub(super) fn remainder_long<const N: usize>(limbs: &[u64; N], divisor: u128) -> u128 {
     let shift = divisor.leading_zeros();
     let normalised = divisor << shift;
@@ -134,10 +135,10 @@ pub(super) fn remainder_step(rest: u128, limb: u64, divisor: u128) -> u128 {
     rest
 }
 
-/// The inverse of an odd number modulo 2^64.
+/// The inverse of an odd integer modulo 2^64.
 #[inline]
 pub(super) const fn inverse_mod_limb(odd: u64) -> u64 {
-    // Correct in five bits; each Newton step doubles them.
+    // The start is correct in its five low bits; each Newton step doubles the correct bits.
     let mut inverse = odd.wrapping_mul(3) ^ 2;
     let mut step = 0;
     while step < 4 {
@@ -147,7 +148,7 @@ pub(super) const fn inverse_mod_limb(odd: u64) -> u64 {
     inverse
 }
 
-/// Subtracts `factor * digit` from a number, modulo its width.
+/// Subtracts `factor * digit` from an integer in little-endian limbs, modulo 2 to the power of its width.
 #[inline]
 pub(super) fn subtract_multiple(number: &mut [u64], factor: u128, digit: u64) {
     let factor = [low_limb(factor), (factor >> 64) as u64];
@@ -159,7 +160,7 @@ pub(super) fn subtract_multiple(number: &mut [u64], factor: u128, digit: u64) {
     }
 }
 
-/// The number of significant bits of an unsigned number.
+/// The number of significant bits of an unsigned integer; 0 for zero.
 #[inline]
 pub(super) fn bit_length<const N: usize>(limbs: &[u64; N]) -> u32 {
     limbs
@@ -168,7 +169,7 @@ pub(super) fn bit_length<const N: usize>(limbs: &[u64; N]) -> u32 {
         .map_or(0, |i| 64 * (as_number(i) + 1) - limbs[i].leading_zeros())
 }
 
-/// The 64 bits from bit `start` on; bits outside the number are zero.
+/// The 64 bits of an integer from bit `start` on; bits outside the integer are zero.
 #[inline]
 pub(super) fn limb_at<const N: usize>(limbs: &[u64; N], start: i32) -> u64 {
     let limb = |i: i32| {
@@ -183,7 +184,7 @@ pub(super) fn limb_at<const N: usize>(limbs: &[u64; N], start: i32) -> u64 {
     low_limb(pair >> offset)
 }
 
-/// Return whether a bit below bit `end` is set.
+/// Return whether any bit of an integer below bit `end` is set.
 #[inline]
 pub(super) fn any_bit_below<const N: usize>(limbs: &[u64; N], end: i32) -> bool {
     let end = usize::try_from(end).unwrap_or(0);

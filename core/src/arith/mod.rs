@@ -1,4 +1,5 @@
-//! Exact integers of fixed width, their signs, residues, and correctly rounded ratios and sums.
+//! Exact integers of fixed width, signs of numbers, residues modulo primes, and correctly rounded ratios and
+//! sums.
 //!
 //! Nothing here knows geometry except [`bounds`], which derives how wide the
 //! integers of the exact predicates have to be. Nothing allocates.

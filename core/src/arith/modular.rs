@@ -1,7 +1,7 @@
 //! Residues modulo two primes just below 2^61.
 //!
-//! Two residues make a 122-bit signature of an exact number. Both primes have the form
-//! 2^61 − c with a small c, so that reduction is a fold and needs no division.
+//! Two residues make a 122-bit fingerprint of an exact number. Both primes have the form 2^61 − c with a
+//! small c, so that a number is reduced by adding c times its upper bits to its lower ones, without division.
 
 use super::convert::low_limb;
 
@@ -11,10 +11,10 @@ pub const P1: u64 = (1 << 61) - 1;
 /// The largest prime below [`P1`], 2^61 − 31.
 pub const P2: u64 = (1 << 61) - 31;
 
-/// The low 61 bits.
+/// The mask of the low 61 bits.
 const LOW: u128 = (1 << 61) - 1;
 
-/// The largest c = 2^61 − p for which two folds reduce 128 bits below 2p.
+/// The largest c = 2^61 − p for which two calls of [`fold`] reduce 128 bits to less than 2p.
 const MAX_EXCESS: u64 = 1 << 16;
 
 /// The product of two residues modulo `p`, which is [`P1`] or [`P2`].
@@ -23,7 +23,7 @@ pub const fn mul_mod(a: u64, b: u64, p: u64) -> u64 {
     reduce_mod((a as u128).wrapping_mul(b as u128), p)
 }
 
-/// The inverse of a residue modulo the prime `p`; 0 for 0.
+/// The inverse of a residue modulo the prime `p`; 0 for the residue 0.
 #[inline]
 pub fn inv_mod(a: u64, p: u64) -> u64 {
     let (mut large, mut small) = (p, a % p);
@@ -44,7 +44,7 @@ pub fn inv_mod(a: u64, p: u64) -> u64 {
     }
 }
 
-/// The residue of `residue * 2^64 + limb`.
+/// The residue of `residue * 2^64 + limb` modulo `p`, which is [`P1`] or [`P2`].
 #[inline]
 pub(super) const fn push_limb(residue: u64, limb: u64, p: u64) -> u64 {
     let limb_base = excess(p) << 3;
@@ -70,7 +70,7 @@ const fn fold(number: u128, excess: u64) -> u128 {
     (number & LOW).wrapping_add((number >> 61).wrapping_mul(excess as u128))
 }
 
-/// The distance from `p` up to 2^61.
+/// The difference 2^61 − `p`.
 #[inline]
 const fn excess(p: u64) -> u64 {
     let excess = (1u64 << 61).wrapping_sub(p);

@@ -1,4 +1,4 @@
-//! The standard operators, order and display of [`Int`].
+//! Arithmetic operators, order and display of [`Int`].
 
 use std::cmp::Ordering;
 use std::fmt;
@@ -101,7 +101,7 @@ impl<const N: usize> PartialOrd for Int<N> {
 }
 
 impl<const N: usize> fmt::Debug for Int<N> {
-    /// Sign and hexadecimal digits, as in `-0x1f`.
+    /// Writes the sign and the hexadecimal digits, as in `-0x1f`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let magnitude = self.magnitude();
         let lead = magnitude.iter().rposition(|&limb| limb != 0).unwrap_or(0);

@@ -1,12 +1,12 @@
-//! Correctly rounded ratios of integers.
+//! Ratios of integers, rounded correctly to doubles.
 
 use super::round::magnitudes_to_f64;
 use super::{Int, Sign};
 
 /// The double nearest to `numerator / denominator`, ties to even; `denominator > 0`.
 ///
-/// Subnormal results are rounded once, like all others; ratios beyond the largest double
-/// give an infinity. A zero numerator gives +0.
+/// Subnormal results are rounded once, like all others; a ratio above the largest double gives an infinity. A
+/// zero numerator gives +0.
 ///
 /// # Example
 /// ```

@@ -1,15 +1,15 @@
-//! Correctly rounded conversion of limbs and their ratios to doubles.
+//! Correctly rounded conversion of unsigned integers in limbs, and of their ratios, to doubles.
 
 use super::convert::{as_double, as_number, low_limb};
 use super::limbs::{any_bit_below, bit_length, limb_at};
 
-/// The exponent of the least positive double, 2^-1074.
+/// The binary exponent of the least positive double, 2^-1074.
 const LEAST_EXPONENT: i32 = -1074;
 
-/// The exponent of the least normal double.
+/// The binary exponent of the least normal double, 2^-1022.
 const LEAST_NORMAL_EXPONENT: i32 = -1022;
 
-/// The integers m and e of a finite double m·2^e; both are zero for zero.
+/// The integers m and e with m·2^e = `x`, for a finite double; both are zero for zero.
 #[inline]
 pub fn mantissa_and_exponent(x: f64) -> (i64, i32) {
     const FRACTION: u64 = (1 << 52) - 1;
@@ -23,7 +23,7 @@ pub fn mantissa_and_exponent(x: f64) -> (i64, i32) {
     (if x < 0.0 { -size } else { size }, exponent)
 }
 
-/// The double nearest to a ratio of positive numbers.
+/// The double nearest to a ratio of two positive integers.
 pub(super) fn magnitudes_to_f64<const A: usize, const B: usize>(
     num: &[u64; A],
     den: &[u64; B],
@@ -31,7 +31,7 @@ pub(super) fn magnitudes_to_f64<const A: usize, const B: usize>(
     leading_to_f64(num, den).unwrap_or_else(|| all_to_f64(num, den))
 }
 
-/// The double nearest to a ratio of positive numbers, if their leading bits decide it.
+/// The double nearest to a ratio of two positive integers, or `None` if their leading bits do not decide it.
 ///
 /// A numerator n·(1 + a) of 127 bits over a denominator d·(1 + b) of 64, with 0 ≤ a < 2^-126 and 0 ≤ b <
 /// 2^-63: as n/d is below 2^64, the ratio is more than n/d − 2 and at most n/d + 2^-62. So it rounds like
@@ -46,19 +46,20 @@ fn leading_to_f64<const A: usize, const B: usize>(num: &[u64; A], den: &[u64; B]
     nearly_to_f64(quotient, UNSURE, num_bits - den_bits - 63)
 }
 
-/// The double nearest to (number ± unsure) · 2^`exponent`, if it is the same for all of these.
+/// The double nearest to (number ± unsure) · 2^`exponent`, or `None` if numbers in this interval may round
+/// differently.
 ///
-/// The number has at least 63 bits.
+/// `number` has at least 63 bits.
 #[inline]
 pub(super) fn nearly_to_f64(number: u64, unsure: u64, exponent: i32) -> Option<f64> {
-    // Bits below the last one kept.
+    // Bits below the last bit of a double's mantissa.
     let spare = 64 - f64::MANTISSA_DIGITS - number.leading_zeros();
     let rest = number & ((1 << spare) - 1);
     let sure = rest.abs_diff(1 << (spare - 1)) > unsure;
     (sure && exponent > LEAST_NORMAL_EXPONENT).then(|| scaled_to_f64(number, true, exponent))
 }
 
-/// The double nearest to a ratio of positive numbers.
+/// The double nearest to a ratio of two positive integers, computed from all of their bits.
 ///
 /// One step of long division is enough. With the denominator shifted to fill its `B` limbs
 /// and the numerator shifted to `64 * B + 63` bits, the quotient has 63 or 64 bits.
@@ -91,7 +92,8 @@ fn divide_step<const B: usize>(lead: u64, low: [u64; B], divisor: &[u64; B]) -> 
     (quotient, rest.iter().all(|&limb| limb == 0))
 }
 
-/// `number - divisor * quotient` with the given top limb, modulo 2^(64 (B + 1)).
+/// `number - divisor * quotient` modulo 2^(64 (B + 1)), where `lead` is the top limb of the number; returns
+/// the top limb and the others.
 #[inline]
 fn subtract_multiple<const B: usize>(
     lead: u64,
@@ -111,7 +113,7 @@ fn subtract_multiple<const B: usize>(
     (lead.wrapping_sub(carry), number)
 }
 
-/// Adds in place and returns the carry out.
+/// Adds `addend` to `number` in place and returns the carry out of the last limb.
 #[inline]
 fn add_to<const B: usize>(number: &mut [u64; B], addend: &[u64; B]) -> u64 {
     let mut carry = 0;
@@ -125,7 +127,7 @@ fn add_to<const B: usize>(number: &mut [u64; B], addend: &[u64; B]) -> u64 {
     low_limb(carry)
 }
 
-/// The double nearest to an unsigned number, ties to even.
+/// The double nearest to an unsigned integer in little-endian limbs, ties to even.
 #[inline]
 pub(super) fn limbs_to_f64<const N: usize>(limbs: &[u64; N]) -> f64 {
     let start = bit_length(limbs).cast_signed() - 64;
@@ -143,14 +145,15 @@ fn scaled_to_f64(number: u64, sticky: bool, exponent: i32) -> f64 {
     if lead < LEAST_NORMAL_EXPONENT {
         return subnormal(number, sticky, LEAST_EXPONENT - exponent);
     }
-    // Below the last kept bit, so that it only decides ties.
+    // The sticky bit lies below the last bit of the mantissa, so that it only decides ties.
     let rounded = as_double(number | u64::from(sticky));
     // Two steps, because the scale alone may be out of range for doubles.
     let half = exponent / 2;
     rounded * power_of_two(half) * power_of_two(exponent - half)
 }
 
-/// The multiple of the least positive double nearest to `(number + part) / 2^shift` times it.
+/// The subnormal double nearest to `(number + part) / 2^shift` times the least positive double, where `part`
+/// lies strictly between 0 and 1 if `sticky`, else is 0.
 #[inline]
 fn subnormal(number: u64, sticky: bool, shift: i32) -> f64 {
     if shift > 64 {
@@ -163,7 +166,8 @@ fn subnormal(number: u64, sticky: bool, shift: i32) -> f64 {
     f64::from_bits(whole + u64::from(up))
 }
 
-/// 2^`exponent`, infinite above the range; the exponent must not be below the normal range.
+/// The double 2^`exponent`, infinite above the range of doubles; the exponent must not be below the normal
+/// range.
 #[inline]
 fn power_of_two(exponent: i32) -> f64 {
     debug_assert!(exponent >= LEAST_NORMAL_EXPONENT);

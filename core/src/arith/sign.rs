@@ -37,7 +37,7 @@ impl Sign {
         }
     }
 
-    /// The sign of a difference whose terms compare like this.
+    /// The sign of a − b, where `order` is the order of a and b.
     #[inline]
     pub fn from_order(order: Ordering) -> Self {
         match order {
@@ -47,20 +47,21 @@ impl Sign {
         }
     }
 
-    /// How a number of this sign compares to zero.
+    /// The order of a number of this sign and zero.
     #[inline]
     pub fn order(self) -> Ordering {
         self.cmp(&Self::Zero)
     }
 
-    /// The first sign that is not zero: the sign of a sum whose terms decrease in order of magnitude.
+    /// The first sign that is not zero, or zero if all are: the sign of a sum in which each term outweighs
+    /// all later ones.
     #[inline]
     pub fn first(signs: impl IntoIterator<Item = Self>) -> Self {
         let found = signs.into_iter().find(|sign| *sign != Self::Zero);
         found.unwrap_or(Self::Zero)
     }
 
-    /// Return a number, negated if the sign is negative.
+    /// Return `number`, negated if the sign is negative; a zero sign leaves it unchanged.
     #[inline]
     #[must_use]
     pub fn times<T: Neg<Output = T>>(self, number: T) -> T {
@@ -87,7 +88,7 @@ impl Neg for Sign {
 impl Mul for Sign {
     type Output = Self;
 
-    /// The sign of a product.
+    /// The sign of a product of two numbers with these signs.
     #[inline]
     fn mul(self, other: Self) -> Self {
         match self {
@@ -99,7 +100,7 @@ impl Mul for Sign {
 }
 
 impl From<Sign> for i32 {
-    /// −1, 0 or 1.
+    /// −1 for negative, 0 for zero, 1 for positive.
     #[inline]
     fn from(sign: Sign) -> Self {
         sign as Self

@@ -1,12 +1,13 @@
-//! Sums of doubles, rounded once.
+//! Exact sums of doubles, rounded once at the end.
 #![allow(clippy::float_cmp)]
 
 use smallvec::SmallVec;
 
-/// At least 40: as many doubles of 53 bits fit side by side in the 2098 bits from the least to the largest.
+/// The parts that a sum stores without allocation; at least 40, because as many doubles of 53 bits fit side
+/// by side in the 2098 bits from the least to the largest double.
 const PARTS: usize = 64;
 
-/// An exact sum of doubles, as parts that do not overlap, the smallest first.
+/// An exact sum of doubles, stored as doubles whose bits do not overlap, the smallest first.
 ///
 /// # Source
 /// Shewchuk 1997, "Adaptive precision floating-point arithmetic", § 2.4, GROW-EXPANSION.
@@ -24,12 +25,12 @@ const PARTS: usize = 64;
 #[derive(Debug, Default)]
 pub struct Sum {
     parts: SmallVec<[f64; PARTS]>,
-    /// The sum of infinite and NaN terms, and of overflow.
+    /// The sum of infinite and NaN terms and of overflows; 0 if there are none.
     beyond: f64,
 }
 
 impl Sum {
-    /// Adds a number.
+    /// Adds a double to the sum, without rounding.
     pub fn add(&mut self, number: f64) {
         let mut high = number;
         let mut kept = 0;
@@ -50,7 +51,8 @@ impl Sum {
         }
     }
 
-    /// The double nearest to the sum, ties to even; not finite if a part of the sum is not.
+    /// The double nearest to the sum, ties to even; infinite or NaN if a term was, or if a partial sum
+    /// overflowed.
     pub fn rounded(mut self) -> f64 {
         if self.beyond != 0.0 {
             return self.beyond;
@@ -66,7 +68,8 @@ impl Sum {
         high
     }
 
-    /// `high`, or its neighbour if `error` is half their distance and the parts below have the same sign.
+    /// `high`, or its neighbour if `error` is half their distance and the next smaller part has the sign of
+    /// `error`.
     fn nearer(&self, high: f64, error: f64) -> f64 {
         let below = self.parts.last().copied().unwrap_or(0.0);
         let further = high + 2.0 * error;
@@ -79,7 +82,7 @@ impl Sum {
     }
 }
 
-/// The rounded sum and its rounding error.
+/// The rounded sum of two doubles and its rounding error: together they are the exact sum.
 #[inline]
 pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let (large, small) = if a.abs() < b.abs() { (b, a) } else { (a, b) };

@@ -1,4 +1,4 @@
-//! Panics as errors: a defect of this library is one of its errors, and crashes nothing.
+//! Turns panics into errors: a defect of this library becomes an `Internal` error and crashes nothing.
 
 use std::any::Any;
 use std::collections::VecDeque;
@@ -7,10 +7,10 @@ use std::sync::Mutex;
 
 use super::{Error, Result};
 
-/// The number of panics that are remembered for those who catch them on another thread.
+/// The number of panics whose source positions are stored, for threads that catch them later.
 const MAX_PANICS_REMEMBERED: usize = 8;
 
-/// A panic: what it said, and where it happened.
+/// The message of a panic, and its position in the source.
 struct RecordedPanic {
     message: String,
     place: String,
@@ -18,18 +18,18 @@ struct RecordedPanic {
 
 static RECORDED: Mutex<VecDeque<RecordedPanic>> = Mutex::new(VecDeque::new());
 
-/// Remembers where panics happen instead of printing them: who catches them says it.
+/// Records where panics happen instead of printing them; the code that catches a panic reports it.
 pub fn record_panics() {
     set_hook(Box::new(remember));
 }
 
-/// The result of work, or the error that its panic is.
+/// Returns the result of work, or the error that its panic becomes.
 ///
 /// # Errors
-/// What the work returns, or unwinds with; `Internal` for a panic, also one on another thread of the
-/// pool.
+/// The errors that the work returns or unwinds with; `Internal` for a panic, also for one on another thread
+/// of the pool.
 pub fn caught<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
-    // What the work left half done is not looked at again, or only ever replaced as a whole.
+    // Data that the work left half done are not read again, or are only replaced as a whole.
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
         let unwound = panic.downcast::<Error>();
         Err(unwound.map_or_else(|panic| error(&*panic), |known| *known))
@@ -48,7 +48,7 @@ fn words(panic: &(dyn Any + Send)) -> &str {
         .unwrap_or("no message")
 }
 
-// Neither of these waits for the lock: a panic must end, and a forked process may find it locked.
+// Neither function below waits for the lock: a panic must end, and a forked process may find it locked.
 
 fn remember(info: &PanicHookInfo<'_>) {
     let message = words(info.payload()).to_owned();

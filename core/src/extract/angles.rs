@@ -11,11 +11,12 @@ use crate::arith::{Filtered, Int, Sign};
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::{Homogeneous, Vertex, MAX_COORDINATE_ERROR};
 
-/// The ends of an edge and the two apexes opposite it, in doubles accurate enough for
-/// [`MAX_COORDINATE_ERROR`].
+/// The two ends of an edge, then the apexes of the two triangles at the edge, as (x, y) in doubles that are
+/// accurate to [`MAX_COORDINATE_ERROR`].
 pub(super) type Quad = [[f64; 2]; 4];
 
-/// Compare the sum of two opposite angles to 180 degrees, where doubles decide it.
+/// Compares the sum of the angles at the two apexes to 180 degrees in doubles, or returns `Doubtful` if
+/// rounding errors could change the result.
 pub(super) fn rough([a, b, c, d]: Quad) -> Filtered<Ordering> {
     let larger = |p: [f64; 2]| p[0].abs().max(p[1].abs());
     let doubt = MAX_COORDINATE_ERROR * larger(a).max(larger(b)).max(larger(c)).max(larger(d));
@@ -29,7 +30,7 @@ pub(super) fn rough([a, b, c, d]: Quad) -> Filtered<Ordering> {
     Filtered::when(sine.abs() > bound, (-Sign::of(sine)).order())
 }
 
-/// An angle in doubles, and how far its cosine and sine may be off.
+/// The cosine and sine of an angle in doubles, times one positive factor, and a bound on their errors.
 struct Rough {
     cos: f64,
     sin: f64,
@@ -37,7 +38,7 @@ struct Rough {
 }
 
 impl Rough {
-    /// The angle at `apex` from `p` to `q`, whose differences may be off by `doubt`.
+    /// The angle at `apex` from `p` to `q`, whose coordinates may be wrong by `doubt`.
     fn at(apex: [f64; 2], p: [f64; 2], q: [f64; 2], doubt: f64) -> Self {
         let [ux, uy] = [p[0] - apex[0], p[1] - apex[1]];
         let [vx, vy] = [q[0] - apex[0], q[1] - apex[1]];
@@ -50,7 +51,8 @@ impl Rough {
     }
 }
 
-/// Compare the sum exactly, in the coordinates `axes` of any points.
+/// Compares the sum of the angles at the last two points, over the edge between the first two, to 180
+/// degrees exactly, in the coordinates `axes`.
 pub(super) fn exact(points: [&Vertex; 4], axes: [usize; 2]) -> Ordering {
     if let [Some(a), Some(b), Some(c), Some(d)] = points.map(Vertex::as_lattice) {
         return on_lattice([a, b, c, d], axes);
@@ -74,7 +76,7 @@ fn on_lattice([a, b, c, d]: [&Lattice; 4], axes: [usize; 2]) -> Ordering {
     (-(left + right).sign()).order()
 }
 
-/// Cosine and sine of the angle at `apex` from `p` to `q`.
+/// The cosine and sine of the angle at `apex` from `p` to `q`, both times the same positive factor.
 fn wide_angle(
     apex: &Homogeneous,
     p: &Homogeneous,
@@ -101,14 +103,14 @@ mod tests {
 
     const CORNERS: [[i64; 2]; 4] = [[0, 0], [7, 7], [0, 7], [7, 0]];
 
-    /// A square, its last corner moved outwards or inwards.
+    /// The corners of a square, all shifted by `shift` in x and y, the last also by `moved` outwards.
     fn square(moved: i64, shift: i64) -> [Lattice; 4] {
         let mut corners = CORNERS.map(|[x, y]| [x + shift, y + shift, 3]);
         corners[3] = [corners[3][0] + moved, corners[3][1] - moved, 3];
         corners
     }
 
-    /// The same point, not known to be on the lattice.
+    /// The point `p` with the weight 2, so that its representation does not say that it is a lattice point.
     fn given(p: Lattice) -> Vertex {
         let twice = |k: i64| Int::from_i64(2 * k);
         Vertex::homogeneous(p.map(twice), Int::from_i64(2))

@@ -1,4 +1,4 @@
-//! From a boundary to a closed triangle mesh.
+//! Assembles the closed triangle mesh of a solid from the boundary that its tree lists.
 
 use std::sync::Arc;
 
@@ -28,20 +28,20 @@ use crate::mesh::handle::{OrientedFace, Slot, SourceFace, VertexId};
 use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::tree::solid::Solid;
 
-/// A whole face, and the points inserted on its three edges.
+/// A face that is boundary as a whole, and the numbers of the points inserted on each of its three edges.
 struct SplitFace {
     face: OrientedFace,
     inner: [Vec<u32>; 3],
 }
 
-/// At most this many edges of a group are searched one by one: a table of their points takes
+/// In a group of at most this many edges the ends are searched one by one: making a table of them takes
 /// longer.
 const MAX_EDGES_SEARCHED: usize = 16;
 
-/// The mesh of a bounded solid.
+/// Returns the exact triangle mesh of a bounded solid.
 ///
-/// Untouched faces keep their triangle; cut faces and their coplanar neighbours are triangulated
-/// anew; every directed edge has exactly one opposite.
+/// Input faces that nothing cut keep their triangle; cut faces are triangulated anew, together with the
+/// faces that continue them in their plane. Every directed edge of the mesh has exactly one opposite.
 ///
 /// # Example
 /// ```
@@ -65,7 +65,8 @@ pub fn assemble(solid: &Solid) -> Result<ExactMesh> {
     assemble_patches(solid, &Patches::default())
 }
 
-/// The mesh of a bounded solid in which no triangle lies in faces of several patches.
+/// Returns the exact mesh of a bounded solid, and joins coplanar faces only within one patch: so no triangle
+/// covers faces of two patches.
 ///
 /// # Errors
 /// As for [`assemble`].
@@ -81,10 +82,11 @@ pub fn assemble_patches(solid: &Solid, patches: &Patches) -> Result<ExactMesh> {
     made.map_err(|failure| failure.error(solid))
 }
 
-/// Assembles with or without joining faces by plane.
+/// Assembles the mesh of a solid; if `join` is true, it first joins the cut faces of each plane to polygons.
 ///
-/// Joining assumes that faces of one plane do not overlap. A solid not known to be reduced may
-/// violate that; then its polygons fail to triangulate, or to the right area.
+/// Joining assumes that faces of one plane do not overlap. In a solid that is not known to be reduced they
+/// may: then a polygon cannot be triangulated, or its triangles have a wrong area, and the result is
+/// `Overlap`.
 fn attempt(
     solid: &Solid,
     sources: &Sources,
@@ -116,7 +118,8 @@ fn unbounded() -> Error {
     Error::new(ErrorKind::Unbounded, text)
 }
 
-/// Return whether an outline runs on the border of the universe, where only half-spaces reach.
+/// Returns true if an edge of the group lies on the border of the universe; only faces of half-spaces reach
+/// it.
 fn reaches_infinity(group: &PlaneGroup, sources: &Sources) -> bool {
     let mut faces = group.faces.iter();
     faces.any(|f| sources.get(f.slot()).mesh().is_none())
@@ -170,7 +173,8 @@ impl Assembly<'_> {
         Ok(self.emit_groups(groups, &edges, &inner)?)
     }
 
-    /// Numbers the ends of a group's edges; looks up ends shared by two edges once.
+    /// Appends the edges of a group as pairs of point numbers; looks up an end shared by two edges only
+    /// once.
     fn number_edges(&mut self, group: &PlaneGroup, edges: &mut Vec<Edge>) {
         let start = edges.len();
         if group.edges().len() > MAX_EDGES_SEARCHED {
@@ -193,7 +197,8 @@ impl Assembly<'_> {
         }
     }
 
-    /// For each line, the points at which a polygon touches or crosses its own edges.
+    /// Finds, for each line, the points on it at which a polygon of a group touches or crosses its own
+    /// edges.
     fn touching(&mut self, groups: &mut [PlaneGroup], edges: &[Edge]) -> LinePoints {
         let mut touching = LinePoints::default();
         let mut start = 0;
@@ -205,7 +210,8 @@ impl Assembly<'_> {
         touching
     }
 
-    /// Makes points of the corners of whole faces near another operand: these may be contacts.
+    /// Numbers the corners of whole faces in cells where several operands met as table points, because the
+    /// surface may touch itself there.
     fn identify_near(&mut self, near: &[SourceFace], fates: &Fates) {
         for face in near {
             if matches!(fates[*face], Fate::Whole(_)) {
@@ -214,7 +220,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// Makes points of the corners of a face.
+    /// Numbers the corners of a face as points of the vertex table.
     fn identify(&mut self, face: SourceFace) {
         let source = Arc::clone(self.sources.get(face.slot));
         if let Some(mesh) = source.mesh() {
@@ -233,9 +239,11 @@ impl Assembly<'_> {
         Some(Edge { from, to })
     }
 
-    /// Records which source vertices are corners of groups, to keep their original doubles.
+    /// Records for each corner of a group the source vertex at the same position, whose original doubles it
+    /// gets.
     ///
-    /// A corner cut off a face has no name, though a vertex of another face may lie there.
+    /// Only vertices of the group's own faces count, though a vertex of another face may lie at a corner,
+    /// too.
     fn name_corners(&mut self, groups: &[PlaneGroup], edges: &[Edge], inner: &InnerPoints) {
         let sources = self.sources;
         let mut group_of = vec![usize::MAX; self.table.len()];
@@ -267,7 +275,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// Makes points of vertices on edges that more than two faces of a source share.
+    /// Numbers as table points the vertices on edges that more than two faces of one source share.
     fn mark_irregular(&mut self, fates: &Fates, rims: &Rims) {
         let irregular = carried(|(slot, fates): (Slot, &[Fate])| {
             let rim = rims.get(slot);
@@ -294,8 +302,8 @@ impl Assembly<'_> {
         }
     }
 
-    /// Makes points of all corners of split faces before any face names them, and marks split faces
-    /// as cut.
+    /// Numbers all corners of split faces as table points, before triangles are emitted, and marks split
+    /// faces as cut.
     fn identify_corners(&mut self, split: &[SplitFace], fates: &mut Fates) {
         for SplitFace { face, .. } in split {
             self.identify(face.face);
@@ -303,7 +311,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// Emits the whole faces, and the vertices that only they use.
+    /// Appends the triangles of all whole faces, and the vertices that no other triangle uses.
     fn emit_whole(&mut self, fates: &Fates, rims: &Rims) {
         let first = VertexId::of(self.vertices.len());
         for (slot, images) in Slot::all().zip(&mut self.images) {
@@ -329,7 +337,7 @@ impl Assembly<'_> {
     }
 }
 
-/// The number of a point, if it is an end of one of the numbered edges.
+/// Returns the number of a point if one of the numbered edges starts or ends at it.
 fn known_end<'e>(
     at: &Arc<Vertex>,
     mut numbered: impl Iterator<Item = (&'e BareEdge, &'e Edge)>,
@@ -343,8 +351,9 @@ fn known_end<'e>(
     })
 }
 
-/// The whole faces that received points on their edges, ascending; the frontier's edges, by
-/// faces, are numbered from `offset` on.
+/// Returns the whole faces that received points on their edges, ascending.
+///
+/// The edges of `frontier` are sorted by face; in `inner` they have the numbers from `offset` on.
 fn split_faces(
     frontier: &[FrontierEdge],
     offset: usize,

@@ -12,15 +12,15 @@ use crate::tree::solid::Solid;
 pub(super) enum Failure {
     /// Faces cross or overlap each other.
     Overlap(Overlap),
-    /// Anything else.
+    /// The core refuses the solid for another reason.
     Refused(Error),
 }
 
 /// Faces found to cross or overlap each other.
 pub(super) struct Overlap {
-    /// A sign of the failure, in words.
+    /// What was found, as a text for the error message.
     pub(super) sign: String,
-    /// The faces where it shows.
+    /// The faces at which the failure was found.
     pub(super) faces: Vec<OrientedFace>,
 }
 
@@ -37,7 +37,8 @@ impl From<Error> for Failure {
 }
 
 impl Failure {
-    /// The error to report: a mesh that was wrongly trusted, or a defect.
+    /// Returns the error to report: `NotReduced` if an input mesh overlaps itself, else a defect or a
+    /// refusal.
     pub(super) fn error(self, solid: &Solid) -> Error {
         match self {
             Self::Refused(error) => error,
@@ -75,7 +76,7 @@ impl Overlap {
     }
 }
 
-/// The first mesh that overlaps itself, and its slot.
+/// Returns the first input mesh that overlaps itself, with its slot; `None` if there is none.
 fn culprit(solid: &Solid) -> Result<Option<(Slot, &Arc<Source>)>> {
     for (slot, source) in Slot::all().zip(solid.sources().iter()) {
         if overlaps_itself(source)? {

@@ -16,24 +16,24 @@ use crate::tree::solid::Solid;
 /// A closed triangle mesh with exact vertices.
 #[derive(Debug, Default)]
 pub struct ExactMesh {
-    /// The places of the vertices: those of sources, by slot and number, then constructed points.
+    /// The vertices: those of sources, by slot and number, then constructed points.
     pub vertices: Vec<Corner>,
     /// Triangles, counterclockwise as seen from outside.
     pub triangles: Vec<[VertexId; 3]>,
-    /// For each triangle the face it lies in.
+    /// For each triangle the source face that it lies in.
     pub faces: Vec<OrientedFace>,
     /// The number of triangles at the start that are untouched faces of sources.
     pub untouched: usize,
-    /// Those with a vertex that is not theirs alone, ascending.
+    /// Those triangles among the untouched ones with a vertex that other triangles may use, ascending.
     pub special: Vec<u32>,
-    /// The constructed points that [`Corner::Point`] names.
+    /// The points that [`Corner::Point`] numbers.
     pub table: VertexTable,
-    /// The findings of the assembly.
+    /// The findings of the assembly, such as contacts.
     pub findings: Vec<Finding>,
 }
 
 impl ExactMesh {
-    /// The place of a vertex.
+    /// The exact position of a vertex.
     pub fn exact(&self, vertex: VertexId, sources: &Sources) -> Arc<Vertex> {
         match self.vertices[vertex.place()] {
             Corner::Point(point) => Arc::clone(self.table.point(point)),
@@ -45,7 +45,8 @@ impl ExactMesh {
         }
     }
 
-    /// Each vertex in doubles, in model units: those of its source, or the nearest ones.
+    /// Returns the position of each vertex in doubles, in model units: the doubles of its source, or the
+    /// nearest.
     pub fn positions(&self, solid: &Solid) -> Vec<[f64; 3]> {
         let position = |corner: &Corner| match *corner {
             Corner::Point(point) => solid.pitch().position(self.table.point(point)),
@@ -64,12 +65,12 @@ impl ExactMesh {
     }
 }
 
-/// The place of a vertex of an [`ExactMesh`].
+/// What a vertex of an [`ExactMesh`] stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Corner {
-    /// A vertex of a source.
+    /// A vertex of a source, by the source's slot and its number there.
     Source(Slot, VertexId),
-    /// A point of the table.
+    /// A point of the mesh's table, by its number.
     Point(u32),
 }
 
@@ -85,7 +86,8 @@ pub fn outward_normal(face: OrientedFace, sources: &Sources) -> [i128; 3] {
     normal.map(|c| face.orientation.signed(c))
 }
 
-/// Number vertices by their place in `order`, which must contain all that triangles name.
+/// Renumbers vertices by their index in `order`, which contains all vertices of triangles; returns the new
+/// number of each old vertex.
 pub fn renumber(
     vertices: &mut Vec<Corner>,
     triangles: &mut [[VertexId; 3]],
@@ -103,7 +105,7 @@ pub fn renumber(
     numbers
 }
 
-/// The new numbers of vertices once unused ones are dropped; the others keep their order.
+/// Returns the new number of each used vertex, after unused ones are dropped, in the old order.
 pub fn numbers_left(used: &[bool]) -> Vec<VertexId> {
     let number = |next: &mut u32, used: &bool| {
         *next += u32::from(*used);
@@ -112,21 +114,21 @@ pub fn numbers_left(used: &[bool]) -> Vec<VertexId> {
     used.iter().scan(0, number).collect()
 }
 
-/// A triangle mesh in doubles.
+/// A closed triangle mesh in doubles.
 #[derive(Debug, Default)]
 pub struct Mesh {
     /// Vertices in model units.
     pub vertices: Vec<[f64; 3]>,
     /// Triangles, counterclockwise as seen from outside.
     pub triangles: Vec<[VertexId; 3]>,
-    /// For each triangle the source's slot and the number of the face in its input.
+    /// For each triangle the slot of its source, and the number in the input of the face that it lies in.
     pub origins: Vec<[u32; 2]>,
-    /// For each triangle whether it faces the other way than that face.
+    /// For each triangle whether it is oriented opposite to the face that it lies in.
     pub flips: Vec<bool>,
     /// The findings of assembly and rounding.
     pub findings: Vec<Finding>,
-    /// The number of triangles compared exactly with all near them, because they are not untouched
-    /// faces of inputs; those that cross something are a finding.
+    /// The number of triangles compared exactly with all triangles near them, because they are not untouched
+    /// faces of inputs; a finding names those that cross others.
     pub compared: u64,
 }
 

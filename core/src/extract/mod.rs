@@ -1,4 +1,4 @@
-//! From a tree back to a mesh: collecting, joining, pairing, triangulating, splitting, rounding.
+//! Turns a solid's tree into a mesh: collects, joins, pairs, triangulates, splits and rounds.
 
 mod angles;
 pub mod assemble;

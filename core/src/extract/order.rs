@@ -1,8 +1,8 @@
-//! The order of new points and triangles in a mesh. It follows from the places alone, so that a
-//! mesh has the same bytes whatever was evaluated before.
+//! Sorts new points and triangles of a mesh. The order follows from positions alone, so that a mesh has the
+//! same bytes whatever was evaluated before.
 //!
-//! Constructed points are sorted by their doubles, with copies next to each other. Triangles that
-//! are not untouched faces are sorted by face, then by vertices; each starts at its lowest vertex.
+//! Constructed points are sorted by their doubles, with copies next to each other. Triangles that are not
+//! untouched faces are sorted by face, then by vertices; each starts at its vertex with the lowest number.
 
 use std::cmp::Ordering;
 
@@ -11,8 +11,7 @@ use crate::geometry::vertices::VertexTable;
 use crate::interrupt::{poll, spend};
 use crate::mesh::handle::{OrientedFace, VertexId};
 
-/// Sort the constructed points of a mesh, with the positions of all vertices in doubles, and its
-/// new triangles.
+/// Sorts the constructed points of a mesh, with their positions in doubles, and its new triangles.
 pub(super) fn put_in_order(mesh: &mut ExactMesh, positions: &mut [[f64; 3]]) {
     sort_points(mesh, positions);
     sort_new_triangles(mesh);
@@ -49,7 +48,7 @@ fn by_place(a: [f64; 3], b: [f64; 3]) -> Ordering {
     by(0).then_with(|| by(1)).then_with(|| by(2))
 }
 
-/// The order of two points of equal doubles.
+/// Compares two points with equal doubles by their exact coordinates.
 fn by_point(table: &VertexTable, a: u32, b: u32) -> Ordering {
     poll();
     if a == b {

@@ -1,4 +1,4 @@
-//! Triangulation of outlines in doubles, with their corners snapped to the lattice.
+//! Triangulates outlines in the plane, given in doubles, with their corners snapped to the lattice.
 
 use super::triangulate::triangulate;
 use super::vertices::Projection;
@@ -6,11 +6,10 @@ use crate::geometry::plane::Plane;
 use crate::geometry::vertices::VertexTable;
 use crate::mesh::grid::Pitch;
 
-/// Triangulates what lies on the left of closed outlines in the plane; corners are indices of
-/// points.
+/// Triangulates the region on the left of closed outlines in the plane; corners are indices of points.
 ///
-/// Each corner is snapped to the lattice that suits the outlines, as on import. `None` if the edges
-/// then do not bound a region, or two corners coincide.
+/// Each corner is snapped to the lattice that import would choose. `None` if two corners then coincide, or
+/// the edges do not bound a region.
 ///
 /// # Cost
 /// That of [`triangulate`].
@@ -36,7 +35,7 @@ pub fn triangulate_outlines(points: &[[f64; 2]], edges: &[(u32, u32)]) -> Option
     triangulate(&Projection::onto(&floor, &table), edges).ok()
 }
 
-/// The pitch that import chooses for points of this size and extent.
+/// Returns the pitch that import chooses for points with such coordinates and such an extent.
 fn suited(points: &[[f64; 2]]) -> Option<Pitch> {
     let along = |axis: usize| points.iter().map(move |p| p[axis]);
     let extent = |axis| along(axis).fold(f64::MIN, f64::max) - along(axis).fold(f64::MAX, f64::min);

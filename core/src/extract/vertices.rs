@@ -1,4 +1,4 @@
-//! Numbered points seen in a plane, and exact questions about them.
+//! The projection of numbered points onto a plane, and exact questions about them.
 
 use std::cmp::Ordering;
 
@@ -11,7 +11,7 @@ use crate::geometry::points;
 use crate::geometry::vertex::{Vertex, MAX_COORDINATE_ERROR};
 use crate::geometry::vertices::VertexTable;
 
-/// The table's points as seen along the main axis of a plane's normal, from its plus side.
+/// The points of a table, projected along the main axis of a plane's normal, as seen from its plus side.
 #[derive(Debug)]
 pub struct Projection<'a> {
     table: &'a VertexTable,
@@ -20,7 +20,7 @@ pub struct Projection<'a> {
 }
 
 impl<'a> Projection<'a> {
-    /// The view onto a plane.
+    /// Makes the projection onto a plane.
     pub fn onto(plane: &Plane, table: &'a VertexTable) -> Self {
         let axis = plane.main_axis();
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -34,12 +34,12 @@ impl<'a> Projection<'a> {
 }
 
 impl Projection<'_> {
-    /// A lattice point in the view.
+    /// The projection of a lattice point.
     pub fn flat(&self, p: &Lattice) -> [f64; 2] {
         [as_double(p[self.u]), as_double(p[self.v])]
     }
 
-    /// Return whether a point lies strictly between two others, on their line.
+    /// Returns true if a point lies strictly inside the segment from `a` to `b`.
     pub fn is_between(&self, a: u32, point: u32, b: u32) -> bool {
         point != a
             && point != b
@@ -49,7 +49,7 @@ impl Projection<'_> {
 }
 
 impl Projection<'_> {
-    /// Return whether two segments cross inside both.
+    /// Returns true if two segments cross at a point inside both.
     pub fn crosses(&self, a: [u32; 2], b: [u32; 2]) -> bool {
         a.iter().all(|p| !b.contains(p))
             && self.orient(a[0], a[1], b[0]) * self.orient(a[0], a[1], b[1]) == Sign::Negative
@@ -94,8 +94,8 @@ impl Projection<'_> {
         self.table.point(a).compare(self.table.point(b), axis)
     }
 
-    /// The sign of a turn where doubles decide it: coordinates are within three units in the last
-    /// place.
+    /// The sign of a turn if doubles decide it, given that coordinates are accurate to
+    /// [`MAX_COORDINATE_ERROR`].
     fn rough_orient(&self, points: [u32; 3]) -> Filtered<Sign> {
         let [a, b, c] = points.map(|p| self.approx(p));
         let (bu, bv) = (b[0] - a[0], b[1] - a[1]);
@@ -110,7 +110,7 @@ impl Projection<'_> {
     }
 }
 
-/// The signs of the coordinate differences b − a.
+/// The signs of the three coordinates of b − a.
 pub fn direction(a: &Vertex, b: &Vertex) -> [Sign; 3] {
     [0, 1, 2].map(|axis| Sign::from_order(b.compare(a, axis)))
 }

@@ -1,4 +1,4 @@
-//! Tests whether two triangles are disjoint, by signs of determinants in doubles.
+//! Tests whether two lattice triangles are disjoint, by signs of determinants in doubles.
 
 use super::axes::each_axis;
 use super::plane::Lattice;
@@ -8,22 +8,23 @@ use crate::geometry::winding::path::NearCross;
 
 type Sides = [Filtered<Sign>; 3];
 
-/// A lattice triangle in doubles, prepared to be compared with many.
+/// A lattice triangle in doubles, prepared to be compared with other triangles.
 #[derive(Clone, Copy, Debug)]
 pub struct NearTriangle {
-    /// Coordinates below 2⁵³ are exact, so that differences are rounded once.
+    /// The corners; coordinates below 2⁵³ are exact, so that differences are rounded only once.
     corners: [[f64; 3]; 3],
     normal: NearCross,
 }
 
 impl NearTriangle {
-    /// For unknown triangles, which are never apart: no side of it is certain.
+    /// Stands for an unknown triangle: no side of its plane is certain, so it is never apart from another
+    /// triangle.
     pub const UNKNOWN: Self = Self {
         corners: [[f64::NAN; 3]; 3],
         normal: NearCross::UNKNOWN,
     };
 
-    /// A triangle by its corners.
+    /// The triangle with these lattice corners.
     pub fn of(corners: &[Lattice; 3]) -> Self {
         let corners = each_axis(|k| each_axis(|i| as_double(corners[k][i])));
         let [a, b, c] = &corners;
@@ -33,7 +34,7 @@ impl NearTriangle {
         }
     }
 
-    /// The sides of its plane on which the corners of another triangle lie.
+    /// For each corner of another triangle, the side of this triangle's plane on which it lies, as a sign.
     #[inline]
     fn sides_of(&self, other: &Self) -> Sides {
         let base = &self.corners[0];
@@ -48,8 +49,8 @@ impl NearTriangle {
 
 /// Return whether two lattice triangles certainly have no point in common; may return false negatives.
 ///
-/// They are apart if one lies on one side of the other's plane, or if their stretches of the line that both
-/// planes share are apart (Möller 1997; in signs alone as Guigue and Devillers 2003).
+/// They are apart if one lies on one side of the other's plane, or if the segments in which they meet the
+/// common line of both planes are apart (Möller 1997; in signs alone as Guigue and Devillers 2003).
 pub fn are_apart(p: &NearTriangle, q: &NearTriangle) -> bool {
     let of_p = q.sides_of(p);
     if is_beside(of_p) {
@@ -65,12 +66,12 @@ pub fn are_apart(p: &NearTriangle, q: &NearTriangle) -> bool {
     }
 }
 
-/// Return whether all corners are certainly on one side.
+/// Return whether all three corners certainly lie strictly on one side.
 fn is_beside(sides: Sides) -> bool {
     sides[0].is_certain() && sides[1] == sides[0] && sides[2] == sides[0]
 }
 
-/// The corner that is alone on its side; `None` if that is not certain.
+/// The index of the corner that is alone on its side of a plane; `None` if that is not certain.
 fn lone_corner(sides: Sides) -> Option<usize> {
     let [Filtered::Certain(a), Filtered::Certain(b), Filtered::Certain(c)] = sides else {
         return None;
@@ -84,11 +85,11 @@ fn lone_corner(sides: Sides) -> Option<usize> {
     })
 }
 
-/// Return whether the edges at the lone corner `p[i]` cross the other plane all before or all behind the
-/// points in which the edges at `q[k]` cross the first.
+/// Return whether the segments in which two triangles meet the common line of their planes are certainly
+/// apart; corner `i` of `p` and corner `k` of `q` are alone on their sides of the other's plane.
 ///
-/// The sign of the volume that two edges of different triangles span says which comes first, up to a sign
-/// that is the same for all four pairs.
+/// The sign of the volume that two edges of different triangles and a step between them span says which edge
+/// meets the line first, up to a sign that is the same for all four pairs.
 fn stretches_are_apart(p: &[[f64; 3]; 3], i: usize, q: &[[f64; 3]; 3], k: usize) -> bool {
     let (from, other) = (&p[i], &q[k]);
     let toward = less(other, from);
@@ -110,7 +111,7 @@ fn less(p: &[f64; 3], q: &[f64; 3]) -> [f64; 3] {
     [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
 }
 
-/// Return whether some point of an edge of `p` lies in `q`, by exact determinants.
+/// Return whether any point of an edge of `p` lies in `q`, by exact determinants.
 #[cfg(test)]
 pub fn pierces(p: &[Lattice; 3], q: &[Lattice; 3]) -> bool {
     let less = |p: &Lattice, q: &Lattice| each_axis(|i| p[i] - q[i]);
@@ -162,7 +163,7 @@ mod tests {
             prop_assert!(!(meet && are_apart(&near_p, &near_q)));
         }
 
-        /// In general position no small triangle is in doubt.
+        /// In general position, small triangles are certainly apart or pierce each other.
         #[test]
         fn triangles_in_general_position_are_apart_or_pierce_each_other(
             p in [corner(99), corner(99), corner(99)],

@@ -1,14 +1,14 @@
-//! Cells of the dyadic hierarchy that all solids share.
+//! Cells: boxes of lattice points that repeated halving of the whole lattice makes, the same for all solids.
 
 use super::axes::each_axis;
 use super::plane::{Lattice, Plane};
 use super::side::Half;
 use crate::arith::bounds::COORDINATE_BITS;
 
-/// A box of the dyadic hierarchy: the lattice points `low[i] .. low[i] + 2^size[i]`.
+/// A box of the hierarchy that halving makes: the lattice points `low[i] .. low[i] + 2^size[i]` on each axis
+/// i.
 ///
-/// Its faces lie half a step outside these points, so that no lattice point, edge or face ever
-/// lies in one.
+/// Its faces lie half a step outside these points, so that no lattice point, edge or face ever lies in one.
 ///
 /// # Example
 /// ```
@@ -28,12 +28,12 @@ pub struct Cell {
     size: [u8; 3],
 }
 
-/// An axis-parallel cut of a cell: lattice points below `at` on the minus side.
+/// An axis-parallel cut of a cell, half a step below the lattice coordinate `at`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cut {
-    /// The axis the cut is perpendicular to.
+    /// The axis to which the cut is perpendicular.
     pub axis: usize,
-    /// The first lattice coordinate on the plus side.
+    /// The least lattice coordinate on the plus side.
     pub at: i64,
 }
 
@@ -45,30 +45,31 @@ impl Cell {
         size: [COORDINATE_BITS as u8 + 1; 3],
     };
 
-    /// The smallest lattice point.
+    /// The lattice point of the cell with the smallest coordinates.
     pub fn low(&self) -> &Lattice {
         &self.low
     }
 
-    /// The largest lattice point.
+    /// The lattice point of the cell with the largest coordinates.
     #[inline]
     pub fn high(&self) -> Lattice {
         let high = |i: usize| self.low[i] + (1i64 << self.size[i]) - 1;
         [high(0), high(1), high(2)]
     }
 
-    /// The binary logarithms of the extents.
+    /// The binary logarithms of the numbers of lattice points along the axes.
     pub fn size(&self) -> [u8; 3] {
         self.size
     }
 
-    /// The low corner in half steps.
+    /// The corner of the cell with the smallest coordinates, in half lattice steps.
     pub fn corner(&self) -> Lattice {
         let [x, y, z] = self.low;
         [2 * x - 1, 2 * y - 1, 2 * z - 1]
     }
 
-    /// The cut through the middle, across the longest axis; `None` for a single lattice point.
+    /// The cut through the middle of the cell, across its longest axis; `None` if it has a single lattice
+    /// point.
     pub fn cut(&self) -> Option<Cut> {
         let s = self.size;
         let axis = if s[0] >= s[1] && s[0] >= s[2] {
@@ -84,7 +85,7 @@ impl Cell {
         })
     }
 
-    /// The minus (0) or plus (1) half of the cell.
+    /// The half of the cell on one side of its middle cut.
     #[must_use]
     pub fn half(&self, cut: Cut, half: Half) -> Self {
         let mut cell = *self;
@@ -95,31 +96,32 @@ impl Cell {
         cell
     }
 
-    /// Return whether every lattice point of `other` is one of this cell.
+    /// Return whether every lattice point of `other` is also in this cell.
     pub fn holds(&self, other: &Self) -> bool {
         self.holds_box(other.low(), &other.high())
     }
 
-    /// Return whether a lattice box lies inside.
+    /// Return whether this cell contains all lattice points of a box, given by its lowest and highest point.
     pub fn holds_box(&self, low: &Lattice, high: &Lattice) -> bool {
         let top = self.high();
         (0..3).all(|i| self.low[i] <= low[i] && high[i] <= top[i])
     }
 
-    /// Return whether the cells share lattice points.
+    /// Return whether the two cells have a lattice point in common.
     #[inline]
     pub fn meets(&self, other: &Self) -> bool {
         self.meets_box(other.low(), &other.high())
     }
 
-    /// Return whether the cell shares lattice points with a box.
+    /// Return whether the cell and a box, given by its lowest and highest lattice point, have a lattice point
+    /// in common.
     #[inline]
     pub fn meets_box(&self, low: &Lattice, high: &Lattice) -> bool {
         let top = self.high();
         (0..3).all(|i| self.low[i] <= high[i] && low[i] <= top[i])
     }
 
-    /// The smallest cell of the hierarchy that holds both.
+    /// The smallest cell of the hierarchy that contains both cells.
     #[must_use]
     pub fn join(&self, other: &Self) -> Self {
         let (a, b) = (self.high(), other.high());
@@ -127,10 +129,10 @@ impl Cell {
         Self::around(&low, &each_axis(|i| a[i].max(b[i])))
     }
 
-    /// The smallest cell of the hierarchy that holds a lattice box.
+    /// The smallest cell of the hierarchy that contains a lattice box, given by its lowest and highest point.
     ///
-    /// The number of binary places in which coordinates of an axis may differ is how often it can be cut;
-    /// the next cut is across the first axis with the most.
+    /// On each axis, the number of low binary digits in which the two coordinates may differ is how often the
+    /// cell can be halved; the next cut is across the first axis with the largest such number.
     #[allow(
         clippy::cast_possible_truncation,
         reason = "an exponent of coordinates"
@@ -148,7 +150,8 @@ impl Cell {
         Self { low, size }
     }
 
-    /// The six planes that bound the cell, the cell on their minus sides.
+    /// The six planes that bound the cell, with the cell on their minus sides: for each axis the low one,
+    /// then the high one.
     pub fn walls(&self) -> [Plane; 6] {
         let high = self.high();
         let wall = |i: usize| {

@@ -1,4 +1,4 @@
-//! Lattice edges of faces.
+//! Directed edges between lattice points.
 
 use std::sync::Arc;
 
@@ -8,10 +8,10 @@ use super::plane::{normal, Lattice, Plane};
 use super::side::Side;
 use crate::arith::Sign;
 
-/// The corners of a face, in order.
+/// The corners of a face, in order around it.
 pub type Ring = SmallVec<[Lattice; 3]>;
 
-/// A directed edge between lattice points; the edges of a face share the face's corners.
+/// A directed edge between two lattice points; the edges of one face share a list of its corners.
 #[derive(Clone, Debug)]
 pub struct LatticeEdge {
     ring: Arc<Ring>,
@@ -20,12 +20,12 @@ pub struct LatticeEdge {
 }
 
 impl LatticeEdge {
-    /// The edge from one point to another.
+    /// The directed edge from one lattice point to another.
     pub fn new(from: Lattice, to: Lattice) -> Self {
         Self::of_ring(&Arc::new(SmallVec::from_slice(&[from, to])), 0)
     }
 
-    /// The edge that leaves a corner of a face.
+    /// The edge from corner `start` of a face to the next corner.
     pub fn of_ring(ring: &Arc<Ring>, start: u32) -> Self {
         Self {
             ring: Arc::clone(ring),
@@ -34,7 +34,7 @@ impl LatticeEdge {
         }
     }
 
-    /// Start and end.
+    /// The start point and the end point of the edge.
     pub fn ends(&self) -> (&Lattice, &Lattice) {
         let (at, n) = (self.start as usize, self.ring.len());
         let (from, to) = (&self.ring[at], &self.ring[(at + 1) % n]);
@@ -45,7 +45,7 @@ impl LatticeEdge {
         }
     }
 
-    /// Return whether two edges have the same direction, or opposite ones.
+    /// Return whether two edges are parallel, in the same or in opposite directions.
     pub fn is_parallel(&self, other: &Self) -> bool {
         let ((a, b), (c, d)) = (self.ends(), other.ends());
         let step = |p: &Lattice, q: &Lattice, i: usize| i128::from(q[i] - p[i]);
@@ -61,19 +61,20 @@ impl LatticeEdge {
         ends == (a, b) || ends == (b, a)
     }
 
-    /// Return whether both ends lie in a plane.
+    /// Return whether both ends of the edge lie in a plane.
     pub fn lies_in(&self, plane: &Plane) -> bool {
         let (a, b) = self.ends();
         plane.side_of_lattice(a) == Side::On && plane.side_of_lattice(b) == Side::On
     }
 
-    /// Return whether a lattice point lies on the edge's line.
+    /// Return whether a lattice point lies on the infinite line through the edge.
     pub fn line_holds(&self, place: &Lattice) -> bool {
         let (a, b) = self.ends();
         normal(a, b, place) == [0; 3]
     }
 
-    /// The side of a lattice point, as a sign, to the plane through the edge along an axis.
+    /// The sign that says on which side a lattice point lies, of the plane that contains the edge and is
+    /// parallel to `axis`.
     ///
     /// # Bits
     /// Steps between lattice points are below 2^54, and a sum of two products of them below 2^110.

@@ -1,4 +1,4 @@
-//! Keys of lines, independent of the planes or edges that define them.
+//! Fingerprints of lines, which do not depend on the planes or edges that define a line.
 
 use num_bigint::BigInt;
 use num_integer::Integer;
@@ -10,7 +10,7 @@ use super::residue::{mul, reduce, residue};
 use super::unbounded::big;
 use crate::arith::{inv_mod, P1, P2};
 
-/// Plücker coordinates of a line up to scale, modulo two primes.
+/// The fingerprint of a line: its Plücker coordinates up to scale, modulo two primes.
 ///
 /// Equal lines have equal keys.
 ///
@@ -25,21 +25,21 @@ pub struct LineKey {
     second: [u64; 6],
 }
 
-/// A line, modulo both primes.
+/// A line by its Plücker coordinates modulo the primes `P1` and `P2`.
 #[derive(Clone, Copy, Debug)]
 pub struct Line {
     first: Pluecker<P1>,
     second: Pluecker<P2>,
 }
 
-/// Plücker coordinates of a line modulo a prime, at any scale; not all are zero.
+/// Plücker coordinates of a line modulo a prime, up to a common factor; not all are zero.
 #[derive(Clone, Copy, Debug)]
 struct Pluecker<const P: u64> {
     direction: [u64; 3],
     moment: [u64; 3],
 }
 
-/// A plane, modulo both primes.
+/// A plane by its coefficients modulo the primes `P1` and `P2`, together with its exact form.
 #[derive(Clone, Copy, Debug)]
 pub struct PlaneResidues<'a> {
     first: Coefficients<P1>,
@@ -47,14 +47,14 @@ pub struct PlaneResidues<'a> {
     given: Given<'a>,
 }
 
-/// A plane's coefficients modulo a prime.
+/// A plane's coefficients modulo the prime `P`, up to a common factor.
 #[derive(Clone, Copy, Debug)]
 struct Coefficients<const P: u64> {
     normal: [u64; 3],
     offset: u64,
 }
 
-/// A plane as it was given.
+/// The exact form of a plane: three lattice points on it, or its coefficients.
 #[derive(Clone, Copy, Debug)]
 enum Given<'a> {
     Corners([Lattice; 3]),
@@ -85,7 +85,7 @@ impl<const P: u64> Coefficients<P> {
 }
 
 impl<'a> PlaneResidues<'a> {
-    /// The residues of a multiple of the plane through three lattice points.
+    /// The residues of the plane through three lattice points; its coefficients may have a common factor.
     pub fn through(corners: &[Lattice; 3]) -> Self {
         let [a, b, c] = corners;
         let normal = normal(a, b, c);
@@ -96,7 +96,7 @@ impl<'a> PlaneResidues<'a> {
         }
     }
 
-    /// The residues of a plane.
+    /// The residues of the coefficients of a plane.
     pub fn of(plane: &'a Plane) -> Self {
         Self {
             first: Coefficients::of(plane),
@@ -105,7 +105,7 @@ impl<'a> PlaneResidues<'a> {
         }
     }
 
-    /// The coefficients of a multiple of the plane, the normal first.
+    /// The exact coefficients of the plane, up to a common factor: the three of the normal, then the offset.
     fn exact(&self) -> [BigInt; 4] {
         let of_plane = |plane: &Plane| {
             let [x, y, z] = plane.normal().map(BigInt::from);
@@ -136,7 +136,7 @@ impl<const P: u64> Pluecker<P> {
         }
     }
 
-    /// The line of two planes, or `None` if the prime divides all its coordinates.
+    /// The line in which two planes meet, or `None` if the prime divides all of its coordinates.
     fn of_planes(a: &Coefficients<P>, b: &Coefficients<P>) -> Option<Self> {
         let (n, m) = (&a.normal, &b.normal);
         let line = Self {
@@ -146,7 +146,7 @@ impl<const P: u64> Pluecker<P> {
         (line.first_nonzero() != 0).then_some(line)
     }
 
-    /// The line with coordinates that have no common divisor.
+    /// The residues of a line's exact Plücker coordinates, which must have no common divisor.
     fn of_exact(coordinates: &[BigInt; 6]) -> Self {
         let prime = BigInt::from(P);
         let small = |k: usize| {
@@ -162,19 +162,21 @@ impl<const P: u64> Pluecker<P> {
         }
     }
 
-    /// The first coordinate that is not zero.
+    /// The first Plücker coordinate that is not zero.
     fn first_nonzero(&self) -> u64 {
         let mut all = self.direction.iter().chain(&self.moment);
         all.find(|c| **c != 0).copied().unwrap_or(0)
     }
 
-    /// The coordinates, scaled by the inverse of the lead.
+    /// The six Plücker coordinates, each times `scale`: with the inverse of the first nonzero one, it becomes
+    /// 1.
     fn scaled(&self, scale: u64) -> [u64; 6] {
         let ([u, v, w], [x, y, z]) = (self.direction, self.moment);
         [u, v, w, x, y, z].map(|c| mul::<P>(c, scale))
     }
 
-    /// The key's halves for several lines, with one inversion for all.
+    /// The Plücker coordinates of several lines, each scaled so that its first nonzero one is 1; takes one
+    /// modular inversion in all.
     fn all_scaled(lines: impl Iterator<Item = Self>) -> SmallVec<[[u64; 6]; 8]> {
         let mut product = 1;
         let before: SmallVec<[(Self, u64); 8]> = lines
@@ -204,7 +206,7 @@ impl Line {
         }
     }
 
-    /// The line in which two planes meet.
+    /// The line in which two different, non-parallel planes meet.
     pub fn of_planes(a: &PlaneResidues, b: &PlaneResidues) -> Self {
         let first = Pluecker::of_planes(&a.first, &b.first);
         let second = Pluecker::of_planes(&a.second, &b.second);
@@ -214,7 +216,8 @@ impl Line {
         }
     }
 
-    /// The line in which two planes meet, from exact coefficients.
+    /// The line in which two planes meet, from their exact coefficients; used if a prime divides all
+    /// coordinates.
     #[cold]
     fn of_exact(a: &[BigInt; 4], b: &[BigInt; 4]) -> Self {
         let minor = |i: usize, j: usize| &a[i] * &b[j] - &a[j] * &b[i];
@@ -236,12 +239,12 @@ impl Line {
 }
 
 impl LineKey {
-    /// The line through two lattice points.
+    /// The key of the line through two lattice points.
     pub fn of_edge(a: &Lattice, b: &Lattice) -> Self {
         Self::of(&Line::of_edge(a, b))
     }
 
-    /// The line in which two planes meet.
+    /// The key of the line in which two planes meet.
     pub fn of_planes(a: &Plane, b: &Plane) -> Self {
         Self::of(&Line::of_planes(
             &PlaneResidues::of(a),
@@ -249,7 +252,7 @@ impl LineKey {
         ))
     }
 
-    /// The key of a line.
+    /// The key of a line that is given modulo both primes.
     pub fn of(line: &Line) -> Self {
         Self {
             first: line.first.scaled(inv_mod(line.first.first_nonzero(), P1)),
@@ -257,7 +260,7 @@ impl LineKey {
         }
     }
 
-    /// The keys of several lines, with one inversion modulo each prime.
+    /// The keys of several lines, computed with one inversion modulo each prime.
     pub fn of_all(lines: impl Iterator<Item = Line>) -> SmallVec<[Self; 8]> {
         let lines: SmallVec<[Line; 8]> = lines.collect();
         let first = Pluecker::all_scaled(lines.iter().map(|line| line.first));
@@ -268,7 +271,7 @@ impl LineKey {
             .collect()
     }
 
-    /// A sort key: equal keys have the same, most others do not.
+    /// A 64-bit hash of the key, for sorting: equal keys have equal hashes, different keys rarely do.
     pub fn mixed(&self) -> u64 {
         // Odd constants of SplitMix (Steele, Lea, Flood 2014) keep small coordinates apart.
         let [_, v, w, x, y, z] = self.first;
@@ -281,7 +284,8 @@ impl LineKey {
             .wrapping_mul(0x9e37_79b9_7f4a_7c15)
     }
 
-    /// The first axis the line is not perpendicular to: points on it are ordered by this coordinate.
+    /// The first axis to which the line is not perpendicular: points on the line can be ordered by this
+    /// coordinate.
     pub fn axis(&self) -> usize {
         let mut axes = 0..3;
         axes.find(|i| self.first[*i] != 0 || self.second[*i] != 0)
@@ -289,7 +293,8 @@ impl LineKey {
     }
 }
 
-/// The direction of an edge parallel to an axis, whose lead has a trivial inverse.
+/// The unit direction of an edge parallel to an axis, which needs no modular inversion; `None` for other
+/// edges.
 fn unit_along(a: &Lattice, b: &Lattice) -> Option<[u64; 3]> {
     let along = each_axis(|i| u64::from(a[i] != b[i]));
     (along.iter().sum::<u64>() == 1).then_some(along)
@@ -303,7 +308,7 @@ fn sub<const P: u64>(a: u64, b: u64) -> u64 {
     }
 }
 
-/// The difference a·d − c·b of residues, reduced once.
+/// The difference a·d − c·b of products of residues, with one reduction modulo `P`.
 fn minor<const P: u64>(a: u64, d: u64, c: u64, b: u64) -> u64 {
     // Products of residues are below the square of P, so that nothing overflows.
     let square = const { P as u128 * P as u128 };
@@ -336,7 +341,7 @@ mod tests {
         let cut = LineKey::of_planes(&plane([1 << 31, 1, 0], 0), &plane([1, 1 << 30, 0], 0));
         assert_eq!(cut, LineKey::of_edge(&[0; 3], &[0, 0, 5]));
         assert_eq!(cut.axis(), 2);
-        // The same plane, given by points of it.
+        // The plane of another test line, given by three of its lattice points.
         let [a, b] = [[0, 0, 0], [1, -(1 << 31), 0]];
         let through = PlaneResidues::through(&[a, b, [0, 0, 7]]);
         let slanted = plane([1, 1 << 30, 0], 0);

@@ -1,4 +1,4 @@
-//! Exact predicates, planes, points and convex pieces.
+//! Exact geometry: planes, points, convex pieces, and predicates that never round.
 
 pub mod apart;
 pub mod axes;

@@ -1,4 +1,4 @@
-//! Outlines of sets of polygons: the edges that remain after opposite ones cancel.
+//! Outlines of sets of polygons in a plane: the edges that remain after opposite ones cancel.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -12,27 +12,28 @@ use super::polygon::{Carrier, Corner, Polygon, PolygonSplit};
 use super::side::Side;
 use super::vertex::Vertex;
 
-/// A directed edge in a plane, with the region it bounds on its left.
+/// A directed edge in a plane, with the region it bounds on its left and the key of its line.
 #[derive(Clone, Debug)]
 pub struct OutlineEdge {
-    /// Start.
+    /// The start of the edge.
     pub from: Arc<Vertex>,
-    /// End.
+    /// The end of the edge.
     pub to: Arc<Vertex>,
-    /// The carrier that it lies on, beside the support.
+    /// The carrier of the edge: the edge lies on it and in the region's plane.
     pub carrier: Carrier,
-    /// The line it lies on.
+    /// The key of the line through the edge.
     pub line: LineKey,
 }
 
-/// A directed edge without the key of its line, for storage.
+/// A directed edge in a plane, with the region it bounds on its left; without the key of its line, to save
+/// memory.
 #[derive(Clone, Debug)]
 pub struct BareEdge {
-    /// Start.
+    /// The start of the edge.
     pub from: Arc<Vertex>,
-    /// End.
+    /// The end of the edge.
     pub to: Arc<Vertex>,
-    /// The carrier that it lies on, beside the support.
+    /// The carrier of the edge: the edge lies on it and in the region's plane.
     pub carrier: Carrier,
 }
 
@@ -47,7 +48,7 @@ impl From<OutlineEdge> for BareEdge {
 }
 
 impl BareEdge {
-    /// The edges of a polygon.
+    /// The edges of a polygon, counterclockwise.
     pub fn all_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
         polygon.edges().map(|(from, to, carrier)| Self {
             from: Arc::clone(from),
@@ -67,7 +68,7 @@ impl BareEdge {
 }
 
 impl OutlineEdge {
-    /// The edges of a polygon.
+    /// The edges of a polygon, counterclockwise, with the keys of their lines.
     pub fn all_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
         let lines = lines(
             polygon.edges().map(|e| e.2),
@@ -77,7 +78,7 @@ impl OutlineEdge {
         bare.map(|(edge, line)| edge.keyed(line))
     }
 
-    /// Edges in a plane with the keys of their lines.
+    /// Edges in the plane `support`, with the keys of their lines added.
     pub fn keyed(edges: Vec<BareEdge>, support: &PlaneResidues) -> Vec<Self> {
         let lines = lines(edges.iter().map(|e| &e.carrier), support);
         let bare = edges.into_iter().zip(lines);
@@ -99,17 +100,17 @@ impl OutlineEdge {
     }
 }
 
-/// An outline in which no two edges overlap or continue each other on one line; caches the keys of their
-/// lines.
+/// The directed edges that bound a region of a plane; no two of them overlap, or continue each other on one
+/// line. Caches the keys of their lines.
 #[derive(Clone, Debug, Default)]
 pub struct Outline {
     edges: Box<[BareEdge]>,
-    /// One for each edge, or none before the first use.
+    /// The key of each edge's line; empty before the first use.
     lines: Box<[LineKey]>,
 }
 
 impl Outline {
-    /// The outline of such edges.
+    /// The outline of edges that neither overlap nor continue each other.
     pub fn of_bare(edges: &[BareEdge]) -> Self {
         Self {
             edges: edges.into(),
@@ -117,7 +118,8 @@ impl Outline {
         }
     }
 
-    /// Return the outline that remains of any edges.
+    /// Return the outline of any edges: overlapping opposite edges cancel, and edges that continue each other
+    /// are joined.
     pub fn of(edges: Vec<OutlineEdge>) -> Self {
         let edges = maximal(edges);
         let lines = edges.iter().map(|e| e.line).collect();
@@ -125,12 +127,12 @@ impl Outline {
         Self { edges, lines }
     }
 
-    /// The edges.
+    /// The edges of the outline.
     pub fn edges(&self) -> &[BareEdge] {
         &self.edges
     }
 
-    /// The keys of the edges' lines in a plane.
+    /// The keys of the lines of the outline's edges, in their order; all edges lie in `plane`.
     pub fn lines(&mut self, plane: &PlaneResidues) -> &[LineKey] {
         if self.lines.is_empty() {
             let carriers = self.edges.iter().map(|e| &e.carrier);
@@ -139,14 +141,14 @@ impl Outline {
         &self.lines
     }
 
-    /// The edges with the keys of their lines in a plane.
+    /// The outline's edges with the keys of their lines; all edges lie in `plane`.
     pub fn keyed(mut self, plane: &PlaneResidues) -> Vec<OutlineEdge> {
         self.lines(plane);
         let keyed = self.edges.into_vec().into_iter().zip(self.lines);
         keyed.map(|(edge, line)| edge.keyed(line)).collect()
     }
 
-    /// The outline of the same region seen from the other side.
+    /// The outline of the same region seen from the other side: each edge reversed.
     #[must_use]
     pub fn flipped(mut self) -> Self {
         for edge in &mut self.edges {
@@ -163,7 +165,7 @@ fn lines<'a>(
     LineKey::of_all(carriers.map(|carrier| carrier.line(support)))
 }
 
-/// Order of two points of one line.
+/// The exact order of two points of one line by their coordinate along an axis.
 pub fn order_along(a: &Arc<Vertex>, b: &Arc<Vertex>, axis: usize) -> Ordering {
     if Arc::ptr_eq(a, b) {
         Ordering::Equal
@@ -172,7 +174,7 @@ pub fn order_along(a: &Arc<Vertex>, b: &Arc<Vertex>, axis: usize) -> Ordering {
     }
 }
 
-/// The edges that remain when opposite ones cancel as in [`cancel`], without spare capacity.
+/// The maximal edges that remain when opposite ones cancel as in [`cancel`], without spare capacity.
 pub fn maximal(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
     if edges.is_sorted_by(|a, b| a.line < b.line) {
         return edges;
@@ -182,7 +184,7 @@ pub fn maximal(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
     kept
 }
 
-/// The edges unchanged if none of them cancel or continue each other, else the remaining ones.
+/// The given edges in their order if none of them cancel or continue each other, else the edges that remain.
 pub fn settled(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
     let ends = |e: &OutlineEdge| (Arc::as_ptr(&e.from), Arc::as_ptr(&e.to));
     let mut kept = cancel(edges.clone());
@@ -194,7 +196,7 @@ pub fn settled(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
     kept
 }
 
-/// Cancels opposite edges and joins what remains into maximal edges, line by line.
+/// Cancels opposite edges and joins the remaining parts into maximal edges, line by line.
 ///
 /// # Order
 /// By line key, then along the line.
@@ -216,14 +218,14 @@ pub fn cancel(mut edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
     edges
 }
 
-/// An edge in the order of lines.
+/// An edge's index, with the sort key of its line.
 struct Place {
-    /// The mixed key of the line, faster to compare than the key.
+    /// A hash of the line's key, faster to compare than the key itself.
     mixed: u64,
     edge: u32,
 }
 
-/// The edges grouped by line; within a line in the given order.
+/// Indices of the edges, grouped by line; within a line in the given order.
 fn by_line(edges: &[OutlineEdge]) -> SmallVec<[Place; 32]> {
     let places = (0..).zip(edges).map(|(edge, e)| Place {
         mixed: e.line.mixed(),
@@ -243,7 +245,7 @@ struct Event<'a> {
     change: i32,
 }
 
-/// Keeps the remaining edges of one line.
+/// Cancels the edges `run` of one line against each other, and appends the remaining maximal edges to `kept`.
 fn cancel_line(edges: &[OutlineEdge], run: &[Place], kept: &mut Vec<OutlineEdge>) {
     let run: SmallVec<[&OutlineEdge; 16]> = run.iter().map(|p| &edges[p.edge as usize]).collect();
     let axis = run[0].line.axis();
@@ -268,7 +270,8 @@ fn cancel_line(edges: &[OutlineEdge], run: &[Place], kept: &mut Vec<OutlineEdge>
     });
 }
 
-/// Calls `emit` for each stretch of a line on which the running sum of changes is not zero.
+/// Calls `emit` for each interval of a line on which the running sum of the events' changes is a nonzero
+/// constant, with the sum and both ends.
 fn stretches<'a>(
     events: &mut [Event<'a>],
     axis: usize,
@@ -289,13 +292,14 @@ fn stretches<'a>(
     }
 }
 
-/// Return whether one edge of a line is the reverse of another.
+/// Return whether two edges of one line are each other's reverse.
 fn is_opposite(a: &OutlineEdge, b: &OutlineEdge, axis: usize) -> bool {
     let same = |p, q| order_along(p, q, axis) == Ordering::Equal;
     same(&a.from, &b.to) && same(&a.to, &b.from)
 }
 
-/// Emits the maximal edge between two points with the run's net multiplicity.
+/// Appends |sum| copies of the edge between two points of a line; it runs from `low` to `high` if `sum` is
+/// positive, else back.
 fn emit(
     run: &[&OutlineEdge],
     sum: i32,
@@ -319,9 +323,9 @@ fn emit(
     }
 }
 
-/// The polygon that an outline bounds, if it is one convex loop, with the outline's own corners.
+/// The polygon that an outline bounds, or `None` if it is not one convex loop.
 ///
-/// Edges on the face's own edges need no test: the outline is that of a part of the face.
+/// The outline bounds part of a convex face, so edges on the face's own edges need no test for convexity.
 pub fn convex_loop(support: &Arc<Plane>, edges: &[BareEdge]) -> Option<Polygon> {
     let start = edges.first()?;
     let mut at = start;
@@ -342,7 +346,7 @@ pub fn convex_loop(support: &Arc<Plane>, edges: &[BareEdge]) -> Option<Polygon> 
         .then(|| Polygon::of_corners(ring, Arc::clone(support)))
 }
 
-/// Return whether two edges of a face that meet lie on one line.
+/// Return whether two adjoining edges, both carried by edges of a face, lie on one line.
 fn continues(first: &Carrier, second: &Carrier) -> bool {
     match (first, second) {
         (Carrier::Edge(first), Carrier::Edge(second)) => first.is_parallel(second),
@@ -350,8 +354,8 @@ fn continues(first: &Carrier, second: &Carrier) -> bool {
     }
 }
 
-/// Return whether a whole outline lies on the inner side of one of its edges' lines, and touches that
-/// line only at the edge's ends.
+/// Return whether no corner of an outline lies outside a carrier of one of its edges, and exactly two lie on
+/// it; always true for a carrier that is an edge of the face.
 fn bounds(carrier: &Carrier, edges: &[BareEdge]) -> bool {
     let Carrier::Cut(plane, plus) = carrier else {
         return true;
@@ -368,9 +372,9 @@ fn bounds(carrier: &Carrier, edges: &[BareEdge]) -> bool {
     ends == 2
 }
 
-/// The convex pieces of the region that an outline bounds inside a convex polygon.
+/// The convex pieces of the part of a convex polygon that an outline bounds.
 ///
-/// A planar autopartition by the outline's own edges: the region lies on the minus side of each.
+/// The outline's edges are the cuts of a planar autopartition: the region lies on the minus side of each.
 ///
 /// # Source
 /// Thibault, Naylor 1987 (autopartition).
@@ -400,9 +404,9 @@ pub fn pieces(polygon: Polygon, edges: &[BareEdge]) -> Vec<Polygon> {
     inside
 }
 
-/// The outlines of the parts of a region on the minus and on the plus side of a plane across it.
+/// The outlines of a region's parts on the minus and on the plus side of a plane that crosses it.
 ///
-/// New edges in the plane close the cut outlines.
+/// New edges in the crossing plane close the two outlines.
 ///
 /// # Example
 /// ```
@@ -438,7 +442,7 @@ pub fn halves(edges: Vec<BareEdge>, support: &Arc<Plane>, cut: &Arc<Plane>) -> [
     [minus, plus]
 }
 
-/// The edges in a plane that close edges ending in it.
+/// The edges in the plane `cut` that close the loops of edges which start or end in it.
 fn chords(edges: &[BareEdge], carrier: &Carrier, cut: &Plane, axis: usize) -> Vec<BareEdge> {
     let ends = edges.iter().flat_map(|e| [(&e.to, 1), (&e.from, -1)]);
     let met = ends.filter(|(at, _)| at.side_of(cut) == Side::On);

@@ -1,4 +1,4 @@
-//! Oriented planes with canonical integer coefficients.
+//! Oriented planes with coprime integer coefficients.
 
 use super::axes::each_axis;
 use super::side::{Half, Orientation, Side};
@@ -8,7 +8,7 @@ use crate::arith::bounds::{
 use crate::arith::convert::{as_double, as_whole};
 use crate::arith::{gcd_u128, Int, Sign};
 
-/// A lattice point, in steps of the pitch; each coordinate below 2^53 in magnitude.
+/// A lattice point: three integer coordinates in lattice steps, each below 2^53 in magnitude.
 pub type Lattice = [i64; 3];
 
 /// An oriented plane n·x + d = 0; the minus side (negative values) is its inside.
@@ -16,7 +16,7 @@ pub type Lattice = [i64; 3];
 /// The coefficients have no common divisor: equal oriented planes have equal coefficients.
 ///
 /// # Bits
-/// Supporting planes of lattice triangles: |n| ≤ 2^108, |d| ≤ 2^164 (`arith::bounds`).
+/// Planes through three lattice points have |n| < 2^108, |d| < 2^161 (`arith::bounds`).
 ///
 /// # Example
 /// ```
@@ -36,15 +36,15 @@ pub struct Plane {
     approx: [f64; 4],
 }
 
-/// The coefficients of a plane narrower than the widest, as nearly all are.
+/// The coefficients of a short plane, one whose coefficients fit machine words; nearly all planes are short.
 ///
 /// # Bits
 /// |n| < 2^62, |d| < 2^124 (`arith::bounds`).
 #[derive(Clone, Copy, Debug)]
 pub struct ShortPlane {
-    /// The normal.
+    /// The normal's three components.
     pub n: [i64; 3],
-    /// The constant term.
+    /// The constant term d of n·x + d = 0.
     pub d: i128,
 }
 
@@ -96,7 +96,7 @@ impl Plane {
         Self { n, d, approx }
     }
 
-    /// The supporting plane of a lattice triangle, its normal by the right-hand rule.
+    /// The plane through the corners of a lattice triangle, its normal by the right-hand rule.
     ///
     /// Returns `None` if the triangle has no area.
     pub fn through(a: &Lattice, b: &Lattice, c: &Lattice) -> Option<Self> {
@@ -108,8 +108,8 @@ impl Plane {
         }
     }
 
-    /// The plane at a coordinate of an axis, its normal with this sign along it; `None` if the sign is
-    /// zero.
+    /// The plane across an axis at a lattice coordinate, its normal pointing along the axis with this sign;
+    /// `None` if the sign is zero.
     fn level(axis: usize, at: i64, sign: Sign) -> Option<Self> {
         let plane = Self::axis_cut(axis, 2 * at);
         match sign {
@@ -119,7 +119,8 @@ impl Plane {
         }
     }
 
-    /// The plane through a lattice edge parallel to an axis; `None` if the edge is parallel to it.
+    /// The plane that contains a lattice edge and is parallel to an axis; `None` if the edge itself is
+    /// parallel to that axis.
     ///
     /// Such planes are narrower than a plane through the edge along a normal.
     pub fn through_edge(a: &Lattice, b: &Lattice, axis: usize) -> Option<Self> {
@@ -127,7 +128,8 @@ impl Plane {
         Self::new(n, -dot_lattice(&n, a))
     }
 
-    /// The same plane for side tests only: its coefficients may have a common divisor.
+    /// The plane that contains a lattice edge and is parallel to an axis, for side tests only: its
+    /// coefficients may have a common divisor.
     pub fn beside_edge(a: &Lattice, b: &Lattice, axis: usize) -> Self {
         let n = edge_normal(a, b, axis);
         Self::primitive(n, -dot_lattice(&n, a))
@@ -138,10 +140,10 @@ impl Plane {
         Self::new(n, -dot_lattice(&n, p))
     }
 
-    /// The plane n·x = offset, smaller values on its minus side, if it meets the lattice.
+    /// The plane n·x = offset, with smaller values on its minus side, if it may meet the lattice.
     ///
-    /// Returns `None` if it does not, or if the normal is zero or wider than
-    /// [`HALF_SPACE_NORMAL_BITS`].
+    /// Returns `None` if the offset is too large for that, or if the normal is zero or has a component of
+    /// [`HALF_SPACE_NORMAL_BITS`] bits or more.
     pub fn across_lattice(n: [i128; 3], offset: &Int<3>) -> Option<Self> {
         let wide = |c: &i128| c.unsigned_abs() >= 1 << HALF_SPACE_NORMAL_BITS;
         if n.iter().any(wide) {
@@ -156,7 +158,7 @@ impl Plane {
         }
     }
 
-    /// The axis-parallel plane 2·x = `doubled` whose minus side holds the smaller coordinates.
+    /// The plane 2·x = `doubled` across an axis; smaller coordinates are on its minus side.
     pub fn axis_cut(axis: usize, doubled: i64) -> Self {
         let mut n = [0i128; 3];
         let even = doubled % 2 == 0;
@@ -170,12 +172,12 @@ impl Plane {
         &self.n
     }
 
-    /// The constant term.
+    /// The constant term d of n·x + d = 0.
     pub fn offset(&self) -> &Int<3> {
         &self.d
     }
 
-    /// The coefficients in machine words, if they are short.
+    /// The coefficients in machine words if they are short enough, else `None`.
     #[allow(
         clippy::cast_possible_truncation,
         reason = "only used if they are short"
@@ -204,7 +206,7 @@ impl Plane {
         }
     }
 
-    /// Return the orientation of one plane to another, if both are the same set of points.
+    /// Return how this plane is oriented to another if both are the same set of points, else `None`.
     #[allow(clippy::float_cmp)]
     pub fn coincides(&self, other: &Self) -> Option<Orientation> {
         // Equal coefficients have equal doubles; these differ for most planes.
@@ -218,7 +220,7 @@ impl Plane {
         opposite.then_some(Orientation::Opposite)
     }
 
-    /// The axis the plane is perpendicular to, if there is one.
+    /// The axis to which the plane is perpendicular, or `None`.
     pub fn only_axis(&self) -> Option<usize> {
         match self.n {
             [_, 0, 0] => Some(0),
@@ -228,7 +230,7 @@ impl Plane {
         }
     }
 
-    /// The lattice coordinate of a plane perpendicular to this axis, if it has one.
+    /// The coordinate of a plane perpendicular to `axis`, if it is a lattice coordinate; else `None`.
     pub fn lattice_coordinate(&self, axis: usize) -> Option<i64> {
         let at = -self.d.to_f64();
         // Below 2^53 in magnitude the double is exact.
@@ -240,8 +242,8 @@ impl Plane {
         }
     }
 
-    /// Twice the coordinate at which the plane crosses an axis that it is perpendicular to, if it
-    /// lies on the lattice or halfway between its planes.
+    /// Twice the coordinate of a plane perpendicular to `axis`, if the plane lies on the lattice or halfway
+    /// between lattice planes; else `None`.
     pub fn doubled_place(&self, axis: usize) -> Option<i64> {
         let lead = self.n[axis];
         let short = lead.unsigned_abs() <= 2 && self.only_axis() == Some(axis);
@@ -250,7 +252,7 @@ impl Plane {
         i64::try_from(doubled).ok()
     }
 
-    /// The axis along which the normal is largest.
+    /// The axis along which the normal has the largest component; the first one of equals.
     pub fn main_axis(&self) -> usize {
         let size = |i: usize| self.n[i].unsigned_abs();
         let best = usize::from(size(1) > size(0));
@@ -261,7 +263,7 @@ impl Plane {
         }
     }
 
-    /// The side on which a lattice point lies.
+    /// The side of the plane on which a lattice point lies, exactly.
     pub fn side_of_lattice(&self, p: &Lattice) -> Side {
         let a = &self.approx;
         let t = [
@@ -285,7 +287,7 @@ impl Plane {
         }
     }
 
-    /// Twice the plane's value at half the given coordinates, in doubles, and a bound on its error.
+    /// Twice the plane's value at the point `doubled` / 2, in doubles, and a bound on its error.
     pub fn near_value_at_doubled(&self, doubled: &Lattice) -> (f64, f64) {
         let (a, p) = (&self.approx, doubled);
         let t = [
@@ -298,7 +300,7 @@ impl Plane {
         (t[0] + t[1] + t[2] + twice, size * FILTER)
     }
 
-    /// The half-space in which `doubled`/2 + (ε, ε², ε³) lies.
+    /// The half-space in which the point `doubled` / 2 + (ε, ε², ε³) lies, for an infinitely small ε > 0.
     pub fn side_of_corner(&self, doubled: &Lattice) -> Half {
         let (value, doubt) = self.near_value_at_doubled(doubled);
         if value.abs() > doubt {
@@ -310,12 +312,12 @@ impl Plane {
         })
     }
 
-    /// Twice the plane's value at half the given coordinates.
+    /// Twice the plane's exact value at the point `doubled` / 2.
     pub fn value_at_doubled(&self, doubled: &Lattice) -> Int<3> {
         dot_lattice(&self.n, doubled) + self.d + self.d
     }
 
-    /// The image under x ↦ s·x, for a positive integer s: the refinement of the lattice.
+    /// The image of the plane under x ↦ s·x, for a positive integer s, as when the lattice is refined.
     ///
     /// Returns `None` if the coefficients leave their width.
     pub fn scaled(&self, s: i64) -> Option<Self> {
@@ -323,7 +325,7 @@ impl Plane {
         Self::new(self.n, fitting(wide.narrow()?)?)
     }
 
-    /// The image under the signed axis permutation and translation of a lattice motion.
+    /// The image of the plane under a lattice motion: a signed permutation of the axes, then a translation.
     ///
     /// Returns `None` if the coefficients leave their width.
     pub fn moved(&self, axes: &[(usize, i64); 3], shift: &Lattice) -> Option<Self> {
@@ -332,23 +334,23 @@ impl Plane {
     }
 }
 
-/// An offset, if it is within the limit for planes.
+/// The offset if planes may have one of its width, else `None`.
 fn fitting(d: Int<3>) -> Option<Int<3>> {
     (d.bit_length() <= bounds::offset(COORDINATE_BITS)).then_some(d)
 }
 
-/// Relative error bound of a filtered sum of four products of rounded factors.
+/// The relative error bound of a filter: a sum of four products of rounded factors, in doubles.
 ///
 /// Each factor has one rounding (u = 2^-53), the product one, the sum of four terms three: at most 6u +
 /// O(u²) relative to the sum of magnitudes; 9u leaves room for the bound's own rounding.
 pub const FILTER: f64 = 9.0 / 9_007_199_254_740_992.0;
 
-/// The first non-zero sign of three components, zero if all vanish.
+/// The sign of the first non-zero component; zero if all are zero.
 pub fn first_sign(n: &[i128; 3]) -> Sign {
     Sign::first(n.map(Sign::of))
 }
 
-/// (b − a) × (c − a) in lattice steps.
+/// The normal (b − a) × (c − a) of a lattice triangle, in lattice steps.
 pub fn normal(a: &Lattice, b: &Lattice, c: &Lattice) -> [i128; 3] {
     let (u, v) = (step(a, b), step(a, c));
     let minor = |i: usize, j: usize| {
@@ -370,7 +372,7 @@ fn edge_normal(a: &Lattice, b: &Lattice, axis: usize) -> [i128; 3] {
     n
 }
 
-/// The nearest double; one machine instruction for short numbers.
+/// The double nearest to an integer; one machine instruction if the integer fits an `i64`.
 fn near(value: i128) -> f64 {
     i64::try_from(value).map_or_else(|_| as_double(value), as_double)
 }
@@ -383,7 +385,8 @@ fn dot_lattice(n: &[i128; 3], p: &Lattice) -> Int<3> {
     term(0) + term(1) + term(2)
 }
 
-/// Below 2^119: 63 bits of a normal's component, 54 of a doubled coordinate, a sum of three.
+/// The dot product of a short normal and a lattice point or doubled lattice point, below 2^119: 63 bits of a
+/// component, 54 of a doubled coordinate, a sum of three.
 fn dot_short(n: &[i64; 3], p: &Lattice) -> i128 {
     let term = |i: usize| i128::from(n[i]) * i128::from(p[i]);
     term(0) + term(1) + term(2)

@@ -1,4 +1,4 @@
-//! Exact predicates of points of any construction: turns in a view, and sides of planes through points.
+//! Exact predicates of constructed points: turns in a projection, and sides of planes through points.
 
 use super::axes::each_axis;
 use super::doubles::Point;
@@ -7,7 +7,7 @@ use super::vertex::{Homogeneous, Vertex, MAX_COORDINATE_ERROR};
 use crate::arith::bounds::{ANGLE_LIMBS, CROSS_LIMBS, ORIENTATION_LIMBS, SIDE_LIMBS};
 use crate::arith::{Filtered, Int, Sign};
 
-/// Sign of the turn a → b → c projected to two axes, positive to the left.
+/// The sign of the turn a → b → c in the projection to the axes u and v, positive to the left.
 ///
 /// # Example
 /// ```
@@ -34,8 +34,8 @@ pub fn turn(points: [&Vertex; 3], [u, v]: [usize; 2]) -> Sign {
     (by_x - by_y + by_w).sign()
 }
 
-/// The side of the plane through three points on which a fourth lies; the normal by the right-hand rule
-/// points to `Plus`. Always `On` if the three are on one line.
+/// The side of the plane through a, b and c on which d lies; the normal by the right-hand rule points to
+/// `Plus`. Always `On` if a, b and c are on one line.
 ///
 /// # Example
 /// ```
@@ -50,7 +50,7 @@ pub fn side([a, b, c]: [&Vertex; 3], d: &Vertex) -> Side {
     clear_side([a, b, c, d].map(Vertex::approx)).or_exact(|| exact_side([a, b, c, d]))
 }
 
-/// The side, where the points' approximations decide it.
+/// The side of the plane through a, b and c on which d lies, where the points' doubles decide it.
 ///
 /// If coordinates are below m in magnitude, their differences are off by δ =
 /// [`MAX_COORDINATE_ERROR`] m at most; let s bound the differences with that. A product of three is
@@ -85,7 +85,7 @@ fn exact_side(points: [&Vertex; 4]) -> Side {
     Side::from_sign((term(1, 2, 0) + term(2, 0, 1) + term(0, 1, 2)).sign())
 }
 
-/// The vector from one point to another, times the weights of both.
+/// The vector from point a to point b, times the weights w of both.
 fn step(a: &Homogeneous, b: &Homogeneous) -> [Int<CROSS_LIMBS>; 3] {
     each_axis(|i| {
         let (to, from): (Int<CROSS_LIMBS>, _) = (b.x[i].mul(&a.w), a.x[i].mul(&b.w));
@@ -109,7 +109,7 @@ mod tests {
         [coordinate(), coordinate(), coordinate()]
     }
 
-    /// A lattice point, or the meet of a plane through three points with two across axes.
+    /// A lattice point, or the meet of a plane through three lattice points with two planes across axes.
     fn point() -> impl Strategy<Value = Vertex> {
         let places = [-5i64..=5, -5i64..=5];
         let met = ([lattice(), lattice(), lattice()], places).prop_filter_map(

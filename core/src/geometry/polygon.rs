@@ -1,7 +1,7 @@
-//! Convex polygons in supporting planes, split exactly by planes.
+//! Convex polygons in planes, split exactly by other planes.
 //!
-//! Each edge knows a plane that carries it, so that a new corner is always the meet of three input planes
-//! and widths do not grow with the number of cuts.
+//! Each edge stores a plane or lattice edge that carries it, so a new corner is always the meet of input
+//! planes, and its coordinates do not widen with the number of cuts.
 
 use std::sync::Arc;
 
@@ -16,17 +16,18 @@ use super::vertex::Vertex;
 use crate::arith::convert::as_double;
 use crate::interrupt::poll;
 
-/// What an edge lies on, besides the plane of the polygon.
+/// What carries an edge of a polygon: the edge lies on it and in the polygon's plane.
 #[derive(Clone, Debug)]
 pub enum Carrier {
     /// A lattice edge of a face, in the face's own direction.
     Edge(LatticeEdge),
-    /// A plane; the polygon lies on its minus side, or on its plus side if the flag is set.
+    /// A plane; the polygon lies on its plus side if the flag is set, else on its minus side.
     Cut(Arc<Plane>, bool),
 }
 
 impl Carrier {
-    /// The plane through the edge that has the polygon on its minus side.
+    /// The plane through the edge that crosses the polygon's plane `support` and has the polygon on its minus
+    /// side.
     pub fn plane(&self, support: &Plane) -> Plane {
         match self {
             Self::Edge(edge) => edge_plane(edge, support),
@@ -35,7 +36,8 @@ impl Carrier {
         }
     }
 
-    /// The same plane for side tests only.
+    /// The plane through the edge with the polygon on its minus side, for side tests only: its coefficients
+    /// may have a common divisor.
     pub fn rim(&self, support: &Plane) -> Plane {
         match self {
             Self::Edge(edge) => {
@@ -53,7 +55,8 @@ impl Carrier {
         }
     }
 
-    /// Return whether no corner of a polygon in a support lies on the inner side of this edge.
+    /// Return whether no corner lies strictly on the inner side of this edge of a polygon with the plane
+    /// `support`; the corners lie in that plane, too.
     fn has_beyond(&self, support: &Plane, corners: &[Corner]) -> bool {
         let axis = support.main_axis();
         let (turned, side): (bool, &dyn Fn(&Vertex) -> Side) = match self {
@@ -66,7 +69,8 @@ impl Carrier {
         corners.iter().all(|corner| side(&corner.at) != inner)
     }
 
-    /// Return whether this is the border of the universe, which cuts off only half-spaces.
+    /// Return whether the carrier is a wall of the cell of all lattice points, which cuts only surfaces of
+    /// half-spaces.
     pub fn is_border(&self) -> bool {
         match self {
             Self::Edge(..) => false,
@@ -80,7 +84,7 @@ impl Carrier {
         }
     }
 
-    /// The common line of this carrier and the support.
+    /// The line in which this carrier and the polygon's plane `support` meet.
     pub fn line(&self, support: &PlaneResidues) -> Line {
         match self {
             Self::Edge(edge) => {
@@ -91,7 +95,7 @@ impl Carrier {
         }
     }
 
-    /// The meet of this edge's line with a plane that crosses it.
+    /// The point where this edge's line meets a plane; `None` if the two are parallel.
     pub fn meet(&self, support: &Arc<Plane>, cut: &Arc<Plane>) -> Option<Vertex> {
         match self {
             Self::Edge(edge) => Vertex::on_edge(edge, cut),
@@ -100,7 +104,8 @@ impl Carrier {
     }
 }
 
-/// The plane through a face's edge parallel to an axis, with the face on its minus side.
+/// The plane that contains an edge of a face and is parallel to the main axis of the face's normal, with the
+/// face on its minus side.
 fn edge_plane(edge: &LatticeEdge, support: &Plane) -> Plane {
     let (a, b) = edge.ends();
     let axis = support.main_axis();
@@ -113,10 +118,10 @@ fn edge_plane(edge: &LatticeEdge, support: &Plane) -> Plane {
     }
 }
 
-/// A corner and the carrier of the edge that leaves it.
+/// A corner of a polygon and the carrier of the edge that leaves it.
 #[derive(Clone, Debug)]
 pub struct Corner {
-    /// The place of the corner.
+    /// The exact position of the corner.
     pub at: Arc<Vertex>,
     /// The carrier of the edge to the next corner.
     pub edge: Carrier,
@@ -130,12 +135,12 @@ pub type Sides = SmallVec<[Side; 8]>;
 /// The ends of a segment inside a polygon.
 type Chord = SmallVec<[Arc<Vertex>; 2]>;
 
-/// Return whether any corners are on the minus side, and whether any are on the plus side.
+/// Return whether any side is `Minus`, and whether any is `Plus`.
 pub fn straddle(sides: &[Side]) -> (bool, bool) {
     (sides.contains(&Side::Minus), sides.contains(&Side::Plus))
 }
 
-/// A convex polygon of positive area, counterclockwise as seen from its support's plus side.
+/// A convex polygon of positive area, counterclockwise as seen from the plus side of its plane.
 ///
 /// # Example
 /// ```
@@ -160,35 +165,36 @@ pub struct Polygon {
     corners: Corners,
 }
 
-/// The sides of a plane on which a polygon lies, and its parts there.
+/// Where a polygon lies relative to a plane, with the two parts if the plane crosses it.
 ///
-/// Pieces are consumed at once, never stored, so that boxing the large variant would only cost.
+/// Parts are used at once and never stored, so boxing the large variant would only cost time.
 #[derive(Debug)]
 #[allow(clippy::large_enum_variant)]
 pub enum PolygonSplit {
-    /// Entirely on the minus side, perhaps touching.
+    /// The polygon lies on the minus side; it may touch the plane.
     Minus,
-    /// Entirely on the plus side, perhaps touching.
+    /// The polygon lies on the plus side; it may touch the plane.
     Plus,
-    /// In the plane.
+    /// The polygon lies in the plane.
     Coplanar,
-    /// Strictly on both sides: the two pieces.
+    /// The polygon has points strictly on both sides: its part on the minus side, then its part on the plus
+    /// side.
     Both(Polygon, Polygon),
 }
 
 impl Polygon {
-    /// The triangle of three lattice points with this supporting plane.
+    /// The triangle with these lattice corners, counterclockwise, in the plane `support` through them.
     pub fn triangle(points: &[Lattice; 3], support: Arc<Plane>) -> Self {
         Self::convex(points, support)
     }
 
-    /// The convex polygon with these corners in this supporting plane, counterclockwise.
+    /// The convex polygon with these corners, counterclockwise, in the plane `support` through them.
     pub fn of_corners(corners: Vec<Corner>, support: Arc<Plane>) -> Self {
         let corners = corners.into_iter().collect();
         Self { support, corners }
     }
 
-    /// The convex polygon of lattice points in this supporting plane, counterclockwise.
+    /// The convex polygon with these lattice corners, counterclockwise, in the plane `support` through them.
     pub fn convex(points: &[Lattice], support: Arc<Plane>) -> Self {
         let ring = Arc::new(Ring::from_slice(points));
         let corner = |(i, point): (u32, &Lattice)| Corner {
@@ -199,7 +205,7 @@ impl Polygon {
         Self { support, corners }
     }
 
-    /// The part of a plane inside a cell, if it has an area.
+    /// The part of a plane inside a cell as a polygon; `None` if it has no area.
     pub fn span(plane: &Arc<Plane>, cell: &Cell) -> Option<Self> {
         let walls = cell.walls().map(Arc::new);
         let axis = plane.main_axis();
@@ -225,17 +231,17 @@ impl Polygon {
             .inside(&walls[2 * axis + 1])
     }
 
-    /// The supporting plane.
+    /// The plane in which the polygon lies.
     pub fn support(&self) -> &Arc<Plane> {
         &self.support
     }
 
-    /// The corners, counterclockwise.
+    /// The corners of the polygon, counterclockwise as seen from the plus side of its plane.
     pub fn corners(&self) -> &[Corner] {
         &self.corners
     }
 
-    /// The directed edges: start, end, carrier.
+    /// The directed edges, counterclockwise: start, end and carrier of each.
     pub fn edges(&self) -> impl Iterator<Item = (&Arc<Vertex>, &Arc<Vertex>, &Carrier)> {
         let n = self.corners.len();
         (0..n).map(move |i| {
@@ -244,7 +250,7 @@ impl Polygon {
         })
     }
 
-    /// Splits by a plane.
+    /// Splits the polygon by a plane.
     pub fn split(&self, cut: &Arc<Plane>) -> PolygonSplit {
         let sides = self.sides(cut);
         match straddle(&sides) {
@@ -258,13 +264,13 @@ impl Polygon {
         }
     }
 
-    /// The sides of a plane on which the corners lie.
+    /// The sides of a plane on which the polygon's corners lie, in the order of the corners.
     pub fn sides(&self, cut: &Plane) -> Sides {
         self.corners.iter().map(|c| c.at.side_of(cut)).collect()
     }
 
-    /// The ends of the segment in which a plane with corners strictly on both sides cuts the polygon, in
-    /// order along its border.
+    /// The ends of the segment in which a plane cuts the polygon, in order along its border; corners lie
+    /// strictly on both sides of the plane.
     fn chord(&self, cut: &Arc<Plane>, sides: &[Side]) -> Chord {
         let n = self.corners.len();
         let mut ends = Chord::new();
@@ -278,19 +284,20 @@ impl Polygon {
         ends
     }
 
-    /// Return the point in which the edge from a corner crosses a plane between its ends.
+    /// Return the point where a plane crosses the edge that leaves a corner; the edge's ends lie strictly on
+    /// both sides.
     fn crossing(&self, corner: usize, cut: &Arc<Plane>) -> Arc<Vertex> {
         let meet = self.corners[corner].edge.meet(&self.support, cut);
         Arc::new(meet.expect("an edge with ends on both sides meets the plane"))
     }
 
-    /// The pieces on the minus and plus side of a plane that cuts the polygon in a chord.
+    /// The part on the minus side and the part on the plus side of a plane that cuts the polygon in a chord.
     fn divided(&self, cut: &Arc<Plane>, sides: &[Side], chord: &Chord) -> (Self, Self) {
         let half = |own| self.half(cut, sides, chord, own);
         (half(Side::Minus), half(Side::Plus))
     }
 
-    /// The piece on a side, not `On`.
+    /// The part of the polygon on the side `own`, `Minus` or `Plus`, of a plane that cuts it in a chord.
     fn half(&self, cut: &Arc<Plane>, sides: &[Side], chord: &Chord, own: Side) -> Self {
         let n = self.corners.len();
         let along = |at: &Arc<Vertex>| Corner {
@@ -329,7 +336,7 @@ impl Polygon {
         }
     }
 
-    /// The part on the minus side of a plane, if it has an area.
+    /// The part of the polygon on the minus side of a plane, or `None` if it has no area.
     #[must_use]
     pub fn inside(self, cut: &Arc<Plane>) -> Option<Self> {
         let sides = self.sides(cut);
@@ -340,7 +347,7 @@ impl Polygon {
         }
     }
 
-    /// The part inside a cell, if it has an area.
+    /// The part of the polygon inside a cell, or `None` if it has no area.
     #[must_use]
     pub fn clipped(self, cell: &Cell) -> Option<Self> {
         let (low, high) = (cell.low(), cell.high());
@@ -358,8 +365,8 @@ impl Polygon {
         Some(polygon)
     }
 
-    /// Return whether the polygon may reach half a step below `low` or above `high`; may return false
-    /// positives.
+    /// Return whether the polygon may reach half a step below `low` along an axis, and whether it may reach
+    /// half a step above `high`; may return false positives.
     fn reach(&self, axis: usize, low: i64, high: i64) -> (bool, bool) {
         let (mut below, mut above) = (false, false);
         for corner in &self.corners {
@@ -375,7 +382,7 @@ impl Polygon {
         (below, above)
     }
 
-    /// The same polygon seen from the other side.
+    /// The same polygon seen from the other side: its plane flipped, its corners in reverse order.
     #[must_use]
     pub fn flipped(&self) -> Self {
         let n = self.corners.len();
@@ -391,7 +398,8 @@ impl Polygon {
         }
     }
 
-    /// Return whether an edge of one polygon has the other entirely beyond it; both lie in one plane.
+    /// Return whether, of two polygons in one plane, one lies entirely on the outer side of an edge of the
+    /// other.
     pub fn lies_beside(&self, other: &Self) -> bool {
         poll();
         self.has_beyond_an_edge(other) || other.has_beyond_an_edge(self)
@@ -402,13 +410,14 @@ impl Polygon {
         edges.any(|edge| edge.has_beyond(&self.support, &other.corners))
     }
 
-    /// A box of doubles around the polygon, widened by the rounding of its corners.
+    /// The low and high corner of a box of doubles around the polygon, widened by the rounding of its
+    /// corners.
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         bounds(self.corners.iter().map(|corner| &*corner.at))
     }
 }
 
-/// A box of doubles around points, widened by their rounding.
+/// The low and high corner of a box of doubles around points, widened by their rounding.
 pub fn bounds<'a>(points: impl Iterator<Item = &'a Vertex>) -> ([f64; 3], [f64; 3]) {
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];

@@ -1,8 +1,8 @@
-//! Residues of small integers modulo the primes just below 2^61, by folding.
+//! Residues of 128-bit integers modulo the primes just below 2^61, without division.
 
 use crate::arith::{mul_mod, reduce_mod, P1};
 
-/// The residue of a signed integer in `0..P`, for `P` one of `P1` and `P2`.
+/// The residue of a signed integer in `0..P`, where `P` is `P1` or `P2`.
 #[inline]
 pub fn residue<const P: u64>(value: i128) -> u64 {
     let r = reduce::<P>(value.unsigned_abs());
@@ -13,7 +13,7 @@ pub fn residue<const P: u64>(value: i128) -> u64 {
     }
 }
 
-/// The residue of any 128-bit number.
+/// The residue of an unsigned 128-bit integer in `0..P`, where `P` is `P1` or `P2`.
 #[inline]
 pub fn reduce<const P: u64>(value: u128) -> u64 {
     // A fold modulo the Mersenne prime needs no multiplication.
@@ -24,7 +24,7 @@ pub fn reduce<const P: u64>(value: u128) -> u64 {
     }
 }
 
-/// The product of two residues.
+/// The product of two residues modulo `P`, which is `P1` or `P2`.
 #[inline]
 pub fn mul<const P: u64>(a: u64, b: u64) -> u64 {
     if P == P1 {

@@ -1,4 +1,4 @@
-//! Where things lie: sides, orientations and splits.
+//! Sides of hyperplanes, orientations of hyperplanes to each other, and splits of pieces by hyperplanes.
 
 use std::cmp::Ordering;
 
@@ -19,9 +19,8 @@ pub enum Side {
 }
 
 impl Side {
-    /// The side named by the sign of a hyperplane's value.
-    ///
-    /// Negative: `Minus`; zero: `On`; positive: `Plus`.
+    /// The side of a hyperplane whose value at a point has this sign: negative is `Minus`, zero is `On`,
+    /// positive is `Plus`.
     #[inline]
     pub fn from_sign(sign: Sign) -> Self {
         match sign {
@@ -31,7 +30,7 @@ impl Side {
         }
     }
 
-    /// The sign of a hyperplane's value here.
+    /// The sign of a hyperplane's value on this side.
     #[inline]
     pub fn sign(self) -> Sign {
         match self {
@@ -41,13 +40,13 @@ impl Side {
         }
     }
 
-    /// Return whether this side and another are strictly different.
+    /// Return whether one of two sides is `Minus` and the other `Plus`.
     #[inline]
     pub fn is_across_from(self, other: Self) -> bool {
         self != Self::On && other == self.opposite()
     }
 
-    /// The side named by how a hyperplane's value compares to zero.
+    /// The side of a hyperplane whose value at a point compares to zero like this.
     pub fn from_order(order: Ordering) -> Self {
         match order {
             Ordering::Less => Self::Minus,
@@ -56,7 +55,7 @@ impl Side {
         }
     }
 
-    /// The same place after the hyperplane's sides are exchanged.
+    /// The side of the hyperplane that points of this side have after its direction is reversed.
     #[must_use]
     pub fn opposite(self) -> Self {
         match self {
@@ -70,17 +69,17 @@ impl Side {
 /// One of the two open half-spaces of a hyperplane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Half {
-    /// The inside.
+    /// The open half-space of negative values, the inside.
     Minus,
-    /// The outside.
+    /// The open half-space of positive values, the outside.
     Plus,
 }
 
 impl Half {
-    /// The inside, then the outside.
+    /// Both half-spaces: minus, the inside, then plus, the outside.
     pub const BOTH: [Self; 2] = [Self::Minus, Self::Plus];
 
-    /// The half-space named by the sign of a hyperplane's value, which is not zero.
+    /// The half-space in which a hyperplane's value has this sign, which must not be zero.
     #[inline]
     pub fn from_sign(sign: Sign) -> Self {
         match sign {
@@ -89,7 +88,7 @@ impl Half {
         }
     }
 
-    /// The sign of a hyperplane's value in it.
+    /// The sign of a hyperplane's values in this half-space.
     #[inline]
     pub fn sign(self) -> Sign {
         match self {
@@ -108,27 +107,27 @@ impl Half {
     }
 }
 
-/// The orientation of two hyperplanes with the same points to each other, or of a face of a solid to the
-/// face it came from.
+/// Whether two oriented hyperplanes of the same points have the same inside; also, whether a face of a solid
+/// has the direction of the face that it comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Orientation {
-    /// Their minus sides agree.
+    /// The two minus sides agree.
     #[default]
     Same,
-    /// The minus side of one is the plus side of the other.
+    /// The minus side of each is the plus side of the other.
     Opposite,
 }
 
 impl Orientation {
-    /// Both orientations.
+    /// Both orientations, `Same` first.
     pub const BOTH: [Self; 2] = [Self::Same, Self::Opposite];
 
-    /// Opposite if the flag is set.
+    /// `Opposite` if `turned`, else `Same`.
     pub fn turned_around(turned: bool) -> Self {
         Self::Same.turned_if(turned)
     }
 
-    /// This orientation, or the other one if the flag is set.
+    /// The other orientation if `turned`, else this one.
     #[must_use]
     pub fn turned_if(self, turned: bool) -> Self {
         match (self, turned) {
@@ -137,12 +136,12 @@ impl Orientation {
         }
     }
 
-    /// Return whether the sides are exchanged.
+    /// Return whether this is `Opposite`: the two sides are exchanged.
     pub fn is_opposite(self) -> bool {
         self == Self::Opposite
     }
 
-    /// Return a signed value, negated if the sides are exchanged.
+    /// Return a signed value, negated if the orientation is `Opposite`.
     ///
     /// ```
     /// use bspcsg::geometry::side::Orientation;
@@ -159,9 +158,9 @@ impl Orientation {
     }
 }
 
-/// The sides of a hyperplane on which a convex piece lies; touching it does not count as crossing.
+/// Where a convex piece lies relative to a hyperplane; touching it does not count as crossing.
 ///
-/// One-sided answers carry nothing: the whole piece is the answer.
+/// Only a piece that is crossed is divided: the other cases mean the whole piece.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Split<T> {
     /// The piece's relative interior is on the minus side.
@@ -175,6 +174,6 @@ pub enum Split<T> {
         /// The part on the plus side.
         plus: T,
     },
-    /// The piece lies in the hyperplane; the orientation of the piece relative to it.
+    /// The piece lies in the hyperplane, with this orientation relative to it.
     Coplanar(Orientation),
 }

@@ -1,10 +1,10 @@
-//! Integers of any width.
+//! Conversion of integers of fixed width to integers of unbounded width.
 
 use num_bigint::{BigInt, Sign};
 
 use crate::arith::Int;
 
-/// An integer as one of unbounded width.
+/// The same integer as a big integer, of unbounded width.
 #[allow(clippy::cast_possible_truncation)]
 pub fn big<const N: usize>(value: &Int<N>) -> BigInt {
     let size = value.abs();

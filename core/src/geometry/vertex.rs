@@ -1,4 +1,4 @@
-//! Exact points: lattice points and meets of three planes, in homogeneous coordinates.
+//! Exact points: lattice points, meets of a lattice edge and a plane, and meets of three planes.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -13,14 +13,14 @@ use super::side::Side;
 use crate::arith::convert::as_double;
 use crate::arith::{Filtered, Int, P1};
 
-/// The largest relative difference of two doubles for one coordinate: twice three units of 2^-52 in the
-/// last place, and room for the rounding of the comparison.
+/// The largest relative difference of two doubles that approximate one coordinate: twice three units of
+/// 2^-52, and room for the rounding of the comparison.
 pub const MAX_COORDINATE_ERROR: f64 = 8.0 * f64::EPSILON;
 
 /// An exact point (x/w, y/w, z/w) with w > 0.
 ///
-/// A constructed point stores its construction. Its coordinates are computed anew where doubles do not
-/// settle a question: they are wide and rarely needed.
+/// A constructed point stores its construction: a lattice edge and a plane, or three planes. Its coordinates
+/// are wide and rarely needed, so they are computed again wherever doubles do not settle a question.
 ///
 /// # Bits
 /// x, y, z below 2^379, w below 2^326 (`arith::bounds`).
@@ -59,7 +59,8 @@ enum Place {
     Given(Box<Homogeneous>),
 }
 
-/// A fingerprint of a point. Equal points share it; unequal points do so with probability 2^-183.
+/// A fingerprint of a point: its coordinates modulo a prime. Equal points share it; two unequal points do so
+/// with probability 2^-183.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct VertexKey([u64; 3]);
 
@@ -72,7 +73,7 @@ impl Vertex {
         }
     }
 
-    /// The meet of three planes; `None` if they have no single common point.
+    /// The vertex where three planes meet; `None` if they have no single common point.
     pub fn meet(a: &Arc<Plane>, b: &Arc<Plane>, c: &Arc<Plane>) -> Option<Self> {
         if let Some(point) = meet_on_lattice([a, b, c]) {
             return Some(Self::lattice(point));
@@ -82,7 +83,7 @@ impl Vertex {
         Some(Self { place, approx })
     }
 
-    /// The meet of a lattice edge's line with a plane; `None` if they are parallel.
+    /// The vertex where the line through a lattice edge meets a plane; `None` if the two are parallel.
     pub fn on_edge(edge: &LatticeEdge, cut: &Arc<Plane>) -> Option<Self> {
         if let Some(point) = edge_on_lattice(edge, cut) {
             return Some(Self::lattice(point));
@@ -100,7 +101,7 @@ impl Vertex {
         Self { place, approx }
     }
 
-    /// The lattice point this vertex was made from, if it was.
+    /// The lattice point, if the vertex is stored as one; `None` for a constructed vertex.
     pub fn as_lattice(&self) -> Option<&Lattice> {
         match &self.place {
             Place::Lattice(p) => Some(p),
@@ -108,7 +109,7 @@ impl Vertex {
         }
     }
 
-    /// The homogeneous coordinates.
+    /// The exact homogeneous coordinates of the point, in six limbs.
     pub fn coordinates(&self) -> Homogeneous {
         match self.exact() {
             Coordinates::Short(h) => h.widened(),
@@ -116,7 +117,7 @@ impl Vertex {
         }
     }
 
-    /// The coordinates, computed from the construction.
+    /// The exact homogeneous coordinates, computed from the construction.
     fn exact(&self) -> Coordinates {
         let known = match &self.place {
             Place::Lattice(p) => return Coordinates::of_lattice(p),
@@ -133,7 +134,7 @@ impl Vertex {
         [x / w, y / w, z / w]
     }
 
-    /// The lowest and the highest place the point may have.
+    /// The box of doubles in which the exact point certainly lies: its low and its high corner.
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         let p = self.approx();
         let slack = p.map(|c| c.abs() * 4.0 * f64::EPSILON);
@@ -141,13 +142,13 @@ impl Vertex {
         ([x - a, y - b, z - c], [x + a, y + b, z + c])
     }
 
-    /// Return whether this may be a lattice point; may return false positives.
+    /// Return whether this may be the given lattice point, by doubles; may return false positives.
     pub fn may_be(&self, place: &Lattice) -> bool {
         let (low, high) = self.bounds();
         (0..3).all(|i| low[i] <= as_double(place[i]) && as_double(place[i]) <= high[i])
     }
 
-    /// The side of a plane on which the point lies.
+    /// The side of a plane on which the point lies, exactly.
     pub fn side_of(&self, plane: &Plane) -> Side {
         match &self.place {
             Place::Lattice(p) => plane.side_of_lattice(p),
@@ -159,7 +160,8 @@ impl Vertex {
         }
     }
 
-    /// The side of the plane through a lattice edge along an axis on which the point lies.
+    /// The side on which the point lies, of the plane that contains a lattice edge and is parallel to an
+    /// axis.
     pub fn side_of_edge(&self, edge: &LatticeEdge, axis: usize) -> Side {
         let (a, b) = edge.ends();
         match &self.place {
@@ -171,10 +173,10 @@ impl Vertex {
         }
     }
 
-    /// The same, where doubles decide it.
+    /// The side of the plane through a lattice edge parallel to an axis, where doubles decide it.
     ///
     /// Coordinates carry one rounding, their products with a lattice point's two, differences three and the
-    /// edge's steps one: five relative to the sizes of the operands, and three more for the products and
+    /// edge's steps one: five relative to the magnitudes of the operands, and three more for the products and
     /// their sum.
     fn near_side_of_edge(&self, edge: &LatticeEdge, axis: usize) -> Filtered<Side> {
         let (a, b) = edge.ends();
@@ -192,7 +194,7 @@ impl Vertex {
         Filtered::when(value.abs() > (first.1 + second.1) * FILTER, side)
     }
 
-    /// A positive multiple of the plane's value here, in doubles, and a bound on its error.
+    /// A positive multiple of a plane's value at this point, in doubles, and a bound on its error.
     pub fn near_value(&self, plane: &Plane) -> (f64, f64) {
         let a = plane.approx();
         let x = &self.approx;
@@ -201,7 +203,7 @@ impl Vertex {
         (t[0] + t[1] + t[2] + t[3], size * FILTER)
     }
 
-    /// The plane's value here times the denominator.
+    /// The exact value of a plane at this point, times the denominator w.
     pub fn value(&self, plane: &Plane) -> Int<8> {
         self.coordinates().value(plane)
     }
@@ -212,7 +214,7 @@ impl Vertex {
         Filtered::when(value.abs() > doubt, side)
     }
 
-    /// Return whether the point lies in a plane of its construction; may return false negatives.
+    /// Return whether the point lies in a plane because its construction says so; may return false negatives.
     fn is_known_in(&self, plane: &Plane) -> bool {
         let is_it = |own: &Arc<Plane>| {
             std::ptr::eq(Arc::as_ptr(own), plane) || own.coincides(plane).is_some()
@@ -224,7 +226,7 @@ impl Vertex {
         }
     }
 
-    /// Order of two points by one coordinate.
+    /// The exact order of two points by their coordinate along an axis.
     pub fn compare(&self, other: &Self, axis: usize) -> Ordering {
         if let (Place::Lattice(p), Place::Lattice(q)) = (&self.place, &other.place) {
             return p[axis].cmp(&q[axis]);
@@ -238,7 +240,7 @@ impl Vertex {
         self.exact().compare(&other.exact(), axis)
     }
 
-    /// Order of two points of one line by a coordinate that changes along it.
+    /// The exact order of two points of one line by a coordinate that changes along the line.
     pub fn compare_along(&self, other: &Self, axis: usize) -> Ordering {
         if let (Place::Lattice(p), Place::Lattice(q)) = (&self.place, &other.place) {
             return p[axis].cmp(&q[axis]);
@@ -252,8 +254,8 @@ impl Vertex {
         self.compare(other, axis)
     }
 
-    /// An axis along which another vertex has another coordinate: the one of the largest difference in
-    /// doubles, if that is certain.
+    /// An axis along which another, different vertex has a different coordinate: the axis of the largest
+    /// difference in doubles, if that one is certain.
     pub fn axis_to(&self, other: &Self) -> usize {
         let (p, q) = (self.approx(), other.approx());
         let length = each_axis(|i| (q[i] - p[i]).abs());
@@ -264,7 +266,7 @@ impl Vertex {
         axes.find(differs).unwrap_or(longest)
     }
 
-    /// The order by one coordinate, where doubles decide it.
+    /// The order of two points by their coordinate along an axis, where doubles decide it.
     fn near_order(&self, other: &Self, axis: usize) -> Filtered<Ordering> {
         let left = self.approx[axis] * other.approx[3];
         let right = other.approx[axis] * self.approx[3];
@@ -274,8 +276,8 @@ impl Vertex {
 
     /// Return whether two vertices are the same point.
     ///
-    /// The planes and edges of a construction meet in one point only, so that a point in all of them is the
-    /// same.
+    /// The planes and edges of a construction have one common point, so a point that lies in all of them is
+    /// the same point.
     pub fn same(&self, other: &Self) -> bool {
         if let (Place::Lattice(p), Place::Lattice(q)) = (&self.place, &other.place) {
             return p == q;
@@ -304,7 +306,7 @@ impl Vertex {
         (0..3).all(|axis| p.compare(&q, axis) == Ordering::Equal)
     }
 
-    /// Return whether this is a lattice point.
+    /// Return whether this vertex is the given lattice point, exactly.
     pub fn is_at(&self, place: &Lattice) -> bool {
         match &self.place {
             Place::Lattice(p) => p == place,
@@ -316,7 +318,8 @@ impl Vertex {
         }
     }
 
-    /// Twice a coordinate, where the construction puts it on the lattice or halfway.
+    /// Twice the coordinate along an axis, if the construction fixes it at a multiple of half a lattice step;
+    /// else `None`.
     pub fn doubled(&self, axis: usize) -> Option<i64> {
         match &self.place {
             Place::Lattice(p) => Some(2 * p[axis]),
@@ -330,7 +333,7 @@ impl Vertex {
         }
     }
 
-    /// The key shared by all representations of this point.
+    /// The fingerprint of the point, which does not depend on the construction.
     pub fn key(&self) -> VertexKey {
         match &self.place {
             Place::Lattice(p) => VertexKey(p.map(|c| residue::<P1>(c.into()))),
@@ -339,7 +342,8 @@ impl Vertex {
     }
 }
 
-/// The meet of an edge parallel to an axis with a plane across that axis, if it is a lattice point.
+/// The meet of an edge parallel to an axis with a plane across that axis, if it is a lattice point; else
+/// `None`.
 fn edge_on_lattice(edge: &LatticeEdge, cut: &Plane) -> Option<Lattice> {
     let axis = cut.only_axis()?;
     let (a, b) = edge.ends();
@@ -349,7 +353,7 @@ fn edge_on_lattice(edge: &LatticeEdge, cut: &Plane) -> Option<Lattice> {
     Some(point)
 }
 
-/// The meet of three planes perpendicular to the three axes, if it is a lattice point.
+/// The meet of three planes perpendicular to the three axes, if it is a lattice point; else `None`.
 fn meet_on_lattice(planes: [&Plane; 3]) -> Option<Lattice> {
     let mut point = [None; 3];
     for plane in planes {
@@ -365,7 +369,7 @@ mod tests {
 
     use super::*;
 
-    /// Points near each other, and points all over the lattice.
+    /// Lattice points, of which half lie near the origin and half anywhere.
     fn point() -> impl Strategy<Value = Lattice> {
         const LIMIT: i64 = (1 << 53) - 1;
         let coordinate = || prop_oneof![3 => -3i64..=3, 1 => -LIMIT..=LIMIT, 1 => Just(LIMIT)];
@@ -381,7 +385,7 @@ mod tests {
             let plane = Plane::beside_edge(&a, &b, axis);
             let cut = Arc::new(Plane::axis_cut(axis, place));
             let crossing = Vertex::on_edge(&LatticeEdge::new(p, q), &cut);
-            // What doubles cannot decide: a point of the edge itself.
+            // Doubles cannot decide the side of a point of the edge itself.
             let own = Vertex::on_edge(&edge, &cut);
             for at in [Some(Vertex::lattice(p)), crossing, own].into_iter().flatten() {
                 prop_assert_eq!(at.side_of_edge(&edge, axis), at.side_of(&plane));

@@ -1,4 +1,4 @@
-//! Exact vertex identity: one number for each point, however it was constructed.
+//! Exact vertex identity: one number for each point, no matter how it is constructed.
 
 use std::hash::BuildHasher;
 use std::sync::Arc;
@@ -10,22 +10,22 @@ use crate::geometry::doubles::folded;
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::{Vertex, MAX_COORDINATE_ERROR};
 
-/// Numbered points; equal points have equal numbers.
+/// A table of exact points that numbers them from 0; equal points have equal numbers.
 #[derive(Debug, Default)]
 pub struct VertexTable {
     points: Vec<Arc<Vertex>>,
     /// The points in doubles, each coordinate within three units in the last place.
     places: Vec<[f64; 3]>,
-    /// The last point with each fingerprint.
+    /// The number of the last point with each fingerprint of a [`Blur`].
     last: HashMap<u64, u32>,
-    /// For each point, the previous one with the same fingerprint, or [`NONE`].
+    /// For each point, the number of the previous point with the same fingerprint, or [`NONE`].
     previous: Vec<u32>,
 }
 
 const NONE: u32 = u32::MAX;
 
 impl VertexTable {
-    /// The number of a point, found by its place in doubles and confirmed exactly.
+    /// The number of a point, added if it is new: found by its rounded doubles and confirmed exactly.
     pub fn number(&mut self, vertex: &Arc<Vertex>) -> u32 {
         let place = vertex.approx();
         self.find_at(vertex, &place).unwrap_or_else(|| {
@@ -35,7 +35,7 @@ impl VertexTable {
         })
     }
 
-    /// The number of a lattice point.
+    /// The number of a lattice point, which is added if it is new.
     pub fn number_at(&mut self, place: Lattice) -> u32 {
         let vertex = Vertex::lattice(place);
         let place = vertex.approx();
@@ -43,7 +43,7 @@ impl VertexTable {
         known.unwrap_or_else(|| self.add(Arc::new(vertex)))
     }
 
-    /// The number of a point that is in the table.
+    /// The number of a point, or `None` if it is not in the table.
     pub fn find(&self, vertex: &Vertex) -> Option<u32> {
         self.find_at(vertex, &vertex.approx())
     }
@@ -67,35 +67,37 @@ impl VertexTable {
         next
     }
 
-    /// The point equal to this vertex, among those with one fingerprint.
+    /// The number of the point that equals a vertex, among the points with one fingerprint; `None` if none
+    /// does.
     fn among(&self, fingerprint: u64, vertex: &Vertex) -> Option<u32> {
         let before = |id: &u32| Some(self.previous[*id as usize]).filter(|p| *p != NONE);
         let last = self.last.get(&fingerprint).copied();
         std::iter::successors(last, before).find(|id| self.point(*id).same(vertex))
     }
 
-    /// The point with this number.
+    /// The exact point with this number.
     pub fn point(&self, id: u32) -> &Arc<Vertex> {
         &self.points[id as usize]
     }
 
-    /// The point with this number in doubles.
+    /// The coordinates of the point with this number, in doubles.
     pub fn place(&self, id: u32) -> &[f64; 3] {
         &self.places[id as usize]
     }
 
-    /// Return whether there are no points.
+    /// Return whether the table has no points.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
 
-    /// Return the number of points.
+    /// Return the number of points in the table.
     pub fn len(&self) -> usize {
         self.points.len()
     }
 }
 
-/// The lattice point that a constructed vertex equals, if any: lattice points are cheap to test.
+/// The lattice point that a constructed vertex equals; `None` if it equals none or is stored as a lattice
+/// point.
 fn lattice_place(vertex: &Vertex, place: &[f64; 3]) -> Option<Lattice> {
     if vertex.as_lattice().is_some() {
         return None;
@@ -107,18 +109,19 @@ fn lattice_place(vertex: &Vertex, place: &[f64; 3]) -> Option<Lattice> {
     ((0..3).all(near) && vertex.is_at(&nearest)).then_some(nearest)
 }
 
-/// A place in doubles, its coordinates rounded to some forty leading bits.
+/// A point in doubles, each coordinate rounded to about forty leading bits.
 ///
-/// The bits of positive doubles have the order of their values. So two doubles for one coordinate differ by
-/// less than [`Blur::DOUBT`] in them and nearly always round alike.
+/// The bits of positive doubles have the order of their values. So the bits of two doubles that approximate
+/// one coordinate differ by less than [`Blur::DOUBT`], and nearly always round to the same ones.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Blur([u64; 3]);
 
 impl Blur {
-    /// The number of bits rounded away.
+    /// The number of low bits of each double that are rounded away.
     const BITS: u32 = 12;
 
-    /// Six units in the last place, twice that beside a power of two, rounded up to a power of two.
+    /// The largest difference, in units in the last place, of two doubles for one coordinate: six, or twelve
+    /// next to a power of two, rounded up to a power of two.
     const DOUBT: u64 = 16;
 
     const HALF: u64 = 1 << (Self::BITS - 1);
@@ -127,17 +130,17 @@ impl Blur {
         Self(place.map(|c| (digits(c) + Self::HALF) >> Self::BITS))
     }
 
-    /// The blur of the smallest doubles in magnitude that may stand for the same point.
+    /// The blur of the doubles of least magnitude that may approximate the same point.
     fn lowest(place: &[f64; 3]) -> Self {
         Self(place.map(|c| (digits(c) + Self::HALF - Self::DOUBT) >> Self::BITS))
     }
 
-    /// The blur of the largest such doubles.
+    /// The blur of the doubles of greatest magnitude that may approximate the same point.
     fn highest(place: &[f64; 3]) -> Self {
         Self(place.map(|c| (digits(c) + Self::HALF + Self::DOUBT) >> Self::BITS))
     }
 
-    /// Picks each coordinate from one of two, by a bit of a number.
+    /// The blur that takes coordinate i from `high` if bit i of `bits` is set, else from `low`.
     fn mixed(low: &Self, high: &Self, bits: usize) -> Self {
         let pick = |i: usize| {
             if bits >> i & 1 == 0 {
@@ -154,7 +157,7 @@ impl Blur {
     }
 }
 
-/// The bits of a finite double, zero without a sign.
+/// The bits of a finite double, with −0 as +0.
 fn digits(c: f64) -> u64 {
     (c + 0.0).to_bits()
 }

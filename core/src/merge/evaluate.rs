@@ -1,4 +1,4 @@
-//! Expressions over solids.
+//! Evaluates Boolean expressions over solids, and unites a solid with itself.
 
 use std::sync::Arc;
 
@@ -21,15 +21,16 @@ use crate::tree::node::Branch;
 use crate::tree::solid::Solid;
 use crate::tree::table::Table;
 
-/// An operand for which kernels solved this many elements is probably a step of a chain whose next step
-/// takes as long: a millisecond or more, while waking a pool takes some 50 µs.
+/// If kernels solved this many elements (faces or parts of faces) to make an operand, the next operation on
+/// it probably takes as long, a millisecond or more, and runs in the thread pool; waking the pool takes about
+/// 50 µs.
 const POOL_AFTER: u64 = 512;
 
-/// The value of an expression over these solids.
+/// Returns the value of a Boolean expression over solids, and counts of the work.
 ///
-/// Always (G1): a point is inside the result where the expression holds for the operands' sides.
-/// If all operands are reduced, so is the result (G2). An operand found to overlap itself is united with
-/// itself, and the evaluation restarts.
+/// A point is inside the result exactly where the expression holds for the operands. If all operands are
+/// reduced (each wall between inside and outside is listed once, and nothing else), so is the result. If an
+/// operand turns out to overlap itself, it is united with itself, and the evaluation restarts.
 ///
 /// # Errors
 /// `PitchMismatch` if the operands live on different lattices.
@@ -80,7 +81,8 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
         let is_open = |k: &usize| !operands[*k].is_reduced();
         let doubted = (0..operands.len()).filter(is_open).collect();
         let descent = Descent::new(&sources, Rule::Positive, true, operands.len());
-        // Usually only one operand overlaps itself; ending at each of many would cost a descent each.
+        // Usually only one operand overlaps itself, so the first descent ends at the first one found. If
+        // later descents ended as early, each of many such operands would cost a descent.
         let descent = descent.doubting(doubted, std::mem::take(&mut is_first));
         let roots = operands.iter().map(|s| s.root().clone()).collect();
         let run = |roots| descent.run(expression.clone(), roots);
@@ -107,7 +109,8 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
     }
 }
 
-/// Unites those of the numbered operands with themselves that are not known to be reduced.
+/// Replaces each operand with an index in `numbers` by its union with itself, unless it is known not to
+/// overlap itself.
 fn unite_those(operands: &mut [Solid], numbers: &[usize], profile: &mut Profile) -> Result<()> {
     for k in numbers {
         let operand = &operands[*k];
@@ -120,7 +123,8 @@ fn unite_those(operands: &mut [Solid], numbers: &[usize], profile: &mut Profile)
     Ok(())
 }
 
-/// The value for two unchanged meshes, by the arrangement of their faces.
+/// Evaluates an expression over two meshes as they were imported, by comparing all their faces at once; the
+/// error is the reason why this is not possible.
 fn fresh_pair(
     expression: &Expression,
     operands: &[Solid],
@@ -150,7 +154,7 @@ fn fresh_pair(
     Ok((solid, counters))
 }
 
-/// The solid, or the empty set if it is a mesh in one plane, which bounds nothing.
+/// Returns the solid, or the empty set if it is a mesh whose faces all lie in one plane.
 fn bounding(solid: &Solid) -> Solid {
     let is_flat = |s: &Source| s.mesh().is_some_and(|m| m.are_in_one_plane(m.face_ids()));
     if solid.whole_mesh().is_some_and(|mesh| is_flat(mesh)) {
@@ -159,8 +163,8 @@ fn bounding(solid: &Solid) -> Solid {
     solid.clone()
 }
 
-/// The error that explains a failed operation on a solid; if only stored data say that it is reduced,
-/// checks that now.
+/// Returns `error`, or `BadSnapshot` if the error is internal and the solid overlaps itself although the
+/// stored data it was read from claim the contrary.
 pub fn explained(solid: &Solid, error: Error) -> Error {
     if error.kind() != ErrorKind::Internal || !solid.is_claimed() {
         return error;
@@ -178,8 +182,8 @@ fn false_claim() -> Error {
     Error::new(ErrorKind::BadSnapshot, text)
 }
 
-/// The error when a reduced operand overlaps itself: stored data or the claim about a mesh was wrong, or
-/// there is a defect.
+/// Returns the error for operands (`suspects` are their indices) that overlap themselves though they were
+/// marked as reduced: a snapshot or the caller's claim about a mesh was wrong, or there is a defect.
 fn wrongly_reduced(operands: &[Solid], suspects: &[usize]) -> Error {
     if suspects.iter().any(|k| operands[*k].is_claimed()) {
         return false_claim();
@@ -193,7 +197,7 @@ fn wrongly_reduced(operands: &[Solid], suspects: &[usize]) -> Error {
     })
 }
 
-/// The error for an operand with a source that overlaps itself, if there is one.
+/// Returns `NotReduced` naming the first mesh of an operand that overlaps itself; `None` if no mesh does.
 fn wrong_source(operand: &Solid, number: usize) -> Option<Error> {
     for (slot, source) in operand.sources().iter().enumerate() {
         match overlaps_itself(source) {
@@ -212,7 +216,7 @@ fn wrong_source(operand: &Solid, number: usize) -> Option<Error> {
     None
 }
 
-/// Return whether the faces of a source cross or overlap each other, or enclose a region twice.
+/// Returns true if the faces of a mesh cross or overlap each other, or enclose a region twice.
 ///
 /// # Errors
 /// `Internal`.
@@ -223,8 +227,8 @@ pub fn overlaps_itself(source: &Arc<Source>) -> Result<bool> {
     )?)
 }
 
-/// Return whether the elements of a solid are its reduced boundary; computes it on first use, and first
-/// tests places where the boundary seems to cross itself.
+/// Returns true if the faces of a solid neither overlap nor lie inside it. The first call computes this, and
+/// begins with the points `suspects`, at which the surface seems to cross itself.
 ///
 /// # Errors
 /// `Internal`.
@@ -242,7 +246,8 @@ pub fn is_simple(solid: &Solid, suspects: &[Lattice]) -> Result<bool> {
     Ok(solid.is_reduced())
 }
 
-/// The solid united with itself: the reduced boundary of the points that a rule calls inside.
+/// Returns the solid whose surface is exactly the boundary of the points that `rule` calls inside: each wall
+/// once, without inner walls.
 ///
 /// # Errors
 /// `Internal`.
@@ -260,7 +265,8 @@ pub fn normalize(solid: &Solid, rule: Rule) -> Result<Solid> {
     Ok(solid.united().get_or_make(|| united).clone())
 }
 
-/// The solid united with itself, if that is known or follows from checking the meshes it was made of.
+/// Returns the solid's union with itself if it is cached, or if a check of the meshes it was made of proves
+/// that the solid does not overlap itself; otherwise `None`.
 ///
 /// # Errors
 /// `Internal`.
@@ -271,7 +277,8 @@ pub fn settled(solid: &Solid) -> Result<Option<Solid>> {
     Ok((simple_by_meshes(solid)? == Some(true)).then(|| solid.clone()))
 }
 
-/// Return whether a solid is simple, if that is known or follows from checking the meshes it was made of.
+/// Returns whether the solid does not overlap itself, if this is known or follows from checking the meshes it
+/// was made of; otherwise `None`.
 fn simple_by_meshes(solid: &Solid) -> Result<Option<bool>> {
     if let Some(known) = solid.simple().get() {
         return Ok(Some(*known));
@@ -290,7 +297,7 @@ fn simple_by_meshes(solid: &Solid) -> Result<Option<bool>> {
     Ok(Some(*solid.simple().get_or_make(|| true)))
 }
 
-/// Unite a solid with itself.
+/// Computes the solid's union with itself, and caches whether the solid already was this union.
 fn unite(solid: &Solid, rule: Rule) -> Result<Solid> {
     let root = match united(solid, rule) {
         Some(United::Same) => None,
@@ -308,7 +315,7 @@ fn unite(solid: &Solid, rule: Rule) -> Result<Solid> {
     }
 }
 
-/// The root of the union of simple shells.
+/// Returns the root of the union of closed shells, none of which overlaps itself.
 fn union(solid: &Solid, shells: Vec<Branch>) -> Result<Branch> {
     let count = as_number(shells.len());
     let mut terms: Vec<Term> = (0..count).map(Term::Operand).collect();
@@ -318,7 +325,8 @@ fn union(solid: &Solid, shells: Vec<Branch>) -> Result<Branch> {
     descent.run(Expression::new(terms)?, shells)
 }
 
-/// The root of a solid united with itself by a descent; `None` if nothing overlaps.
+/// Unites a solid with itself by a descent through cells and returns the root of the result; `None` if the
+/// solid does not overlap itself.
 fn by_descent(solid: &Solid, rule: Rule) -> Result<Option<Branch>> {
     let sources = Sources::new(solid.sources().clone());
     let descent = Descent::new(&sources, rule, false, 1);
@@ -350,7 +358,7 @@ fn common_pitch(expression: &Expression, solids: &[Solid]) -> Result<Pitch> {
     Ok(pitch)
 }
 
-/// The operands' sources in order of first appearance.
+/// Returns all sources of the operands, in the order in which operands first name them.
 fn joint_table(solids: &[Solid]) -> Table {
     let tables = solids.iter().map(Solid::sources);
     tables.fold(Table::default(), |all, one| {

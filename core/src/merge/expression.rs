@@ -1,21 +1,21 @@
-//! Boolean expressions over operands.
+//! Boolean expressions over solids, as lists of lines.
 
 use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
 use crate::interrupt::poll;
 
-/// One line of an expression; numbers refer to earlier lines.
+/// One line of an expression; arguments are indices of earlier lines.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Term {
-    /// An operand, by its number.
+    /// The operand with this index among the solids.
     Operand(u32),
-    /// The complement of a line.
+    /// The complement of the value of the line with this index.
     Not(u32),
-    /// The intersection of lines.
+    /// The intersection of the values of lines, given by their indices.
     And(Vec<u32>),
-    /// The union of lines.
+    /// The union of the values of lines, given by their indices.
     Or(Vec<u32>),
-    /// The symmetric difference of lines.
+    /// The symmetric difference of the values of lines, given by their indices.
     Xor(Vec<u32>),
 }
 
@@ -28,7 +28,7 @@ impl Term {
         }
     }
 
-    /// The same term with other arguments.
+    /// Returns the same operation with other lines as arguments, if it takes a list of lines.
     fn with(&self, list: Vec<u32>) -> Self {
         match self {
             Self::And(_) => Self::And(list),
@@ -39,7 +39,7 @@ impl Term {
     }
 }
 
-/// An expression as topologically ordered lines; the last one is its value.
+/// A Boolean expression as lines that refer to earlier lines only; the last line is its value.
 ///
 /// # Example
 /// ```
@@ -61,29 +61,33 @@ pub struct Expression {
     pub(super) terms: Vec<Term>,
 }
 
-/// An expression split in two: the union, intersection or symmetric difference of two others.
+/// An expression split into two smaller ones of which it is the union, intersection or symmetric difference,
+/// or the complement of that.
 #[derive(Debug)]
 pub struct Parted {
-    /// The two others; they have no operand in common.
+    /// The two smaller expressions; they have no operand in common.
     pub halves: [Expression; 2],
-    /// The expression that combines them, the first as operand 0 and the second as operand 1.
+    /// The expression that combines the two smaller ones: `halves[0]` is operand 0 and `halves[1]` is operand
+    /// 1.
     pub whole: Expression,
 }
 
 impl Parted {
-    /// The operands of the two others.
+    /// Returns the ascending operand indices of each of the two smaller expressions.
     pub fn operands(&self) -> [Vec<u32>; 2] {
         self.halves.each_ref().map(Expression::operands)
     }
 
-    /// The entries for operands of the first, and of the second.
+    /// Divides entries by their operand index into those for operands of `halves[0]` and those for operands
+    /// of `halves[1]`.
     pub fn divide<T>(&self, entries: Vec<(u32, T)>) -> [Vec<(u32, T)>; 2] {
         let [ours, _] = self.operands();
         let is_ours = |entry: &(u32, T)| ours.binary_search(&entry.0).is_ok();
         entries.into_iter().partition::<Vec<_>, _>(is_ours).into()
     }
 
-    /// Return whether the second is one argument of a symmetric difference.
+    /// Returns true if the split expression is a symmetric difference; then `halves[1]` is its last argument
+    /// alone.
     pub fn takes_one_by_one(&self) -> bool {
         self.whole
             .terms
@@ -93,7 +97,8 @@ impl Parted {
 }
 
 impl Expression {
-    /// An expression; lines may refer to earlier lines only.
+    /// Makes an expression of lines; an error if there are none, or if one refers to itself or to a later
+    /// line.
     pub fn new(terms: Vec<Term>) -> Result<Self> {
         for (i, term) in terms.iter().enumerate() {
             poll();
@@ -109,7 +114,7 @@ impl Expression {
         Ok(Self { terms })
     }
 
-    /// The operands named, ascending.
+    /// Returns the indices of all operands that occur, ascending and without repetition.
     pub fn operands(&self) -> Vec<u32> {
         let mut list: Vec<u32> = self
             .terms
@@ -124,9 +129,9 @@ impl Expression {
         list
     }
 
-    /// The expression split in two, each with about half of the operands; for a symmetric difference the
-    /// second is the last argument alone. `None` if its value depends on one line, or operands occur in
-    /// both.
+    /// Splits the arguments of the last operation into two expressions with about half of the operands each;
+    /// of a symmetric difference, the last argument becomes an expression alone. `None` if the last operation
+    /// has fewer than two arguments, or if an operand would occur in both expressions.
     pub fn parted(&self) -> Option<Parted> {
         let mut top = self.terms.len() - 1;
         let mut negate = false;
@@ -166,7 +171,7 @@ impl Expression {
         Some(Parted { halves, whole })
     }
 
-    /// For each line, how often it refers to operands, directly or through other lines.
+    /// Returns for each line how often operands occur in it once earlier lines are substituted; at least 1.
     fn sizes(&self) -> Vec<usize> {
         let mut sizes: Vec<usize> = Vec::with_capacity(self.terms.len());
         for term in &self.terms {
@@ -177,7 +182,8 @@ impl Expression {
         sizes
     }
 
-    /// The expression of line `top` restricted to some of its arguments.
+    /// Returns the expression whose last line is the operation of line `top` with only these arguments; a
+    /// single argument stands for itself.
     fn of(&self, arguments: &[u32], top: usize) -> Self {
         let mut terms = self.terms[..top].to_vec();
         let last = if let [line] = arguments {
@@ -192,13 +198,15 @@ impl Expression {
         }
     }
 
-    /// The value for known operands.
+    /// Returns whether a point is inside the expression's value, given by `operand` whether it is inside each
+    /// operand; `scratch` is working memory.
     pub fn value(&self, operand: impl Fn(u32) -> bool, scratch: &mut Vec<u64>) -> bool {
         let word = |k: u32| if operand(k) { u64::MAX } else { 0 };
         self.words(word, scratch) != 0
     }
 
-    /// The values for 64 cases at once, one in each bit of a word.
+    /// Returns the expression's values for 64 points at once, one in each bit; `operand` returns an operand's
+    /// 64 values, and `scratch` is working memory.
     pub fn words(&self, operand: impl Fn(u32) -> u64, scratch: &mut Vec<u64>) -> u64 {
         self.words_of_lines(operand, scratch);
         scratch.last().copied().unwrap_or(0)
@@ -219,12 +227,13 @@ impl Expression {
         }
     }
 
-    /// The operands that bound the value at 64 places at once, given the operands' values on the two sides;
-    /// each bit of a word is one place.
+    /// Returns whose faces bound the expression's value at 64 points at once, as pairs of an operand index
+    /// and the bits of its points. `behind` and `in_front` return an operand's values just behind and in
+    /// front of these points, one in each bit.
     ///
-    /// These operands' faces would remain if the lines were evaluated one by one: where the value of a
-    /// union or an intersection changes, the first argument that changes gives its face; for a symmetric
-    /// difference, the last one.
+    /// If several operands have a face at a point, the owner is the one whose face would remain if the lines
+    /// were evaluated one by one: of a union or an intersection it is the first argument whose value changes
+    /// there, of a symmetric difference the last one.
     ///
     /// ```
     /// use bspcsg::merge::expression::{Expression, Term};
@@ -261,7 +270,8 @@ impl Expression {
     }
 }
 
-/// Ask the first of some lines that changes at a place for its owner there.
+/// Marks for each point (a bit of `places`) the first of `lines` whose value changes there, as the line that
+/// owns the face.
 fn ask<'a>(places: u64, lines: impl Iterator<Item = &'a u32>, changes: &[u64], asked: &mut [u64]) {
     let mut open = places;
     for line in lines.map(|line| *line as usize) {
@@ -270,7 +280,7 @@ fn ask<'a>(places: u64, lines: impl Iterator<Item = &'a u32>, changes: &[u64], a
     }
 }
 
-/// The lines that the last one depends on.
+/// Returns only the lines on which the last line depends, with their arguments renumbered.
 pub(super) fn only_needed(terms: Vec<Term>) -> Vec<Term> {
     let mut needed = vec![false; terms.len()];
     needed[terms.len() - 1] = true;

@@ -1,4 +1,4 @@
-//! Set operations: one descent over trees and deferred leaves, and generic merging of trees.
+//! Set operations on solids, on sets of the plane, and on partition trees of any dimension.
 
 pub mod arrangement;
 pub mod descent;

@@ -1,4 +1,4 @@
-//! The set operations and their leaf table.
+//! The set operations, and their results if one operand is empty or everything (the leaf table).
 
 use crate::geometry::spaces::space::Space;
 use crate::tree::partition::{Label, PartitionTree};
@@ -16,29 +16,30 @@ use crate::tree::partition::{Label, PartitionTree};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SetOp {
-    /// In either.
+    /// The points in at least one of the two operands.
     Union,
-    /// In both.
+    /// The points in both operands.
     Intersection,
-    /// In the first, not in the second.
+    /// The points in the first operand and not in the second.
     Difference,
-    /// In exactly one.
+    /// The points in exactly one of the two operands.
     SymmetricDifference,
 }
 
-/// The result of an operation whose other operand is a leaf.
+/// The result of a set operation that does not depend on two operands: one label, an operand or its
+/// complement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Outcome {
-    /// A leaf, whatever the operand is.
+    /// A leaf with this label, whatever the operand is.
     Leaf(Label),
     /// The operand, unchanged.
     Operand,
-    /// The operand's complement.
+    /// The complement of the operand.
     Complement,
 }
 
 impl SetOp {
-    /// All operations.
+    /// All set operations.
     pub const ALL: [Self; 4] = [
         Self::Union,
         Self::Intersection,
@@ -46,7 +47,7 @@ impl SetOp {
         Self::SymmetricDifference,
     ];
 
-    /// The operation on two labels.
+    /// Returns the label of a point whose labels in the two operands are `a` and `b`.
     pub fn labels(self, a: Label, b: Label) -> Label {
         let (a, b) = (a == Label::In, b == Label::In);
         Label::from_inside(match self {
@@ -57,29 +58,29 @@ impl SetOp {
         })
     }
 
-    /// The leaf table: the outcome for the second operand where the first is a leaf.
+    /// Returns the result if the first operand is a leaf with label `a`, in terms of the second operand.
     pub fn with_first(self, a: Label) -> Outcome {
         Outcome::of(|b| self.labels(a, b))
     }
 
-    /// The leaf table: the outcome for the first operand where the second is a leaf.
+    /// Returns the result if the second operand is a leaf with label `b`, in terms of the first operand.
     pub fn with_second(self, b: Label) -> Outcome {
         Outcome::of(|a| self.labels(a, b))
     }
 
-    /// The outcome for an operand combined with itself.
+    /// Returns the result if both operands are the same set, in terms of that set.
     pub fn with_itself(self) -> Outcome {
         Outcome::of(|a| self.labels(a, a))
     }
 
-    /// The outcome for an operand combined with its complement.
+    /// Returns the result if the second operand is the complement of the first, in terms of the first.
     pub fn with_complement(self) -> Outcome {
         Outcome::of(|a| self.labels(a, a.complement()))
     }
 }
 
 impl Outcome {
-    /// The outcome equivalent to a function of one label.
+    /// Returns the outcome that changes labels as `function` does.
     fn of(function: impl Fn(Label) -> Label) -> Self {
         match (function(Label::Out), function(Label::In)) {
             (Label::Out, Label::In) => Self::Operand,
@@ -88,7 +89,7 @@ impl Outcome {
         }
     }
 
-    /// The tree that results from an operand; shares its nodes.
+    /// Returns the resulting tree for this operand; it shares the operand's nodes.
     pub fn apply<S: Space>(self, operand: &PartitionTree<S>) -> PartitionTree<S> {
         match self {
             Self::Leaf(label) => PartitionTree::Leaf(label),

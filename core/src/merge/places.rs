@@ -1,4 +1,4 @@
-//! Tests of a solid around given places: enough if its boundary crosses itself there.
+//! Searches for self-overlaps of a solid in small cells around given points.
 
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
@@ -10,14 +10,15 @@ use crate::merge::lists::list::{List, Sources};
 use crate::tree::node::{Branch, Node};
 use crate::tree::solid::Solid;
 
-/// The most elements for which a local tree is built where halving no longer separates them.
+/// The most elements (faces or parts of faces) of a cell for which a local tree is built if halving the cell
+/// no longer separates them.
 const MAX_ELEMENTS_STUCK: usize = 256;
 
-/// Return whether a small cell around one of the places shows that a solid is not the reduced
-/// boundary; may return false negatives.
+/// Returns true if a small cell around one of the points `places` shows that the solid's faces overlap or
+/// enclose a region twice; false proves nothing.
 ///
 /// # Cost
-/// Divides lists only at the places, and builds at most one local tree for each place.
+/// Divides lists of faces only around the points, and builds at most one local tree for each point.
 pub fn overlaps_at(solid: &Solid, places: &[Lattice]) -> bool {
     let sources = Sources::new(solid.sources().clone());
     let mut open: Vec<(Branch, Vec<Lattice>)> = vec![(solid.root().clone(), places.to_vec())];
@@ -44,7 +45,8 @@ pub fn overlaps_at(solid: &Solid, places: &[Lattice]) -> bool {
     false
 }
 
-/// Return whether elements of a list overlap in a small cell around one of the places.
+/// Returns true if the local tree of a small cell around one of the points `places` shows that listed
+/// elements overlap or enclose a region twice.
 fn overlaps_in(sources: &Sources, cell: Cell, list: List, places: Vec<Lattice>) -> bool {
     let mut open = vec![(cell, list, places)];
     while let Some((cell, list, places)) = open.pop() {
@@ -78,7 +80,7 @@ mod tests {
     use super::*;
     use crate::merge::scenes::cuboids;
 
-    /// Two rows of boxes side by side; the middle two overlap.
+    /// Nine boxes apart from each other in a diagonal row, and a tenth that overlaps the fifth.
     #[test]
     fn an_overlap_is_seen_where_it_is_and_nowhere_else() {
         let apart = |i: i64| [[8 * i; 3], [8 * i + 4; 3]];

@@ -1,35 +1,36 @@
-//! The stages of an evaluation and their costs.
+//! The stages of the evaluation of an expression, with their durations.
 
 use super::division::Defect;
 use std::time::Instant;
 
-/// A stage of an evaluation.
+/// One stage of the evaluation of an expression, with its duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stage {
-    /// Its name.
+    /// The name of the stage, such as "candidates" or "descent".
     pub name: &'static str,
-    /// Its duration.
+    /// The duration of the stage in seconds.
     pub seconds: f64,
-    /// The number of things that it found or made.
+    /// The number of items that the stage found or made: faces, contacts or cells, depending on the stage.
     pub count: usize,
 }
 
-/// A reason why an arrangement leaves the work to the descent.
+/// A reason why the arrangement (which compares all faces at once) leaves the work to the descent through
+/// cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Declined {
-    /// The operands are not two different unchanged meshes, or the solid is not an unchanged mesh.
+    /// The expression is not over two different meshes as they were imported.
     Operands,
-    /// The boxes around the meshes are apart.
+    /// The bounding boxes of the two meshes are disjoint.
     Apart,
-    /// The meshes touch nearly everywhere.
+    /// The two meshes touch nearly everywhere, as revisions of one mesh do.
     AllOver,
-    /// Faces are crowded: boxes do not separate them.
+    /// The boxes of faces overlap in too many pairs.
     Crowded,
-    /// The operand with this number overlaps itself where the other meets it.
+    /// The operand with this index (0 or 1) overlaps itself near faces of the other operand.
     Overlap(usize),
-    /// Faces are too thin to count winding numbers in front of them.
+    /// A face is too thin to choose a point in front of it at which to count the winding number.
     Thin,
-    /// A segment left its face: a defect.
+    /// A computed intersection segment left its face: a defect of this program.
     Defect,
 }
 
@@ -40,7 +41,7 @@ impl From<Defect> for Declined {
 }
 
 impl Declined {
-    /// The operand known to overlap itself, if any.
+    /// Returns the index of the operand that overlaps itself, if the reason is `Declined::Overlap`.
     pub fn overlapping(self) -> Option<usize> {
         match self {
             Self::Overlap(operand) => Some(operand),
@@ -48,7 +49,7 @@ impl Declined {
         }
     }
 
-    /// The reason in words.
+    /// Returns the reason as a text for people.
     pub fn text(self) -> &'static str {
         match self {
             Self::Operands => "the operands are not two different, unchanged input meshes",
@@ -62,7 +63,7 @@ impl Declined {
     }
 }
 
-/// The stages of an evaluation, in order.
+/// The stages of the evaluation of an expression, in the order in which they ran.
 ///
 /// # Example
 /// ```
@@ -74,14 +75,16 @@ impl Declined {
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Profile {
-    /// The stages done.
+    /// The finished stages, in the order in which they ran.
     pub stages: Vec<Stage>,
-    /// The reason why the arrangement left the work to the descent, if it did.
+    /// The reason why the arrangement of all faces at once was not possible; `None` if it was, or was not
+    /// tried.
     pub declined: Option<Declined>,
 }
 
 impl Profile {
-    /// Runs and records a stage.
+    /// Runs `work`, records it as a stage with its duration, and returns its result; `count` extracts the
+    /// recorded number of items.
     pub fn timed<T>(
         &mut self,
         name: &'static str,

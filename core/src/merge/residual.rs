@@ -1,4 +1,4 @@
-//! What remains of an expression if some operands are known, or known to be equal.
+//! Simplifies expressions of which operands are constant, or equal to each other.
 
 use std::sync::Arc;
 
@@ -7,18 +7,19 @@ use rustc_hash::FxHashMap as HashMap;
 use super::expression::{only_needed, Expression, Term};
 use crate::arith::convert::as_number;
 
-/// An expression after some of its operands have become constant.
+/// An expression that was simplified because operands are constant or equal.
 #[derive(Clone, Debug)]
 pub enum Residual {
-    /// Inside or outside, whatever the unknown operands are.
+    /// The value is inside (true) or outside (false), whatever the remaining operands are.
     Constant(bool),
-    /// One operand, or its complement.
+    /// The value is the operand with this index, complemented if the flag is true.
     Literal(u32, bool),
-    /// More than one operand matters.
+    /// The value depends on at least two operands.
     Open(Arc<Expression>),
 }
 
-/// A simplified line: a value, or a line of the new expression and whether to negate it.
+/// The simplified value of a line: a constant, or the index of a line of the new expression and whether to
+/// negate it.
 #[derive(Clone, Copy)]
 enum FoldedLine {
     Value(bool),
@@ -26,14 +27,16 @@ enum FoldedLine {
 }
 
 impl Expression {
-    /// Substitutes known operands and folds constants.
+    /// Simplifies the expression for operands that are constant; `known` returns an operand's value, or
+    /// `None`.
     pub fn residual(&self, known: impl Fn(u32) -> Option<bool>) -> Residual {
         self.folded(known, |folding, operand| {
             folding.append(Term::Operand(operand))
         })
     }
 
-    /// Substitutes known operands and folds constants; `add` makes a line for an unknown operand.
+    /// Simplifies the expression for operands that are constant; `known` returns an operand's value, or
+    /// `None`, and then `add` appends a line for the operand and returns its index.
     fn folded(
         &self,
         known: impl Fn(u32) -> Option<bool>,
@@ -56,8 +59,8 @@ impl Expression {
         folding.close()
     }
 
-    /// An expression for the same set if some operands are equal: `first` maps each to its representative.
-    /// Lists name only the first of equal operands.
+    /// Returns an expression for the same set if operands are equal: `first` maps each operand index to the
+    /// index of the first operand equal to it. No union or intersection names two equal operands.
     ///
     /// ```
     /// use bspcsg::merge::expression::{Expression, Term};
@@ -79,10 +82,11 @@ impl Expression {
         Self { terms }
     }
 
-    /// What remains of the expression if some operands are equal.
+    /// Simplifies the expression for operands that are equal sets; `twin` returns the first operand equal to
+    /// each.
     ///
-    /// Folds equal arguments of one line. Keeps operands of different lines that are equal but have other
-    /// faces: whose faces remain at a place depends on the others ([`Self::owners`]).
+    /// Folds equal arguments of one line. Different lines may still name equal operands, because their faces
+    /// differ, and which faces bound the result depends on the other operands ([`Self::owners`]).
     ///
     /// ```
     /// use bspcsg::merge::expression::{Expression, Term};
@@ -113,17 +117,17 @@ impl Expression {
     }
 }
 
-/// The first operand equal to another one.
+/// The first operand that is the same set as a given one.
 #[derive(Clone, Copy, Debug)]
 pub struct Twin {
-    /// Its number.
+    /// The index of this first operand.
     pub first: u32,
-    /// Whether the other one lists the same faces by number, not just coincident ones.
+    /// True if both operands list the same face numbers of one source; false if their faces only coincide.
     pub is_same_source: bool,
 }
 
 impl Twin {
-    /// The twin of an operand with other faces.
+    /// Names the first operand equal to one whose faces come from another source.
     pub fn of(first: u32) -> Self {
         Self {
             first,
@@ -141,27 +145,27 @@ impl FoldedLine {
     }
 }
 
-/// The state of folding an expression.
+/// The state while an expression is simplified line by line.
 struct Folding {
-    /// The lines so far, folded.
+    /// The simplified value of each line of the old expression.
     folded: Vec<FoldedLine>,
-    /// The new lines.
+    /// The lines of the new expression.
     terms: Vec<Term>,
-    /// For each new line, its equals.
+    /// For each line of the new expression, which lines are equal to it.
     lines: Vec<Line>,
 }
 
-/// What is known of a line's equals.
+/// Which other lines are equal to a line of the new expression.
 #[derive(Clone, Copy)]
 struct Line {
-    /// The first line known to equal it.
+    /// The index of the first line known to be equal to this one.
     twin: u32,
-    /// Whether the current list names the line, and its complement.
+    /// Whether the list of arguments being simplified has named this line, and its complement.
     is_named: [bool; 2],
 }
 
 impl Folding {
-    /// Nothing folded yet, with room for `count` lines.
+    /// Makes an empty state with room for `count` lines.
     fn of(count: usize) -> Self {
         Self {
             folded: Vec::with_capacity(count),
@@ -184,7 +188,8 @@ impl Folding {
         self.lines[line as usize].twin as usize
     }
 
-    /// Folds a union (`absorbing` is true) or an intersection (`absorbing` is false).
+    /// Simplifies a union (`absorbing` is true) or an intersection (`absorbing` is false) of the lines in
+    /// `list`.
     fn list(&mut self, list: &[u32], absorbing: bool) -> FoldedLine {
         let Some(open) = self.open(list, absorbing) else {
             return FoldedLine::Value(absorbing);
@@ -205,8 +210,8 @@ impl Folding {
         }
     }
 
-    /// The undecided lines of a list, without repetition; `None` if a constant or two opposite lines decide
-    /// it.
+    /// Returns the arguments of a union or intersection that are not constant, without repetition, as lines
+    /// and whether to negate them; `None` if a constant or two opposite lines decide the value.
     fn open(&mut self, list: &[u32], absorbing: bool) -> Option<Vec<(u32, bool)>> {
         let mut open: Vec<(u32, bool)> = Vec::new();
         let mut is_decided = false;
@@ -233,7 +238,7 @@ impl Folding {
         (!is_decided).then_some(open)
     }
 
-    /// Folds a symmetric difference, in which equal lines cancel each other.
+    /// Simplifies a symmetric difference of the lines in `list`, in which equal lines cancel each other.
     fn xor(&mut self, list: &[u32]) -> FoldedLine {
         let mut parity = false;
         let mut lines: Vec<u32> = Vec::new();
@@ -261,13 +266,14 @@ impl Folding {
         }
     }
 
-    /// Whether a symmetric difference names an odd number of lines equal to this one.
+    /// Returns the flag that is true while a symmetric difference has named an odd number of lines equal to
+    /// `line`.
     fn is_odd(&mut self, line: u32) -> &mut bool {
         let twin = self.twin(line);
         &mut self.lines[twin].is_named[0]
     }
 
-    /// A line, or a new one for its complement.
+    /// Returns the index of a line, or of a new line for its complement if `negate` is true.
     fn signed(&mut self, line: u32, negate: bool) -> u32 {
         if negate {
             self.append(Term::Not(line))
@@ -285,7 +291,7 @@ impl Folding {
     }
 }
 
-/// Keeps the lines that the value depends on.
+/// Returns the simplified expression whose value is the given line, complemented if `negate` is true.
 fn close(mut terms: Vec<Term>, line: u32, negate: bool) -> Residual {
     if let Term::Operand(k) = terms[line as usize] {
         return Residual::Literal(k, negate);
@@ -315,7 +321,7 @@ mod tests {
     #[test]
     fn equal_operands_fold_away() {
         let [a, b, c] = [0, 1, 2].map(Term::Operand);
-        // (a ∪ c) − b, (a ∩ c) ∪ b, and a ⊖ c ⊖ b, where b is a.
+        // In each case b equals a: (a ∪ c) − b, (a ∩ c) ∪ b, a ⊖ c ⊖ b, and a ⊖ c ⊖ b ⊖ a ⊖ c.
         let cases = [
             (
                 vec![Term::Or(vec![0, 2]), Term::Not(1), Term::And(vec![3, 4])],

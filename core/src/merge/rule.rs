@@ -1,18 +1,18 @@
-//! Rules by which winding numbers count as inside.
+//! Rules that say which winding numbers are inside.
 
-/// A rule by which winding numbers count as inside.
+/// A rule that says which winding numbers w are inside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Rule {
-    /// w > 0.
+    /// Inside is w > 0.
     Positive,
-    /// w ≠ 0.
+    /// Inside is w ≠ 0.
     Nonzero,
-    /// w odd.
+    /// Inside is an odd w.
     EvenOdd,
 }
 
 impl Rule {
-    /// Return whether a region with this winding number is inside.
+    /// Returns true if a region with winding number `w` is inside by this rule.
     ///
     /// ```
     /// use bspcsg::merge::rule::Rule;

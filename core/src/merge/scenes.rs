@@ -1,4 +1,4 @@
-//! Small solids that share a cell, for tests of the stages of an evaluation.
+//! Small solids and expressions for tests.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -20,20 +20,21 @@ use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::Node;
 use crate::tree::solid::Solid;
 
-/// A triangle as a polygon.
+/// Returns a triangle as a polygon in its plane.
 pub fn triangle(corners: [Lattice; 3]) -> Polygon {
     let [a, b, c] = &corners;
     let plane = Plane::through(a, b, c).expect("a triangle with an area");
     Polygon::triangle(&corners, Arc::new(plane))
 }
 
-/// The tetrahedron with these corners, the last above the triangle of the others.
+/// Returns the tetrahedron with these corners; the last lies above the plane of the first three, which are
+/// counterclockwise seen from it.
 pub fn tetrahedron(corners: [Lattice; 4]) -> Solid {
     let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
     solid(corners.to_vec(), faces.to_vec())
 }
 
-/// The pyramid over a polygon that is counterclockwise seen from the apex.
+/// Returns the pyramid over a convex polygon that is counterclockwise seen from the apex.
 pub fn pyramid(apex: Lattice, base: &[Lattice]) -> Solid {
     let top = as_number(base.len());
     let sides = (0..top).map(|i| [i, (i + 1) % top, top]);
@@ -41,7 +42,7 @@ pub fn pyramid(apex: Lattice, base: &[Lattice]) -> Solid {
     solid([base, &[apex]].concat(), sides.chain(bottom).collect())
 }
 
-/// The prism over a horizontal polygon that is counterclockwise seen from above.
+/// Returns the vertical prism over a horizontal convex polygon that is counterclockwise seen from above.
 pub fn prism(base: &[Lattice], height: i64) -> Solid {
     let count = as_number(base.len());
     let above = base.iter().map(|[x, y, z]| [*x, *y, z + height]);
@@ -54,12 +55,12 @@ pub fn prism(base: &[Lattice], height: i64) -> Solid {
     solid(vertices, sides.chain(ends).collect())
 }
 
-/// The box between two points.
+/// Returns the axis-parallel box between its low and its high corner.
 pub fn cuboid(low: Lattice, high: Lattice) -> Solid {
     cuboids([[low, high]])
 }
 
-/// Boxes as one solid.
+/// Returns a solid of one mesh with the 12 triangles of each box, given by its low and high corner.
 pub fn cuboids(boxes: impl IntoIterator<Item = [Lattice; 2]>) -> Solid {
     const QUADS: [[u32; 4]; 6] = [
         [0, 2, 3, 1],
@@ -97,25 +98,25 @@ fn solid(vertices: Vec<Lattice>, faces: Vec<[u32; 3]>) -> Solid {
     Solid::of_source(Arc::new(source), false)
 }
 
-/// Two tetrahedra; a corner of the second is inside the first, and its three faces there cross the last
-/// face of the first.
+/// Returns two tetrahedra; one corner of the second is inside the first, and the three faces at this corner
+/// cross the last face of the first.
 pub fn tetrahedra() -> [Solid; 2] {
     let a = [[0, 0, 0], [16, 0, 0], [0, 16, 0], [0, 0, 16]];
     let b = [[5, 4, 3], [25, 5, 4], [6, 27, 2], [4, 6, 24]];
     [tetrahedron(a), tetrahedron(b)]
 }
 
-/// These tetrahedra in one cell.
+/// Returns the two tetrahedra of `tetrahedra`, listed in the smallest cell that contains both.
 pub fn crossing() -> Shared {
     Shared::of(&tetrahedra())
 }
 
-/// Two solids, combined.
+/// Returns the value of an operation, such as `Term::Or`, on two solids.
 pub fn made_of(solids: &[Solid; 2], combined: fn(Vec<u32>) -> Term) -> Solid {
     evaluate(&both(combined), solids).expect("bounded solids").0
 }
 
-/// Solids in the smallest cell that contains them all.
+/// Lists of the faces of solids in the smallest cell that contains all solids.
 pub struct Shared {
     pub cell: Cell,
     pub sources: Sources,
@@ -155,13 +156,13 @@ impl Shared {
     }
 }
 
-/// Operands 0 and 1, combined.
+/// Returns the expression of one operation, such as `Term::Or`, on operands 0 and 1.
 pub fn both(combined: fn(Vec<u32>) -> Term) -> Expression {
     let terms = vec![Term::Operand(0), Term::Operand(1), combined(vec![0, 1])];
     Expression::new(terms).expect("well formed")
 }
 
-/// The numbers of whole faces and of parts in a node.
+/// Returns how many whole faces and how many parts of faces a deferred leaf lists; zeros for other nodes.
 pub fn counts(node: &Node) -> (usize, usize) {
     match node {
         Node::Deferred(leaf) => {

@@ -1,4 +1,4 @@
-//! Equal meshes among the operands of one list: a union needs only one.
+//! Operands of an expression with equal meshes: a union or an intersection needs only the first of them.
 
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
@@ -10,21 +10,22 @@ use crate::interrupt::poll;
 use crate::mesh::source::Source;
 use crate::tree::solid::Solid;
 
-/// The number of rows in a mesh's sample; meshes with equal samples are compared completely.
+/// The approximate number of vertices, and of faces, that are hashed of each mesh; meshes with equal hashes
+/// are compared completely.
 const ROWS_SAMPLED: usize = 32;
 
-/// The most different meshes with one sample to compare others with. So all comparisons together cost at
-/// most this many passes over the operands.
+/// The most different meshes with equal hashes with which another mesh is compared, so that all comparisons
+/// together cost at most this many passes over the operands.
 const MAX_MESHES_PER_SAMPLE: usize = 4;
 
-/// The expression without lists that name two operands with equal meshes; `None` if no two operands are
-/// equal.
+/// Returns an expression for the same set whose unions and intersections name only the first of operands with
+/// equal meshes; `None` if no two operands are equal.
 pub(super) fn without_twins(expression: &Expression, solids: &[Solid]) -> Option<Expression> {
     let firsts = firsts(solids)?;
     Some(expression.merged(|operand| firsts[operand as usize]))
 }
 
-/// For each operand, the first with an equal mesh; `None` if all differ.
+/// Returns for each operand the index of the first operand with an equal mesh; `None` if all meshes differ.
 fn firsts(solids: &[Solid]) -> Option<Vec<u32>> {
     let mut known: HashMap<u64, Vec<(u32, &Solid)>> = HashMap::default();
     let mut found = false;
@@ -47,7 +48,8 @@ fn firsts(solids: &[Solid]) -> Option<Vec<u32>> {
     found.then_some(firsts)
 }
 
-/// A hash that equal meshes share; `None` for results of operations.
+/// Returns a hash of sampled vertices and faces, equal for equal meshes; `None` if the solid is the result of
+/// an operation.
 fn sample(solid: &Solid) -> Option<u64> {
     let mut hasher = FxHasher::default();
     solid.root().complement.hash(&mut hasher);
@@ -68,7 +70,7 @@ fn are_twins(a: &Solid, b: &Solid) -> bool {
         && meshes.is_some_and(|(a, b)| Arc::ptr_eq(a, b) || are_equal(a, b))
 }
 
-/// Return whether two meshes have the same rows on the lattice.
+/// Returns true if two sources are meshes with the same arrays of lattice vertices and of faces.
 fn are_equal(a: &Source, b: &Source) -> bool {
     let meshes = a.mesh().zip(b.mesh());
     meshes.is_some_and(|(a, b)| a.vertices == b.vertices && a.faces == b.faces)

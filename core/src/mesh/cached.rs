@@ -1,11 +1,11 @@
-//! Values made on first use and kept.
+//! Values that are made on first use and then stored.
 
 use once_cell::race::OnceBox;
 
-/// A value made on first use, without locks.
+/// A value that is made on first use and then stored, without locks.
 ///
-/// Threads that ask at the same time each make it, and the first answer stays. A process forked meanwhile
-/// finds the value unmade, never locked by a thread that it does not have.
+/// Threads that ask at the same time each make the value, and the first one made is stored. In a process
+/// forked meanwhile the value is not yet made; it is never locked by a thread that the process does not have.
 #[derive(Debug)]
 pub struct Cached<T>(OnceBox<T>);
 
@@ -16,29 +16,29 @@ impl<T> Default for Cached<T> {
 }
 
 impl<T: Clone> Clone for Cached<T> {
-    /// The same value, if it is made already.
+    /// A copy of the value if it is made already, else an empty cache.
     fn clone(&self) -> Self {
         self.get().cloned().map_or_else(Self::new, Self::of)
     }
 }
 
 impl<T> Cached<T> {
-    /// No value yet.
+    /// A cache whose value is not yet made.
     pub const fn new() -> Self {
         Self(OnceBox::new())
     }
 
-    /// A value.
+    /// A cache that already stores this value.
     pub fn of(value: T) -> Self {
         Self(OnceBox::with_value(Box::new(value)))
     }
 
-    /// The value, if it is made already.
+    /// The value if it is made already, else `None`.
     pub fn get(&self) -> Option<&T> {
         self.0.get()
     }
 
-    /// The value, made on first use. All makers must make equal ones.
+    /// The value, made by `make` if it is not stored yet. All calls must make equal values.
     pub fn get_or_make(&self, make: impl FnOnce() -> T) -> &T {
         self.0.get_or_init(|| Box::new(make()))
     }

@@ -1,4 +1,4 @@
-//! Tests whether the boundary of a surface vanishes, without pairing edges.
+//! Tests whether the boundary of a surface vanishes, by a hash instead of pairing edges.
 
 use super::handle::VertexId;
 use super::tasks::each_chunk;
@@ -6,8 +6,9 @@ use crate::arith::convert::low_limb;
 
 /// Return whether every directed edge occurs as often as its opposite.
 ///
-/// Each edge has a number of 128 bits that looks random: added for one direction, subtracted for the other,
-/// modulo 2^128. A closed surface sums to zero, in any order. An open one does so with probability 2^-128.
+/// Each edge has a hash of 128 bits, added for one direction and subtracted for the other, modulo 2^128. For
+/// a closed surface the sum is zero, in any order of the faces. For an open surface it is zero with
+/// probability 2^-128.
 pub fn is_closed(faces: &[[VertexId; 3]]) -> bool {
     let sum = |_, faces: &[[VertexId; 3]]| faces.iter().map(boundary).fold(0, u128::wrapping_add);
     let sums = each_chunk(faces, sum);
@@ -29,7 +30,7 @@ fn directed(from: VertexId, to: VertexId) -> u128 {
     }
 }
 
-/// Numbers without pattern: the first binary places after the point of √2, √3, √5 and √7.
+/// Constants without pattern: the first 64 binary digits after the point of √2, √3, √5 and √7.
 const SALT: [u64; 4] = [
     0x6A09_E667_F3BC_C908,
     0xBB67_AE85_84CA_A73B,
@@ -37,7 +38,7 @@ const SALT: [u64; 4] = [
     0xA54F_F53A_5F1D_36F1,
 ];
 
-/// A number that depends on each bit of the key: two rounds of multiply and fold.
+/// A hash of the key in which each bit of it matters: two rounds of multiplication and folding.
 fn scattered(key: u64) -> u128 {
     let first = u128::from(key ^ SALT[0]) * u128::from(key.rotate_left(29) ^ SALT[1]);
     let (low, high) = (low_limb(first), (first >> 64) as u64);
@@ -51,7 +52,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Few corners, so that edges repeat and sometimes all cancel.
+        /// Vertices are few, so that edges repeat and sometimes all cancel.
         #[test]
         fn closed_is_what_a_count_of_edges_says(
             faces in prop::collection::vec(prop::array::uniform3(0u32..5), 0..6),

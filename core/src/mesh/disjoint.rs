@@ -1,10 +1,10 @@
-//! Disjoint sets of numbers, for connected components.
+//! Disjoint sets of the integers from 0 on, for connected components.
 
 use super::handle::VertexId;
 use crate::arith::convert::as_number;
 use crate::interrupt::spend;
 
-/// The numbers from 0 on, in sets; the least number of a set is its name.
+/// The integers from 0 on, divided into disjoint sets; the least integer of a set is its name.
 ///
 /// # Source
 /// Tarjan, van Leeuwen, *Worst-case analysis of set union algorithms*, 1984: linking by index, and path
@@ -24,17 +24,17 @@ pub struct DisjointSets {
 }
 
 impl DisjointSets {
-    /// `count` numbers, each in a set of its own.
+    /// The integers below `count`, each in a set of its own.
     pub fn of_one(count: usize) -> Self {
         Self {
             lower: (0..as_number(count)).collect(),
         }
     }
 
-    /// `count` vertices, in one set if triangles connect them.
+    /// The numbers of `count` vertices; those that triangles connect are in one set.
     ///
-    /// Each vertex first takes the least number around it so far. Mostly that is the name of its set, so
-    /// that few triangles have different sets to join.
+    /// A first pass gives each vertex the least number found around it. Usually that is the name of its set
+    /// already, so that the second pass has to join few sets.
     ///
     /// # Example
     /// ```
@@ -67,40 +67,40 @@ impl DisjointSets {
         sets
     }
 
-    /// The least number that the vertices point to.
+    /// The least number to which the three vertices of a triangle point.
     #[inline]
     fn lowest(&self, [a, b, c]: &[VertexId; 3]) -> u32 {
         let lower = |v: &VertexId| self.lower[v.place()];
         lower(a).min(lower(b)).min(lower(c))
     }
 
-    /// Points each number to the name of its set. Numbers point to lower ones, which are done first.
+    /// Points each number to the name of its set. Numbers point to lower ones, which this pass handles first.
     fn shorten(&mut self) {
         for at in 0..self.lower.len() {
             self.lower[at] = self.lower[self.lower[at] as usize];
         }
     }
 
-    /// No numbers yet, with room for `count`.
+    /// An empty collection of sets with room for `count` integers.
     pub fn with_capacity(count: usize) -> Self {
         Self {
             lower: Vec::with_capacity(count),
         }
     }
 
-    /// The number after the last.
+    /// The number of integers in all sets, which is also the next one to add.
     pub fn end(&self) -> u32 {
         as_number(self.lower.len())
     }
 
-    /// Adds the number after the last, in a set of its own.
+    /// Adds the next integer, in a set of its own, and returns it.
     pub fn push(&mut self) -> u32 {
         let next = self.end();
         self.lower.push(next);
         next
     }
 
-    /// The least number of a set; halves the path to it for later calls.
+    /// The least number of the set that contains `number`; halves the path to it for later calls.
     #[inline]
     pub fn least(&mut self, number: u32) -> u32 {
         let mut at = number as usize;
@@ -111,14 +111,14 @@ impl DisjointSets {
         as_number(at)
     }
 
-    /// Joins two sets.
+    /// Joins the sets that contain two numbers.
     #[inline]
     pub fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.least(a), self.least(b));
         self.join_named(a, b);
     }
 
-    /// Joins two sets given by their names, and returns the name of the union.
+    /// Joins two sets, given by their least numbers, and returns the least number of the union.
     #[inline]
     pub fn join_named(&mut self, a: u32, b: u32) -> u32 {
         let least = a.min(b);

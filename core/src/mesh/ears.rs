@@ -7,7 +7,7 @@ use crate::arith::Sign;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
 
-/// The signed doubled area of three projected points.
+/// Twice the signed area of the triangle a, b, c in the projection to two axes.
 ///
 /// # Bits
 /// Differences are below 2^54, products below 2^108.
@@ -17,7 +17,8 @@ fn turn(a: &Lattice, b: &Lattice, c: &Lattice, axes: (usize, usize)) -> i128 {
     arm(b, u) * arm(c, v) - arm(b, v) * arm(c, u)
 }
 
-/// Return whether a polygon, counterclockwise in the projection, is strictly convex and winds once.
+/// Return whether a polygon, counterclockwise in the projection to two axes, is strictly convex and winds
+/// once.
 pub fn is_convex(corners: &[Lattice], axes: (usize, usize)) -> bool {
     let n = corners.len();
     let at = |i: usize| &corners[i % n];
@@ -31,7 +32,8 @@ pub fn is_convex(corners: &[Lattice], axes: (usize, usize)) -> bool {
     strict && starts == 1
 }
 
-/// Return whether two edges of an outline that are not neighbours have a point in common.
+/// Return whether two edges of a polygon that do not share a corner have a point in common, in the projection
+/// to two axes.
 fn crosses_itself(corners: &[Lattice], axes: (usize, usize)) -> bool {
     let n = corners.len();
     let edge = |i: usize| (&corners[i], &corners[(i + 1) % n]);
@@ -42,7 +44,7 @@ fn crosses_itself(corners: &[Lattice], axes: (usize, usize)) -> bool {
     })
 }
 
-/// Return whether two closed segments have a point in common.
+/// Return whether two closed segments have a point in common, in the projection to two axes.
 fn meet(p: (&Lattice, &Lattice), q: (&Lattice, &Lattice), axes: (usize, usize)) -> bool {
     let apart = |i: usize| {
         p.0[i].max(p.1[i]) < q.0[i].min(q.1[i]) || q.0[i].max(q.1[i]) < p.0[i].min(p.1[i])
@@ -56,12 +58,13 @@ fn meet(p: (&Lattice, &Lattice), q: (&Lattice, &Lattice), axes: (usize, usize)) 
     sides(p, q) != Sign::Positive && sides(q, p) != Sign::Positive
 }
 
-/// Triangles of corner numbers that make up a polygon, counterclockwise in the projection.
+/// Triangles, as indices of corners, that make up a polygon which is counterclockwise in the projection to
+/// two axes.
 ///
 /// `None` if the outline crosses or touches itself.
 ///
 /// # Cost
-/// Quadratic, cubic at worst.
+/// Usually quadratic in the number of corners; cubic at worst.
 pub fn triangles(corners: &[Lattice], axes: (usize, usize)) -> Option<Vec<[usize; 3]>> {
     if crosses_itself(corners, axes) {
         return None;

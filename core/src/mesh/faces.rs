@@ -1,20 +1,20 @@
-//! Triangles in doubles.
+//! Closed meshes of triangles in doubles.
 
 use super::handle::VertexId;
 use crate::geometry::doubles::{Point, Triangle};
 
-/// A mesh in doubles, closed.
+/// A closed triangle mesh in doubles.
 #[derive(Clone, Copy, Debug)]
 pub struct Faces<'a> {
-    /// The vertices.
+    /// The vertices of the mesh.
     pub vertices: &'a [Point],
-    /// The triangles. Each directed edge has one opposite; where vertices were joined by place, it has as
-    /// many as there are of it.
+    /// The triangles of the mesh. Each directed edge has one opposite; where vertices were welded by
+    /// position, it has as many opposites as it occurs.
     pub triangles: &'a [[VertexId; 3]],
 }
 
 impl Faces<'_> {
-    /// The corners of a triangle.
+    /// The corners of the triangle with this number.
     #[inline]
     pub fn corners(&self, triangle: u32) -> Triangle {
         let [a, b, c] = self.triangles[triangle as usize];

@@ -1,4 +1,4 @@
-//! Facets of any kind on the lattice: points, segments, planar polygons.
+//! Facets on the lattice: points, segments and planar polygons, divided into convex pieces.
 
 use super::ears::{is_convex, triangles};
 use super::grid::Pitch;
@@ -11,7 +11,8 @@ use crate::interrupt::poll;
 /// A convex facet, or a convex part of one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Facet {
-    /// The corners: one, two, or a convex polygon's; unused coordinates are zero.
+    /// The corners: one point, the two ends of a segment, or the corners of a convex polygon; unused
+    /// coordinates are zero.
     pub corners: Vec<Lattice>,
     /// For each corner, whether the edge that leaves it is a diagonal of the input facet.
     pub seams: Vec<bool>,
@@ -19,10 +20,10 @@ pub struct Facet {
     pub source: u32,
 }
 
-/// The most corners of a facet: outlines are examined in quadratic time.
+/// The largest number of corners of a facet; checking an outline takes quadratic time.
 const MAX_CORNERS_PER_FACET: usize = 1 << 14;
 
-/// The pitch for coordinates of this size and extent.
+/// The pitch that suits the largest coordinate of points and the extent of the box around them.
 ///
 /// # Errors
 /// `NonFinite`, `TooLarge`.
@@ -50,10 +51,10 @@ pub fn suited_pitch(rows: &[[f64; 3]]) -> Result<Pitch> {
     Pitch::suited(largest, extent)
 }
 
-/// Snaps the corners of facets, corner by corner.
+/// Snaps the corners of facets to the lattice; coordinates from number `dimension` on become zero.
 ///
 /// # Errors
-/// `NonFinite`, `TooLarge`, with the row.
+/// `NonFinite`, `TooLarge`, with the row of the corner.
 pub fn snap_corners(dimension: usize, rows: &[[f64; 3]], pitch: Pitch) -> Result<Vec<Lattice>> {
     let snap = |(row, p): (usize, &[f64; 3])| {
         let place = |e: Error| Error::at(e.kind(), vec![row as u64], e.message());
@@ -68,10 +69,10 @@ pub fn snap_corners(dimension: usize, rows: &[[f64; 3]], pitch: Pitch) -> Result
     Ok(snapped)
 }
 
-/// Verifies that lattice coordinates lie where the arithmetic is exact.
+/// Verifies that all lattice coordinates are below 2^53 in magnitude, where the arithmetic is exact.
 ///
 /// # Errors
-/// `TooLarge`, with the row.
+/// `TooLarge`, with the row of the point.
 pub fn check_reach(rows: &[Lattice]) -> Result<()> {
     let limit = (1u64 << COORDINATE_BITS) - 1;
     let beyond = |p: &Lattice| p.iter().any(|k| k.unsigned_abs() > limit);
@@ -84,20 +85,20 @@ pub fn check_reach(rows: &[Lattice]) -> Result<()> {
     }
 }
 
-/// Which flaws of facets to mend instead of refusing them.
+/// The flaws of facets that are mended instead of refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lenience {
-    /// Make triangles of polygons that are not planar.
+    /// Divide polygons that are not planar into triangles.
     pub triangulate_bent: bool,
     /// Leave out segments without length and polygons without area.
     pub drop_flat: bool,
 }
 
-/// The convex pieces of facets; facet i owns corners `offsets[i]..offsets[i + 1]`.
+/// The convex pieces of facets; facet i has the corners `offsets[i]..offsets[i + 1]`.
 ///
 /// # Errors
-/// `Shape` if the offsets do not count up to the corners or a facet has too few or too many of
-/// them; `Degenerate`, `NonPlanar`, `NotSimple`; with the facet.
+/// `Shape` if the offsets do not count up to the number of corners or a facet has too few or too many
+/// corners; `Degenerate`, `NonPlanar`, `NotSimple`; each with the facet.
 #[allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -196,10 +197,11 @@ fn polygon(given: &[Lattice], source: u32, lenient: bool) -> Result<Vec<Facet>> 
     Ok(parts.iter().map(|t| part(&corners, t, source)).collect())
 }
 
-/// Explain why a polygon has no normal: it is flat, or its areas of either orientation cancel.
+/// Returns the error that says why a polygon has no normal: it is flat, or its areas of opposite orientation
+/// cancel.
 fn without_normal(corners: &[Lattice], source: u32) -> Error {
     let (kind, text) = match corners {
-        // Flat corners are gone: the first three of more are not on one line.
+        // Flat corners are removed: if more than three remain, the first three are not on one line.
         [a, b, c, _, ..] => match Plane::through(a, b, c) {
             Some(plane) if corners.iter().all(|p| plane.side_of_lattice(p) == Side::On) => {
                 let text = "crosses itself, so that its signed area is zero";
@@ -221,7 +223,8 @@ fn part(corners: &[Lattice], triangle: &[usize; 3], source: u32) -> Facet {
     }
 }
 
-/// The corners without repeated ones and without those on the line through their neighbours.
+/// The corners of a polygon without repeated ones and without those on the line through their neighbours; at
+/// least three remain.
 fn without_flat_corners(given: &[Lattice]) -> Vec<Lattice> {
     let mut corners = given.to_vec();
     loop {
@@ -239,8 +242,8 @@ fn without_flat_corners(given: &[Lattice]) -> Vec<Lattice> {
     }
 }
 
-/// The plane through the first corner whose normal is the sum of cross products, so that the polygon turns
-/// counterclockwise; the corners' plane if they have one.
+/// The plane through the first corner of a polygon whose normal is the sum of a fan's cross products: if all
+/// corners lie in one plane, this plane, with the polygon counterclockwise. `None` if the sum is zero.
 ///
 /// # Bits
 /// A product of differences is below 2^108, two of them for each of 2^14 corners below 2^123.
@@ -257,7 +260,7 @@ fn newell_plane(corners: &[Lattice]) -> Option<Plane> {
     Plane::through_point(sum, first)
 }
 
-/// Two axes in which a polygon of this plane is counterclockwise.
+/// Two axes such that a counterclockwise polygon of this plane, projected to them, is counterclockwise.
 fn projection(plane: &Plane) -> (usize, usize) {
     let axis = plane.main_axis();
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -316,7 +319,7 @@ mod tests {
         assert_eq!(kind(&bent), Some(ErrorKind::NonPlanar));
         let bow = [[0, 0, 0], [4, 4, 0], [5, 1, 0], [0, 4, 0]];
         assert_eq!(kind(&bow), Some(ErrorKind::NotSimple));
-        // The two halves have equal areas.
+        // The two halves of the figure have equal areas.
         let even = [[0, 0, 0], [4, 4, 0], [4, 0, 0], [0, 4, 0]];
         assert_eq!(kind(&even), Some(ErrorKind::NotSimple));
         let skew = [

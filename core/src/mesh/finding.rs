@@ -1,16 +1,16 @@
-//! Findings about a mesh, as data.
+//! Findings about a mesh: notes and warnings, as data.
 
-/// The weight of a finding.
+/// How serious a finding is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
-    /// Worth knowing; the result is what was asked for.
+    /// Worth knowing; the result is as requested.
     Note,
     /// Probably not what the author of the mesh meant.
     Warning,
 }
 
 impl Severity {
-    /// The name used in reports.
+    /// The name of the severity in reports: "note" or "warning".
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -20,26 +20,27 @@ impl Severity {
     }
 }
 
-/// Something noticed: a stable code, how often, where, and a sentence.
+/// A note or warning about a mesh: a stable code, a count, locations and a sentence.
 #[derive(Clone, Debug)]
 pub struct Finding {
-    /// A stable name for programs.
+    /// A stable name of the kind of finding, for programs.
     pub code: &'static str,
-    /// The weight of the finding.
+    /// How serious the finding is.
     pub severity: Severity,
-    /// The number of times that it was found.
+    /// The number of faces or vertices concerned.
     pub count: u64,
-    /// The first few places: faces or vertices, as the message says.
+    /// The numbers of the first faces or vertices concerned, as the message says.
     pub place: Vec<u64>,
-    /// The sentence for a person.
+    /// The description of the finding, for people.
     pub message: String,
 }
 
-/// The number of places that a finding names.
+/// The largest number of faces or vertices that a finding names.
 const MAX_PLACES_NAMED: usize = 8;
 
 impl Finding {
-    /// A finding about numbered places; keeps the first few.
+    /// A finding about faces or vertices, given by their numbers; stores their count, and the first few
+    /// numbers.
     pub fn about(
         code: &'static str,
         severity: Severity,

@@ -1,4 +1,4 @@
-//! The lattice: the only place where doubles become integers.
+//! The lattice: how doubles become integers, and integers doubles.
 
 use crate::arith::bounds::COORDINATE_BITS;
 use crate::arith::convert::{as_double, as_whole};
@@ -23,20 +23,20 @@ use crate::geometry::vertex::Vertex;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Pitch(i8);
 
-/// Powers of ten that a double holds exactly.
+/// The largest power of ten up to which doubles represent all powers exactly.
 const EXACT_POWERS: i8 = 22;
 
-/// These powers.
+/// The powers of ten from 10^0 to 10^[`EXACT_POWERS`].
 const POWERS_OF_TEN: [f64; EXACT_POWERS as usize + 1] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
     1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
 impl Pitch {
-    /// 10^-9 units: CAD numbers are decimals of at most nine places.
+    /// The step of 10^-9 units: CAD numbers are decimals of at most nine digits after the point.
     pub const DEFAULT: Self = Self(-9);
 
-    /// The pitch with this exponent.
+    /// The pitch of the step 10^`exponent` model units; an error outside −22..=22.
     pub fn new(exponent: i64) -> Result<Self> {
         i8::try_from(exponent)
             .ok()
@@ -49,15 +49,15 @@ impl Pitch {
             })
     }
 
-    /// The exponent of ten.
+    /// The exponent of ten: the lattice step is 10^exponent model units.
     pub fn exponent(self) -> i64 {
         i64::from(self.0)
     }
 
-    /// The pitch for coordinates of this size and extent: the default if they fit it.
+    /// The pitch for a mesh with this largest coordinate and this extent: the default if both suit it.
     ///
-    /// Coarser by powers of 1000 until the largest coordinate fits; finer for meshes less than
-    /// 10^6 steps across, as long as they fit.
+    /// Coarser by powers of 1000 until the largest coordinate fits; finer for meshes less than 10^6 steps
+    /// across, as long as the largest coordinate fits.
     pub fn suited(largest: f64, extent: f64) -> Result<Self> {
         let mut pitch = Self::DEFAULT;
         while !pitch.fits(largest) {
@@ -78,7 +78,7 @@ impl Pitch {
         Ok(pitch)
     }
 
-    /// A length in steps, within three units in the last place.
+    /// A length in model units converted to lattice steps, within three units in the last place.
     #[inline]
     pub fn steps(self, x: f64) -> f64 {
         let power = power_of_ten(self.0.abs());
@@ -89,7 +89,8 @@ impl Pitch {
         }
     }
 
-    /// The steps from a lattice coordinate to `x`, by the exact difference.
+    /// The difference from the lattice coordinate `place` to `x`, which is in model units, in steps; only the
+    /// result is rounded.
     pub fn steps_beyond(self, x: f64, place: f64) -> f64 {
         let power = power_of_ten(self.0.abs());
         if self.0 <= 0 {
@@ -99,7 +100,7 @@ impl Pitch {
         }
     }
 
-    /// The factor from model units to steps; `None` for steps of several units, which divide.
+    /// The factor from model units to steps; `None` for steps of several units, where one divides instead.
     pub(super) fn steps_per_unit(self) -> Option<f64> {
         (self.0 <= 0).then(|| power_of_ten(-self.0))
     }
@@ -109,10 +110,11 @@ impl Pitch {
         self.steps(x).abs() < LIMIT
     }
 
-    /// The nearest lattice coordinate, by the exact product; halves go away from zero.
+    /// The lattice coordinate nearest to `x`, decided by the exact product; halves are rounded away from
+    /// zero.
     #[inline]
     pub fn snap(self, x: f64) -> Result<i64> {
-        // This refuses infinities and NaN too.
+        // The test is also false for infinities and NaN.
         if !self.fits(x) {
             return Err(self.refused(x));
         }
@@ -137,13 +139,13 @@ impl Pitch {
         Error::new(ErrorKind::TooLarge, text)
     }
 
-    /// The double nearest to a lattice coordinate.
+    /// The double nearest to a lattice coordinate, in model units.
     #[inline]
     pub fn coordinate(self, k: i64) -> f64 {
         self.units(as_double(k))
     }
 
-    /// The double nearest to a number of steps.
+    /// The double nearest to a number of steps, in model units.
     #[inline]
     pub fn units(self, steps: f64) -> f64 {
         let power = power_of_ten(self.0.abs());
@@ -154,7 +156,7 @@ impl Pitch {
         }
     }
 
-    /// The doubles nearest to a vertex's coordinates.
+    /// The doubles nearest to a vertex's coordinates, in model units.
     pub fn position(self, vertex: &Vertex) -> [f64; 3] {
         if let Some(p) = vertex.as_lattice() {
             return p.map(|k| self.coordinate(k));
@@ -168,7 +170,7 @@ impl Pitch {
         })
     }
 
-    /// The doubles nearest to the coordinates of a point of the plane.
+    /// The doubles nearest to the coordinates of a point of the plane, in model units.
     pub fn position_in_plane(self, point: &Point2) -> [f64; 2] {
         let (x, w) = point.coordinates();
         let (up, down) = self.step();
@@ -179,7 +181,7 @@ impl Pitch {
         })
     }
 
-    /// The lattice step as a ratio of integers.
+    /// The lattice step in model units, as numerator and denominator.
     fn step(self) -> (Int<2>, Int<2>) {
         let power = Int::from_i128(10i128.pow(u32::from(self.0.unsigned_abs())));
         if self.0 <= 0 {
@@ -189,14 +191,15 @@ impl Pitch {
         }
     }
 
-    /// The integer by which this pitch divides a coarser one.
+    /// The integer by which this pitch divides a coarser one; `None` if the other is finer or the integer
+    /// does not fit.
     pub fn refinement(self, coarser: Self) -> Option<i64> {
         let steps = u32::try_from(coarser.0 - self.0).ok()?;
         10i64.checked_pow(steps)
     }
 }
 
-/// Lattice coordinates stay strictly below this magnitude.
+/// The least magnitude that is too large for a lattice coordinate, 2^53.
 #[allow(clippy::cast_precision_loss, reason = "a small constant")]
 pub const LIMIT: f64 = (1u64 << COORDINATE_BITS) as f64;
 
@@ -205,10 +208,10 @@ fn power_of_ten(exponent: i8) -> f64 {
     POWERS_OF_TEN[usize::from(exponent.unsigned_abs())]
 }
 
-/// The largest double below a half.
+/// The largest double below one half.
 const BELOW_HALF: f64 = 0.5 - f64::EPSILON / 4.0;
 
-/// Rounds the exact product x·power to an integer; |x·power| < 2^53.
+/// Rounds the exact product x·power to the nearest integer, halves away from zero; |x·power| < 2^53.
 #[inline]
 fn snap_product(x: f64, power: f64) -> f64 {
     let product = x * power;
@@ -221,7 +224,7 @@ fn snap_product(x: f64, power: f64) -> f64 {
     snap_doubtful(x, power, product, rounded)
 }
 
-/// Rounds the exact product, which is near the midpoint of `rounded` and a neighbour.
+/// Rounds the exact product, which is near the midpoint of `rounded` and a neighbour, to the nearest integer.
 #[cold]
 #[allow(clippy::float_cmp)]
 fn snap_doubtful(x: f64, power: f64, product: f64, rounded: f64) -> f64 {
@@ -236,7 +239,7 @@ fn snap_doubtful(x: f64, power: f64, product: f64, rounded: f64) -> f64 {
     }
 }
 
-/// Rounds the exact quotient x/power to an integer.
+/// Rounds the exact quotient x/power to the nearest integer.
 fn snap_quotient(x: f64, power: f64) -> f64 {
     let rounded = (x / power).round();
     let rest = (-rounded).mul_add(power, x);
@@ -247,7 +250,7 @@ fn snap_quotient(x: f64, power: f64) -> f64 {
     }
 }
 
-/// Snaps a point.
+/// Snaps a point in model units to the nearest lattice point.
 pub fn snap_point(pitch: Pitch, p: &[f64; 3]) -> Result<Lattice> {
     Ok([pitch.snap(p[0])?, pitch.snap(p[1])?, pitch.snap(p[2])?])
 }
@@ -256,11 +259,11 @@ pub fn snap_point(pitch: Pitch, p: &[f64; 3]) -> Result<Lattice> {
 mod tests {
     use super::*;
 
-    // Found: halves of a step went toward zero from 2⁵² steps on.
+    // Formerly, halves of a step were rounded towards zero from 2⁵² steps on.
     #[test]
     fn halves_go_away_from_zero_at_all_sizes() {
         let pitch = Pitch::new(-9).expect("a pitch");
-        // Halves of a step that doubles hold exactly, below and beyond 2^52 steps.
+        // Halves of a step that doubles represent exactly, below and above 2^52 steps.
         for (x, steps) in [
             (0.5f64.powi(10), 976_563),
             (4_503_599.629_882_812_5, 4_503_599_629_882_813),

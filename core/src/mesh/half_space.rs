@@ -1,4 +1,4 @@
-//! Half-spaces of lattice planes.
+//! Sources of half-spaces whose planes meet the lattice.
 
 use std::sync::Arc;
 
@@ -9,9 +9,9 @@ use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::plane::Plane;
 
-/// The half-space of the points with normal·x ≤ offset, in lattice steps.
+/// The source of the half-space of all points with normal·x ≤ offset, in lattice steps.
 ///
-/// `rounded` says how the plane was moved onto the lattice; `None` if it was not.
+/// If the plane was moved onto the lattice, `rounded` is the text of a finding that says how far.
 ///
 /// # Errors
 /// As [`bounding_plane`].
@@ -45,8 +45,8 @@ pub fn half_space(
 /// The plane normal·x = offset, in lattice steps, with smaller values on its minus side.
 ///
 /// # Errors
-/// `BadNormal` if the normal is zero, `TooLarge` if it is wider than 106 bits or the plane misses
-/// the lattice.
+/// `BadNormal` if the normal is zero, `TooLarge` if it is wider than 106 bits or the plane misses the
+/// lattice.
 pub fn bounding_plane(normal: [i128; 3], offset: &Int<3>) -> Result<Plane> {
     if normal == [0; 3] {
         return Err(Error::new(
@@ -57,7 +57,7 @@ pub fn bounding_plane(normal: [i128; 3], offset: &Int<3>) -> Result<Plane> {
     Plane::across_lattice(normal, offset).ok_or_else(out_of_reach)
 }
 
-/// The error for a hyperplane that misses the lattice.
+/// The error for a hyperplane that lies outside the lattice.
 pub fn out_of_reach() -> Error {
     let text = "the hyperplane is more than 2^53 lattice steps from the origin";
     Error::new(ErrorKind::TooLarge, text)

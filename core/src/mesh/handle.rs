@@ -1,4 +1,4 @@
-//! Handles: numbers typed by what they number.
+//! Handles: indices of sources, faces, vertices and nodes, each as a type of its own.
 
 use std::fmt;
 
@@ -7,19 +7,19 @@ use serde::{Deserialize, Serialize};
 use crate::arith::convert::as_number;
 use crate::geometry::side::Orientation;
 
-/// A source by its place in the table of a solid or an evaluation.
+/// The index of a source in the table of a solid or an evaluation.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
 )]
 pub struct Slot(pub u32);
 
 impl Slot {
-    /// The first slot, and all after it.
+    /// All slots in order, from 0 on.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..).map(Self)
     }
 
-    /// The slot in this place of a table.
+    /// The slot at this index of a table.
     ///
     /// # Panics
     /// Never for tables: none has 2³² sources.
@@ -27,13 +27,13 @@ impl Slot {
         Self(u32::try_from(place).expect("a table of less than 2^32 sources"))
     }
 
-    /// The place in a table.
+    /// The index in a table of sources.
     pub fn place(self) -> usize {
         self.0 as usize
     }
 }
 
-/// A face by its number in its source.
+/// The number of a face in its source.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
 )]
@@ -43,17 +43,17 @@ impl FaceId {
     /// The only face of a half-space.
     pub const ONLY: Self = Self(0);
 
-    /// The first face, and all after it.
+    /// All face numbers in order, from 0 on.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..).map(Self)
     }
 
-    /// The place in a list of all faces.
+    /// The index in a list of all faces.
     pub fn place(self) -> usize {
         self.0 as usize
     }
 
-    /// The half-edges of a triangle: the first runs from its first corner to its second.
+    /// The half-edges of a triangle: number 3 f + i runs from corner i of face f to the next corner.
     pub fn half_edges(self) -> std::ops::Range<u32> {
         3 * self.0..3 * self.0 + 3
     }
@@ -64,7 +64,7 @@ impl FaceId {
     }
 }
 
-/// A vertex by its number in its mesh.
+/// The number of a vertex in its mesh.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
 )]
@@ -72,23 +72,23 @@ impl FaceId {
 pub struct VertexId(pub u32);
 
 impl VertexId {
-    /// The first vertex, and all after it.
+    /// All vertex numbers in order, from 0 on.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..).map(Self)
     }
 
-    /// The vertex in this place of a list.
+    /// The vertex at this index of a list.
     #[inline]
     pub fn of(place: usize) -> Self {
         Self(as_number(place))
     }
 
-    /// Triangles or other rows of plain numbers, as rows of vertices.
+    /// Triangles or other rows of plain integers, as rows of vertex numbers.
     pub fn rows<const N: usize>(rows: impl IntoIterator<Item = [u32; N]>) -> Vec<[Self; N]> {
         rows.into_iter().map(|row| row.map(Self)).collect()
     }
 
-    /// The place in a list of all vertices.
+    /// The index in a list of all vertices.
     #[inline]
     pub fn place(self) -> usize {
         self.0 as usize
@@ -113,7 +113,7 @@ impl fmt::Display for VertexId {
     }
 }
 
-/// A node by its place in the list that holds its tree.
+/// The index of a node in the list that stores its tree.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
 )]
@@ -121,24 +121,24 @@ impl fmt::Display for VertexId {
 pub struct NodeId(pub u32);
 
 impl NodeId {
-    /// The root, in lists that begin with it.
+    /// The root, in lists that begin with the root.
     pub const ROOT: Self = Self(0);
 
-    /// The first node of a list, and all after it.
+    /// All node numbers in order, from 0 on.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..).map(Self)
     }
 
-    /// The node in this place of a list.
+    /// The node at this index of a list.
     ///
     /// # Panics
-    /// Never for lists of nodes: 2³² of them would fill a hundred gigabytes.
+    /// Never for lists of nodes: 2³² nodes would fill a hundred gigabytes.
     #[inline]
     pub fn of(place: usize) -> Self {
         Self(u32::try_from(place).expect("a tree of less than 2^32 nodes"))
     }
 
-    /// The place in the list.
+    /// The index in the list of nodes.
     #[inline]
     pub fn place(self) -> usize {
         self.0 as usize
@@ -151,22 +151,22 @@ impl From<NodeId> for i64 {
     }
 }
 
-/// A face of one of several sources.
+/// A face of one of several sources: the source's slot and the number of the face in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SourceFace {
-    /// The source.
+    /// The slot of the source.
     pub slot: Slot,
-    /// The face.
+    /// The number of the face in the source.
     pub id: FaceId,
 }
 
 impl SourceFace {
-    /// A face of a source.
+    /// The face with the number `id` in the source at `slot`.
     pub fn new(slot: Slot, id: FaceId) -> Self {
         Self { slot, id }
     }
 
-    /// The face with this orientation.
+    /// The face with this orientation relative to its source.
     pub fn oriented(self, orientation: Orientation) -> OrientedFace {
         OrientedFace {
             face: self,
@@ -175,22 +175,22 @@ impl SourceFace {
     }
 }
 
-/// A face of one of several sources, as the source has it or turned around.
+/// A face of one of several sources, in the source's orientation or turned around.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct OrientedFace {
-    /// The face.
+    /// The face without its orientation.
     pub face: SourceFace,
-    /// The orientation of the face.
+    /// `Same` if the face is oriented as in its source, else `Opposite`.
     pub orientation: Orientation,
 }
 
 impl OrientedFace {
-    /// The source.
+    /// The slot of the face's source.
     pub fn slot(self) -> Slot {
         self.face.slot
     }
 
-    /// The number in the source.
+    /// The number of the face in its source.
     pub fn id(self) -> FaceId {
         self.face.id
     }

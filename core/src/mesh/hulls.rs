@@ -1,4 +1,4 @@
-//! Convex hulls of points that are snapped to the lattice.
+//! Convex hulls of points, decided for their nearest lattice points.
 
 use std::collections::hash_map::Entry;
 
@@ -15,29 +15,29 @@ use crate::geometry::doubles::vector::{cross, dot, normal};
 use crate::geometry::doubles::{Facing, Point, Triangle};
 use crate::geometry::side::Side;
 
-/// The mesh of a hull.
+/// The triangle mesh of a convex hull.
 #[derive(Clone, Debug)]
 pub struct Hull {
-    /// The corners.
+    /// The corners of the hull, in model units.
     pub vertices: Vec<Point>,
-    /// The triangles.
+    /// The triangles of the hull, counterclockwise from outside, as indices of the corners.
     pub triangles: Vec<[VertexId; 3]>,
-    /// Whether its faces are a convex hull on the lattice too, where they then do not cross.
+    /// True if the faces are also a convex hull after snapping to the lattice, where they then do not cross.
     pub is_convex_there: bool,
 }
 
-/// The sine of the angle by which faces may turn inwards against each other. Rounding has turned no
-/// ordinary face inwards so far, and leaves no point before a face by more than this part of the hull's
-/// size.
+/// The sine of the angle by which adjoining faces may fold inwards. Rounding was never seen to fold an
+/// ordinary face inwards; below this angle, it leaves no point outside a face by more than this fraction of
+/// the hull's size.
 const MAX_FOLD_SINE: f64 = 1e-7;
 
-/// The hull of points, exact for their places on the lattice; empty if they lie in a plane but for
-/// rounding.
+/// The convex hull of points, exact for the lattice points nearest to them; empty if they lie in one plane up
+/// to rounding.
 ///
-/// Rounding moves a point off its place. So a point is no corner if it lies within twice the largest such
-/// distance from the hull of the others. Where faces of the exact hull would look inwards between the given
-/// coordinates, these are snapped. Where that does not help, as on a lattice no coarser than the doubles,
-/// the faces are those of the hull of the given points.
+/// Rounding moves points by up to some largest distance. So a point is no corner if it lies within twice that
+/// distance of the hull of the other points. Where faces of the exact hull would face inwards between the
+/// given coordinates, the coordinates are snapped. Where that does not help, as on a lattice no coarser than
+/// the doubles, the faces are those of the hull of the given points.
 ///
 /// # Errors
 /// As [`Pitch::snap`].
@@ -81,7 +81,7 @@ pub fn hull_of(points: &[Point], pitch: Pitch) -> Result<Hull> {
     })
 }
 
-/// The exact hull of the points as doubles.
+/// The exact convex hull of points as given, in doubles.
 fn hull_as_given(points: &[Point]) -> Hull {
     let faces = hull(points);
     let used = corners_of(&faces);
@@ -92,8 +92,8 @@ fn hull_as_given(points: &[Point]) -> Hull {
     }
 }
 
-/// How far rounding may have moved a point, in steps: by snapping and, unless all are on the lattice, when
-/// its coordinates were computed.
+/// The largest distance, in steps, by which rounding may have moved a point: by snapping and, unless all
+/// points are on the lattice, when its coordinates were computed.
 fn moved_by(points: &[Point], steps: &[Point], pitch: Pitch) -> f64 {
     let squares = points.iter().zip(steps).map(|(point, place)| {
         let off = |i: usize| pitch.steps_beyond(point[i], place[i]);
@@ -111,11 +111,11 @@ fn moved_by(points: &[Point], steps: &[Point], pitch: Pitch) -> f64 {
     }
 }
 
-/// Rounding of a point that a matrix has turned, in spacings of doubles at the largest coordinate: a half
-/// for each of three products and three sums, along two axes or all three.
+/// The rounding error of a point that a matrix has rotated, in spacings of doubles at the largest coordinate:
+/// one half for each of three products and three sums, along two axes or all three.
 const TURNED_POINT_ROUNDING: f64 = 4.0;
 
-/// Faces by the index of their corners among the used points.
+/// Faces with their corners as indices into the ascending list of used points.
 fn numbered(faces: &[[usize; 3]], used: &[usize]) -> Vec<[VertexId; 3]> {
     let place = |p: usize| used.partition_point(|q| *q < p);
     faces
@@ -124,10 +124,10 @@ fn numbered(faces: &[[usize; 3]], used: &[usize]) -> Vec<[VertexId; 3]> {
         .collect()
 }
 
-/// Return whether all triangles of a nearly convex mesh face away from its middle, and none turns inwards
+/// Return whether all triangles of a nearly convex mesh face away from its middle, and none folds inwards
 /// against a neighbour.
 ///
-/// Seen from the middle they then lie side by side, so that none crosses another.
+/// In the projection from the middle, the triangles then lie side by side, so that none crosses another.
 fn looks_outwards(vertices: &[Point], triangles: &[[VertexId; 3]]) -> bool {
     let middle = [0, 1, 2].map(|i| {
         let sum: f64 = vertices.iter().map(|p| p[i]).sum();
@@ -153,7 +153,7 @@ fn looks_outwards(vertices: &[Point], triangles: &[[VertexId; 3]]) -> bool {
     })
 }
 
-/// Return whether a triangle turns inwards against another that shares an edge with it.
+/// Return whether a triangle folds inwards against another triangle that shares an edge with it.
 fn turns_inwards(facing: &Facing, other: &Triangle) -> bool {
     let ways = [normal(facing.triangle()), normal(other)];
     let bend = cross(&ways[0], &ways[1]);
@@ -168,7 +168,7 @@ mod tests {
     use super::{hull_of, looks_outwards, Pitch, Point};
     use crate::geometry::doubles::vector::{dot, less, normal};
 
-    /// Two layers of points, turned about two axes.
+    /// Two layers of grid points, rotated about two axes.
     fn turned_layers(width: u32, turn: f64) -> Vec<Point> {
         let numbers = || (0..width).map(f64::from);
         let layer = |z: f64| numbers().flat_map(move |x| numbers().map(move |y| [x, y, z]));
@@ -214,8 +214,8 @@ mod tests {
         );
     }
 
-    /// A corner beside the edge of a box lies in the plane of a side on the lattice, but above it as given:
-    /// the thin faces there turn by its height over its distance from the edge.
+    /// A corner near the edge of a box lies in the plane of a side on the lattice, but outside it as given:
+    /// the thin faces there fold by its height divided by its distance from the edge.
     #[test]
     fn thin_faces_look_outwards() {
         let mut mended = 0;

@@ -1,4 +1,4 @@
-//! Images of a thing under motions, shared while in use.
+//! Images of an object under lattice motions, shared by all who use them.
 
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError, Weak};
 
@@ -6,23 +6,23 @@ use rustc_hash::FxHashMap as HashMap;
 
 use crate::geometry::spaces::motion::Motion;
 
-/// The images of a thing by the motions that made them, as weak references.
+/// The images of an object under lattice motions, as weak references.
 ///
-/// No call blocks for ever. In a forked process a thread that no longer exists may hold the lock; whoever
-/// does not get it uses an image of its own.
+/// No call blocks for ever. In a forked process, a thread that no longer exists may own the lock; a call that
+/// does not get the lock then uses an image of its own.
 #[derive(Debug)]
 pub struct Images<T>(Mutex<ImageTable<T>>);
 
 #[derive(Debug)]
 struct ImageTable<T> {
     images: HashMap<Motion, Weak<T>>,
-    /// Beyond this many images, drop those no longer in use. It is twice the number kept last time, so that
-    /// each image costs two looks.
+    /// Above this number of images, those no longer in use are dropped. It is twice the number left after the
+    /// last drop, so that each image is checked about twice.
     full: usize,
 }
 
-/// Yields before the lock counts as held for ever. A thread holds it while it looks up an image, and at
-/// times while it drops old ones; a process forked meanwhile never gets it.
+/// The number of yields after which the lock counts as lost. A thread owns the lock while it looks up an
+/// image, and at times while it drops unused images; in a process forked meanwhile nobody releases it.
 const MAX_YIELDS: usize = 1000;
 
 impl<T> Default for Images<T> {
@@ -33,12 +33,12 @@ impl<T> Default for Images<T> {
 }
 
 impl<T> Images<T> {
-    /// The image, if one is in use.
+    /// The image under a motion, if it is in use; else `None`.
     pub fn get(&self, motion: &Motion) -> Option<Arc<T>> {
         self.free()?.images.get(motion)?.upgrade()
     }
 
-    /// The image in use by now, else this one, which is remembered.
+    /// The image under a motion that is already in use, else the given one, which is stored.
     pub fn keep(&self, motion: &Motion, image: Arc<T>) -> Arc<T> {
         let Some(mut known) = self.free() else {
             return image;
@@ -84,8 +84,8 @@ mod tests {
         assert!(images.free().expect("nobody holds it").images.len() < 10);
     }
 
-    // Found: threads that moved one solid at the same time could make two images of its source, which
-    // `mesh.source` showed as different.
+    // Formerly, threads that moved one solid at the same time could make two images of its source, which
+    // differed as `mesh.source`.
     #[test]
     fn threads_that_make_an_image_at_once_share_one() {
         let motion = Motion::of_axes(&[1, 2, 3], &[0, 0, 1]).expect("a motion");

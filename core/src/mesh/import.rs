@@ -1,4 +1,4 @@
-//! From arrays of doubles to a source: snaps, checks and welds.
+//! Import of a mesh: from arrays of doubles to a source, by snapping, checking and welding.
 
 use super::chain::is_closed;
 use super::finding::{Finding, Severity};
@@ -16,14 +16,14 @@ use crate::geometry::plane::{normal, Lattice};
 use crate::interrupt::poll;
 use crate::mesh::handle::VertexId;
 
-/// Sizes of numbers that a message shows without an exponent.
+/// The magnitudes of numbers that a message writes without an exponent.
 const WITHOUT_EXPONENT: std::ops::Range<f64> = 1e-4..1e6;
 
 /// Snaps a closed triangle mesh to the lattice.
 ///
-/// `vertices` are in model units, `faces` index them, counterclockwise as seen from outside. Drops faces
-/// without area; welds vertices at one place if the faces do not close by index; accepts T-junctions if the
-/// pieces of each line cancel.
+/// `vertices` are in model units; `faces` are indices of them, counterclockwise from outside. Faces without
+/// area are dropped; vertices at one lattice point are welded if the faces do not close by index; T-junctions
+/// are accepted if the edges on each line cancel.
 ///
 /// # Errors
 /// `NonFinite`, `IndexOutOfRange`, `TooLarge`, `EmptyMesh`, and `NotClosed` with the faces at open edges.
@@ -77,7 +77,7 @@ pub fn import(vertices: &[[f64; 3]], faces: &[[i64; 3]], pitch: Option<Pitch>) -
     Ok(Source::checked(mesh, pitch, open, cell, findings))
 }
 
-/// The faces with indices of 32 bits, all of them below `count`.
+/// The faces with indices of 32 bits, after a check that all of them are below `count`.
 fn check_indices(faces: &[[i64; 3]], count: usize) -> Result<Vec<[VertexId; 3]>> {
     let limit = u32::try_from(count)
         .ok()
@@ -113,7 +113,7 @@ fn check_indices(faces: &[[i64; 3]], count: usize) -> Result<Vec<[VertexId; 3]>>
     ))
 }
 
-/// Copies indices; returns whether all are below the limit.
+/// Converts indices to 32 bits; returns whether all are at least 0 and below the limit.
 #[allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -152,7 +152,7 @@ impl Bounds {
         })
     }
 
-    /// The box, if all coordinates are finite.
+    /// The box around points, or `None` if a coordinate is not finite.
     fn of_chunk(points: &[[f64; 3]]) -> Option<Self> {
         let mut bounds = Self::NOTHING;
         let mut finite = true;
@@ -211,9 +211,9 @@ fn choose_pitch(
     Ok(chosen)
 }
 
-/// Six times the enclosed volume in cubic steps, and the faces without area.
+/// Six times the enclosed volume in cubic steps, and the numbers of the faces without area.
 ///
-/// The sum is in doubles, about the first vertex, in the order of the faces.
+/// The volume is summed in doubles, relative to the first vertex, in the order of the faces.
 fn weigh(mesh: &TriangleMesh) -> (f64, Vec<u32>) {
     let origin = mesh.vertices.first().copied().unwrap_or_default();
     let weigh =
@@ -223,7 +223,7 @@ fn weigh(mesh: &TriangleMesh) -> (f64, Vec<u32>) {
     (volumes.iter().sum(), flat.concat())
 }
 
-/// Drops some faces, given in ascending order.
+/// Removes faces, given by their numbers in ascending order, and reports them as a finding.
 fn drop_faces(mesh: &mut TriangleMesh, faces: Vec<u32>, findings: &mut Vec<Finding>) {
     if faces.is_empty() {
         return;
@@ -238,7 +238,8 @@ fn drop_faces(mesh: &mut TriangleMesh, faces: Vec<u32>, findings: &mut Vec<Findi
     findings.push(Finding::about("zero_area", Severity::Note, &places, text));
 }
 
-/// The part of [`weigh`] for a run of faces.
+/// Six times the volume of a chunk of faces, and the numbers of its faces without area; the chunk begins with
+/// face `first`.
 fn weigh_chunk(
     faces: &[[VertexId; 3]],
     vertices: &[Lattice],
@@ -262,19 +263,19 @@ fn weigh_chunk(
     (volume, flat)
 }
 
-/// Return whether a triangle has no area.
+/// Return whether a triangle has no area, exactly.
 pub fn is_flat(corners: &[Lattice; 3]) -> bool {
     let [a, b, c] = corners;
     let [u, v] = spokes([a, b, c]);
     !surely_wide(&u, &v) && normal(a, b, c) == [0; 3]
 }
 
-/// The edges from the first corner to the others, in doubles.
+/// The vectors from the first corner of a triangle to the two others, in doubles.
 fn spokes([a, b, c]: [&Lattice; 3]) -> [[f64; 3]; 2] {
     [b, c].map(|end| each_axis(|i| as_double(end[i] - a[i])))
 }
 
-/// Return whether two edges are not parallel, beyond the rounding of their cross product.
+/// Return whether doubles prove that two vectors are not parallel; may return false negatives.
 fn surely_wide(u: &[f64; 3], v: &[f64; 3]) -> bool {
     let certain = |i: usize, j: usize| {
         let (p, q) = (u[i] * v[j], u[j] * v[i]);
@@ -283,8 +284,8 @@ fn surely_wide(u: &[f64; 3], v: &[f64; 3]) -> bool {
     certain(0, 1) || certain(1, 2) || certain(2, 0)
 }
 
-/// The ends of edges without an opposite by index. If the faces do not close by index, welds vertices by
-/// place and then cancels edges along lines.
+/// The vertices at edges without an opposite by index. If the faces do not close by index, welds vertices at
+/// one lattice point and then cancels edges along lines; an error if edges remain.
 fn close(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) -> Result<Vec<VertexId>> {
     if is_closed(&mesh.faces) {
         return Ok(Vec::new());
@@ -330,12 +331,12 @@ fn not_closed(mesh: &TriangleMesh, open: &[u64]) -> Error {
     Error::at(ErrorKind::NotClosed, faces, text)
 }
 
-/// A point as a message shows it.
+/// A point as messages write it.
 fn place([x, y, z]: &[f64; 3]) -> String {
     format!("({}, {}, {})", rounded(*x), rounded(*y), rounded(*z))
 }
 
-/// A number to six digits, as a message shows it.
+/// A number rounded to six significant digits, as messages write it.
 fn rounded(number: f64) -> String {
     let digits = format!("{number:.5e}");
     let short: f64 = digits.parse().unwrap_or(number);
@@ -346,7 +347,7 @@ fn rounded(number: f64) -> String {
     }
 }
 
-/// The faces with vertices at one lattice point merged; `None` if there are no such vertices.
+/// The faces after vertices at one lattice point are merged; `None` if no two vertices are at one point.
 fn weld(mesh: &TriangleMesh) -> Option<Vec<[VertexId; 3]>> {
     let image = mesh.firsts();
     let changed = VertexId::all().zip(&image).any(|(i, v)| i != *v);

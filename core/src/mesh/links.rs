@@ -1,31 +1,31 @@
 //! Irregular vertices: shared by several fans of faces, or on an edge of more than two faces.
 //!
-//! The link of a vertex has a directed edge for each face around it: from the corner after the
-//! vertex to the one before it. The faces make one fan if the link is one cycle.
+//! The link of a vertex has a directed edge for each face around it: from the corner after the vertex to the
+//! corner before it. The faces make one fan if the link is one cycle.
 
 use super::handle::VertexId;
 use super::tasks::each_chunk;
 use crate::arith::convert::as_number;
 use crate::interrupt::poll;
 
-/// The most edges in a [`ShortLink`]; around most vertices of most meshes there are six.
+/// The largest number of edges in a [`ShortLink`]; around most vertices of ordinary meshes there are six.
 const MAX_SHORT_LINK_EDGES: usize = 8;
 
-/// The starts, then the ends of a link's edges; zero where there is none.
+/// The labels of the start points of a link's edges, then of their end points; zero after the last edge.
 ///
-/// A corner's label is its low fifteen bits under a set top bit.
+/// The label of a vertex is the low fifteen bits of its number under a set top bit.
 type ShortLink = [u16; 2 * MAX_SHORT_LINK_EDGES];
 
-/// The vertices of a closed surface whose link is not one cycle, sorted.
+/// The vertices of a closed surface whose link is not one cycle, in ascending order.
 pub fn irregular(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<VertexId> {
     let doubtful = doubtful(faces, vertex_count, |vertex| Some(vertex.place()));
     let vertices = doubtful.into_iter().map(VertexId).collect();
     without_cycle(&VertexSubset::new(vertices, vertex_count), faces)
 }
 
-/// The given vertices of a closed surface whose link is not one cycle, sorted.
+/// Those of the given vertices of a closed surface whose link is not one cycle, in ascending order.
 ///
-/// `vertices` ascend. Costs one pass over the faces, and memory for the links of these vertices only.
+/// `vertices` must ascend. Costs one pass over the faces, and memory for the links of these vertices only.
 pub fn irregular_among(
     vertices: Vec<VertexId>,
     faces: &[[VertexId; 3]],
@@ -40,13 +40,13 @@ pub fn irregular_among(
     without_cycle(&VertexSubset::new(vertices.collect(), vertex_count), faces)
 }
 
-/// Some vertices of a mesh, and the index of each among them.
+/// A set of vertices of a mesh, with the index of each in the set.
 struct VertexSubset {
-    /// Ascending.
+    /// The vertices of the set, ascending.
     vertices: Vec<VertexId>,
-    /// A bit for each vertex of the mesh.
+    /// A bit for each vertex of the mesh, set if the vertex is in the set.
     words: Vec<u64>,
-    /// The number of these vertices before each word.
+    /// For each word, the number of vertices of the set before the word's first bit.
     before: Vec<u32>,
 }
 
@@ -83,7 +83,7 @@ impl VertexSubset {
     }
 }
 
-/// The given vertices whose link is not one cycle; sorts the corners at them.
+/// The vertices of a subset whose link is not one cycle, ascending; sorts the face corners at them.
 fn without_cycle(subset: &VertexSubset, faces: &[[VertexId; 3]]) -> Vec<VertexId> {
     if subset.vertices.is_empty() {
         return Vec::new();
@@ -103,9 +103,9 @@ fn without_cycle(subset: &VertexSubset, faces: &[[VertexId; 3]]) -> Vec<VertexId
         .collect()
 }
 
-/// The places of vertices whose short link does not prove them regular.
+/// The indices of vertices whose short link does not prove that it is one cycle.
 ///
-/// `place` maps the vertices in question to `0..count`.
+/// `place` maps the vertices to examine to `0..count`, and all others to `None`.
 fn doubtful(
     faces: &[[VertexId; 3]],
     count: usize,
@@ -144,11 +144,12 @@ fn label(vertex: VertexId) -> u16 {
     vertex.0 as u16 | 1 << 15
 }
 
-/// Return whether a link is surely one cycle; its starts must be its ends in another order.
+/// Return whether a short link is certainly one cycle; the labels of its start points must be those of its
+/// end points in another order.
 ///
-/// The walk maps label to label. If it first returns after `count` steps, it saw `count` labels, all
-/// different. All are labels of starts, since the walk stays at zero once it leaves these. So the labels of
-/// the starts differ, and with them the corners: no two share a label.
+/// The walk goes from label to label. If it first returns after `count` steps, it visited `count` different
+/// labels. All are labels of start points, since the walk stays at zero once it leaves these. So the labels
+/// of the start points differ, and with them the vertices: no two share a label.
 fn is_short_cycle(link: &ShortLink, count: usize) -> bool {
     if count > MAX_SHORT_LINK_EDGES {
         return false;
@@ -163,7 +164,8 @@ fn is_short_cycle(link: &ShortLink, count: usize) -> bool {
     label == link[0]
 }
 
-/// The label after another; if several edges start with that label, the bitwise or of their ends.
+/// The label of the end of the edge that starts at `label`; if several edges start there, the bitwise or of
+/// the labels of their ends.
 fn after(link: &ShortLink, label: u16) -> u16 {
     (0..MAX_SHORT_LINK_EDGES).fold(0, |found, i| {
         let mask = if link[i] == label { u16::MAX } else { 0 };
@@ -171,7 +173,8 @@ fn after(link: &ShortLink, label: u16) -> u16 {
     })
 }
 
-/// Return whether the link of a vertex is one cycle; its corners are sorted and not empty.
+/// Return whether the link of a vertex is one cycle; its rows, of the vertex and an edge's start and end, are
+/// sorted and not empty.
 fn is_cycle(link: &[[VertexId; 3]]) -> bool {
     if link.windows(2).any(|pair| pair[0][1] == pair[1][1]) {
         return false;
@@ -193,13 +196,13 @@ mod tests {
     use crate::mesh::topology::Topology;
     use proptest::prelude::*;
 
-    /// Tetrahedra on few vertices: closed, and often irregular.
+    /// Tetrahedra on a small number of vertices: closed, and often irregular.
     fn tetrahedra() -> impl Strategy<Value = Vec<[VertexId; 3]>> {
         let corners = prop::sample::subsequence((0u32..12).collect::<Vec<_>>(), 4);
         let corners = (corners, 0u32..3, any::<bool>());
         prop::collection::vec(corners, 1..6).prop_map(|all| {
             let tetrahedron = |(c, high, turned): &(Vec<u32>, u32, bool)| {
-                // Numbers far apart share their lower bits.
+                // Vertex numbers that are far apart share their lower bits.
                 let [a, b, c, d] = [0, 1, 2, 3].map(|i| c[i] + (high << 15) * (as_number(i) % 2));
                 let faces = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];
                 let faces = faces.map(|[a, b, c]| if *turned { [a, c, b] } else { [a, b, c] });
@@ -209,7 +212,7 @@ mod tests {
         })
     }
 
-    /// A double cone over a ring, its vertices far apart in number.
+    /// A double cone over a ring, with vertex numbers that are far apart.
     fn double_cone(ring: u32, first: u32, step: u32) -> Vec<[VertexId; 3]> {
         let around = |i: u32| first + (i % ring) * step;
         let faces = |i| [[0, around(i), around(i + 1)], [1, around(i + 1), around(i)]];

@@ -1,4 +1,4 @@
-//! Volume, area and moments of a mesh in doubles; sums are rounded once.
+//! Volume, area and moments of a mesh, in doubles.
 
 use super::handle::VertexId;
 use crate::arith::{DoubleDouble, Sum};
@@ -7,27 +7,27 @@ use crate::geometry::doubles::vector::{dot, less, normal};
 use crate::geometry::doubles::Point;
 use crate::interrupt::poll;
 
-/// The error of a tetrahedron's volume relative to the product of three edges' lengths along axes: each of
-/// the six products in six volumes has three rounded differences, two products and three sums.
+/// The error of a tetrahedron's volume, as a fraction of the product of three edges' lengths in the sum norm:
+/// each of the six products in six volumes has three rounded differences, two products and three sums.
 const VOLUME_ROUNDING: f64 = 8.0 / 6.0 * f64::EPSILON;
 
-/// The largest part of a volume that may be rounding: 2^-32. A body that fills its box has about 2^-48, a
-/// sheet as much more as it is thinner.
+/// The largest fraction of a volume that may be rounding error: 2^-32. For a body that fills its box it is
+/// about 2^-48, for a sheet more by the factor by which the sheet is thinner.
 const MAX_ROUNDING_SHARE: f64 = f64::EPSILON * 1_048_576.0;
 
-/// The sums over all faces.
+/// The volume and the area of a mesh.
 #[derive(Debug)]
 pub struct Measures {
-    /// The sum of the signed tetrahedra between the faces and a point.
+    /// The enclosed volume: the sum of the signed tetrahedra between the faces and a point.
     pub volume: f64,
-    /// The sum over the faces.
+    /// The surface area: the sum over the faces.
     pub area: f64,
 }
 
-/// Measures a mesh; rounds each face's part, and each sum once.
+/// Measures the volume and area of a closed mesh; each sum is rounded only once.
 ///
-/// Where rounding drowns the volume, as of a needle far longer than thick, the parts are taken in two
-/// doubles each.
+/// `middle` is a point near the mesh. Where rounding errors are too large for the volume, as for a needle far
+/// longer than thick, the volume is computed in double-doubles.
 pub fn measures(vertices: &[[f64; 3]], faces: &[[VertexId; 3]], middle: [f64; 3]) -> Measures {
     let (mut volume, mut area) = (Sum::default(), Sum::default());
     let mut size = 0.0;
@@ -36,7 +36,8 @@ pub fn measures(vertices: &[[f64; 3]], faces: &[[VertexId; 3]], middle: [f64; 3]
         let [a, b, c] = face.map(|vertex| vertices[vertex.place()]);
         let normal = normal(&[a, b, c]);
         let from_middle = less(&a, &middle);
-        // With the normal of the edges a small face far out loses no digits to cancellation.
+        // The normal comes from edges, so that a small face far from the middle loses no digits to
+        // cancellation.
         volume.add(dot(&normal, &from_middle) / 6.0);
         area.add(dot(&normal, &normal).sqrt() / 2.0);
         size += length(less(&b, &a)) * length(less(&c, &a)) * length(from_middle);
@@ -53,23 +54,23 @@ pub fn measures(vertices: &[[f64; 3]], faces: &[[VertexId; 3]], middle: [f64; 3]
     }
 }
 
-/// The length of a vector along the axes.
+/// The sum norm of a vector: the sum of its components' magnitudes.
 fn length(way: [f64; 3]) -> f64 {
     way.iter().map(|x| x.abs()).sum()
 }
 
-/// The moments of a mesh of density 1.
+/// The volume, centroid and second moments of a mesh of density 1.
 #[derive(Debug)]
 pub struct Moments {
-    /// The moment of order 0.
+    /// The enclosed volume, the moment of order 0.
     pub volume: f64,
-    /// The centroid, relative to the point the mesh was measured from; not finite without volume.
+    /// The centroid, relative to the point from which the mesh was measured; not finite without volume.
     pub centroid: [f64; 3],
-    /// The integrals of the products of two coordinates, relative to the centroid.
+    /// The second moments: the integrals of the products of two coordinates, relative to the centroid.
     pub second: [[f64; 3]; 3],
 }
 
-/// Measures a mesh from a point near it, in two doubles for each number.
+/// Computes the moments of a closed mesh, relative to a point `middle` near it, in double-doubles.
 ///
 /// # Source
 /// A tetrahedron of volume V with corners at the origin, p, q and r has the first moments V/4 (p + q + r).
@@ -119,7 +120,7 @@ fn determinant(
 mod tests {
     use super::*;
 
-    /// A box of these sides, its lowest corner at the origin.
+    /// A box with these side lengths, its lowest corner at the origin.
     fn cuboid(sides: [f64; 3]) -> (Vec<[f64; 3]>, Vec<[VertexId; 3]>) {
         let corner = |k: usize| each_axis(|i| if k >> i & 1 == 1 { sides[i] } else { 0.0 });
         let squares = [
@@ -145,7 +146,7 @@ mod tests {
             let near = |a: f64, b: f64| (a - b).abs() < 1e-6;
             assert!(near(found.volume, 24.0));
             assert!((0..3).all(|i| near(found.centroid[i] + middle[i], [1.0, 1.5, 2.0][i])));
-            // The volume times a twelfth of the square of a side.
+            // A second moment is the volume times a twelfth of the square of a side.
             assert!((0..3).all(|i| near(found.second[i][i], [8.0, 18.0, 32.0][i])));
             assert!(near(found.second[0][1], 0.0) && near(found.second[2][1], 0.0));
         }
@@ -154,7 +155,7 @@ mod tests {
     #[test]
     fn volume_does_not_drown_in_length() {
         let (vertices, faces) = cuboid([1e6, 1e-6, 3.0]);
-        // A rotation about the diagonal of two axes makes no coordinate small.
+        // After a rotation about the diagonal of two axes, no coordinate is small.
         let (cos, sin) = (0.6, 0.8);
         let turned = |[x, y, z]: [f64; 3]| [x * cos - y * sin, x * sin + y * cos, z + x];
         let vertices: Vec<_> = vertices.into_iter().map(turned).collect();

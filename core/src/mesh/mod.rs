@@ -1,4 +1,4 @@
-//! Triangle meshes on the lattice: import, topology and findings.
+//! Triangle meshes on the lattice: import, topology, findings, hulls and measures.
 
 pub mod cached;
 pub mod chain;

@@ -1,21 +1,21 @@
-//! Snaps many points to the lattice at once, to the same places as one by one.
+//! Snaps many points to the lattice at once, with the same results as for single points.
 
 use super::grid::{snap_point, Pitch};
 use super::tasks::fill_chunks;
 use crate::error::{Error, Result};
 use crate::geometry::plane::Lattice;
 
-/// The doubles around 1.5·2^52 are exactly the integers: adding it rounds.
+/// The doubles around 1.5·2^52 are exactly the integers, so adding this number rounds to an integer.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
-/// Below this magnitude the sum with [`ROUNDER`] stays among these integers.
+/// Below this magnitude, the sum with [`ROUNDER`] stays in the range where doubles are exactly the integers.
 #[allow(clippy::cast_precision_loss, reason = "a small constant")]
 const ROUNDER_LIMIT: f64 = (1u64 << 51) as f64;
 
 /// The lattice points nearest to points in model units.
 ///
 /// # Errors
-/// As [`Pitch::snap`], with the first row that does not fit.
+/// As [`Pitch::snap`], with the first row whose point does not fit.
 pub fn snap_all(points: &[[f64; 3]], pitch: Pitch) -> Result<Vec<Lattice>> {
     let mut lattice = vec![[0; 3]; points.len()];
     let snap = |first: usize, points: &[[f64; 3]], lattice: &mut [Lattice]| {
@@ -48,7 +48,7 @@ fn at_row(error: &Error, row: usize) -> Error {
     Error::at(error.kind(), vec![row as u64], text)
 }
 
-/// Rounds the products with a power; returns whether no result is in doubt.
+/// Rounds coordinates times `power` to integers; returns whether all of them are certain.
 ///
 /// The rounded product is within `f64::EPSILON / 2` of the exact one, relatively. If its distance to an
 /// integer is below one half by more than that, this integer is nearest to the exact product.
@@ -75,7 +75,7 @@ mod tests {
     use crate::mesh::grid::{snap_point, Pitch};
     use proptest::prelude::*;
 
-    /// Doubles at, and next to, the middle between two lattice points, and everywhere else.
+    /// Doubles at the middle between two lattice points, next to it, and anywhere else.
     fn coordinate() -> impl Strategy<Value = f64> {
         let middle = |k: i64, ulps: i64| {
             let x = (as_double(k) + 0.5) / 1e9;

@@ -1,4 +1,4 @@
-//! Sources: the immutable boundaries that elements of trees refer to.
+//! Sources: the immutable input meshes and half-spaces whose faces the trees of solids refer to.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::geometry::line::PlaneResidues;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Polygon;
 
-/// A mesh on the lattice, or the boundary of a half-space.
+/// An immutable input of solids: a mesh on the lattice, or the boundary of a half-space.
 #[derive(Debug)]
 pub struct Source {
     id: u64,
@@ -35,26 +35,26 @@ pub struct Source {
     findings: Vec<Finding>,
 }
 
-/// The geometry of a source.
+/// The geometry of a source: a mesh or a plane.
 #[derive(Clone, Debug)]
 pub enum Shape {
-    /// Triangles on the lattice.
+    /// A closed mesh of triangles on the lattice.
     Mesh(TriangleMesh),
-    /// One unbounded face.
+    /// The boundary of a half-space: one unbounded face.
     HalfSpace(Arc<Plane>),
 }
 
-/// Examine only the used vertices if they are fewer than one in this many. Otherwise examine all, and keep
-/// the answer for the next operation.
+/// If fewer than one in this many vertices are used, only the used ones are examined. Otherwise all are
+/// examined, and the result is stored for the next operation.
 const USED_ONLY_IF_ONE_IN: usize = 4;
 
-/// The code of the finding that vertices were welded.
+/// The code of the finding that vertices were welded at import.
 pub(super) const WELDED: &str = "welded";
 
 static NEXT_ID: AtomicU64 = AtomicU64::new(0);
 
 impl Source {
-    /// A source of this shape; ids increase with each call and mean nothing.
+    /// A source of this shape with a new id; ids increase with each call and have no other meaning.
     pub fn new(pitch: Pitch, shape: Shape, findings: Vec<Finding>) -> Self {
         Self {
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
@@ -72,7 +72,7 @@ impl Source {
         }
     }
 
-    /// A source of a mesh with its open vertices and its smallest cell, which are known already.
+    /// A source of a mesh whose vertices at open edges and whose smallest cell are known already.
     pub fn checked(
         mesh: TriangleMesh,
         pitch: Pitch,
@@ -87,14 +87,14 @@ impl Source {
         }
     }
 
-    /// The source with more findings.
+    /// The same source with further findings.
     #[must_use]
     pub fn noting(mut self, findings: Vec<Finding>) -> Self {
         self.findings.extend(findings);
         self
     }
 
-    /// The source with the close pairs of the source that it is an image of.
+    /// The same source with its pairs of close faces, taken from the source of which it is an image.
     #[must_use]
     pub fn with_close_pairs(self, pairs: Vec<[u32; 2]>) -> Self {
         Self {
@@ -103,7 +103,7 @@ impl Source {
         }
     }
 
-    /// A source of the same shape with an id of its own.
+    /// A source of the same shape and findings with a new id.
     #[must_use]
     pub fn renamed(&self) -> Self {
         let named = Self::new(self.pitch, self.shape.clone(), self.findings.clone());
@@ -115,22 +115,22 @@ impl Source {
         }
     }
 
-    /// The images of this source under motions.
+    /// The images of this source under lattice motions, as far as they are in use.
     pub fn images(&self) -> &Images<Self> {
         &self.images
     }
 
-    /// A number that tells sources apart.
+    /// The number that distinguishes the source from all others of the process.
     pub fn id(&self) -> u64 {
         self.id
     }
 
-    /// The lattice step.
+    /// The lattice step of the source.
     pub fn pitch(&self) -> Pitch {
         self.pitch
     }
 
-    /// Return the findings of import, and where the surface is not manifold.
+    /// Return the findings of import, and a note of the vertices at which the surface is not manifold.
     pub fn findings(&self) -> Vec<Finding> {
         let mut findings = self.findings.clone();
         findings.extend(self.irregularity());
@@ -146,12 +146,12 @@ impl Source {
         (!places.is_empty()).then(finding)
     }
 
-    /// The shape.
+    /// The geometry of the source.
     pub fn shape(&self) -> &Shape {
         &self.shape
     }
 
-    /// The triangles; `None` for a half-space.
+    /// The triangle mesh; `None` for a half-space.
     pub fn mesh(&self) -> Option<&TriangleMesh> {
         match &self.shape {
             Shape::Mesh(mesh) => Some(mesh),
@@ -159,18 +159,18 @@ impl Source {
         }
     }
 
-    /// The number of faces.
+    /// The number of faces; 1 for a half-space.
     pub fn face_count(&self) -> usize {
         self.mesh().map_or(1, |m| m.faces.len())
     }
 
-    /// All faces, ascending.
+    /// The numbers of all faces, ascending.
     pub fn face_ids(&self) -> impl Iterator<Item = FaceId> {
         FaceId::all().take(self.face_count())
     }
 
-    /// The ends of edges without an opposite by index, sorted: of edges that cancel along lines only, as at
-    /// T-junctions.
+    /// The end vertices of edges without an opposite by index, ascending. Such edges cancel only along their
+    /// lines, as at T-junctions.
     pub fn open_vertices(&self) -> &[VertexId] {
         let Some(mesh) = self.mesh() else {
             return &[];
@@ -184,9 +184,9 @@ impl Source {
         })
     }
 
-    /// Vertices on edges of more than two faces, or with several fans, sorted.
+    /// The vertices on edges of more than two faces, or with several fans of faces, ascending.
     ///
-    /// Found on first use.
+    /// Computed on first use.
     pub fn irregular_vertices(&self) -> &[VertexId] {
         let Some(mesh) = self.mesh() else {
             return &[];
@@ -200,7 +200,8 @@ impl Source {
         })
     }
 
-    /// The [`Self::irregular_vertices`] for which `is_used` holds.
+    /// Those of the [`Self::irregular_vertices`] for which `is_used` is true; `used` is the number of used
+    /// vertices.
     pub fn irregular_among(
         &self,
         is_used: impl Fn(VertexId) -> bool,
@@ -220,7 +221,8 @@ impl Source {
         }
     }
 
-    /// Return whether the faces close, by index or along lines; all imported ones do.
+    /// Return whether each edge cancels with opposite ones, by index or along lines; true for all imported
+    /// meshes.
     pub fn closes(&self) -> bool {
         let Some(mesh) = self.mesh() else {
             return true;
@@ -229,13 +231,13 @@ impl Source {
         self.open_vertices().is_empty() || self.topology().is_none_or(|t| open(t).is_empty())
     }
 
-    /// Return whether no face was left out and no vertex welded at import.
+    /// Return whether import left out no face of the mesh and welded no vertices; false for a half-space.
     pub fn is_as_given(&self) -> bool {
         !self.is_welded() && self.mesh().is_some_and(|m| m.numbers.is_none())
     }
 
-    /// Return whether the given mesh closes wherever rounding takes its corners: no face was left out, no
-    /// corner lies in an edge of another face, and welded vertices have equal doubles.
+    /// Return whether the given mesh stays closed wherever rounding moves its corners: no face was left out,
+    /// no corner lies inside an edge of another face, and welded vertices have equal doubles.
     pub fn closes_when_moved(&self) -> bool {
         self.mesh().is_none_or(|m| m.numbers.is_none())
             && self.open_vertices().is_empty()
@@ -246,8 +248,8 @@ impl Source {
         self.findings.iter().any(|f| f.code == WELDED)
     }
 
-    /// Vertices welded with others whose doubles differ, sorted: faces around them do not have the corners
-    /// as given.
+    /// The vertices that were welded with others of different doubles, ascending: faces around them do not
+    /// have exactly the corners that were given.
     pub fn blurred_vertices(&self) -> &[VertexId] {
         match self.mesh() {
             Some(mesh) if self.is_welded() => self.blurred.get_or_make(|| mesh.blurred()),
@@ -255,18 +257,19 @@ impl Source {
         }
     }
 
-    /// Whether it crosses itself once its doubles along some axes are those of the lattice, if it is known.
+    /// Whether the mesh crosses itself when its coordinates along these axes are replaced by those of the
+    /// lattice; empty if not yet computed.
     pub fn crosses_once_snapped(&self, axes: [bool; 3]) -> &Cached<bool> {
         let [x, y, z] = axes.map(usize::from);
         &self.snapped[x + 2 * y + 4 * z]
     }
 
-    /// The pairs of faces that touch on the lattice but share no edge, if they are known.
+    /// The pairs of faces that touch on the lattice but share no edge; empty if not yet computed.
     pub fn close_pairs(&self) -> &Cached<Vec<[u32; 2]>> {
         &self.close
     }
 
-    /// The half-edges' mates, paired on first use; `None` for a half-space.
+    /// The pairing of half-edges with their mates, computed on first use; `None` for a half-space.
     pub fn topology(&self) -> Option<&Topology> {
         let mesh = self.mesh()?;
         Some(
@@ -275,10 +278,10 @@ impl Source {
         )
     }
 
-    /// The supporting plane of a face.
+    /// The plane of a face.
     ///
     /// # Panics
-    /// Never for faces of this source: those without area were left out at import.
+    /// Never for faces of this source: import left out all faces without area.
     pub fn plane(&self, face: FaceId) -> Arc<Plane> {
         match &self.shape {
             Shape::Mesh(mesh) => {
@@ -290,7 +293,8 @@ impl Source {
         }
     }
 
-    /// The coefficients of a face's plane up to a common factor, for the keys of lines in it.
+    /// The coefficients of a face's plane modulo primes and up to a common factor, for the keys of lines in
+    /// the plane.
     pub fn plane_residues(&self, face: FaceId) -> PlaneResidues<'_> {
         match &self.shape {
             Shape::Mesh(mesh) => PlaneResidues::through(&mesh.corners(face)),
@@ -309,7 +313,7 @@ impl Source {
         }
     }
 
-    /// The part of a face inside a cell, if it has an area.
+    /// The part of a face inside a cell, or `None` if it has no area.
     pub fn clip(&self, face: FaceId, cell: &Cell) -> Option<Polygon> {
         match &self.shape {
             Shape::Mesh(mesh) => {
@@ -320,7 +324,7 @@ impl Source {
         }
     }
 
-    /// The lattice box around some faces; `None` without any.
+    /// The lowest and highest corner of the lattice box around these faces; `None` if there are no faces.
     pub fn box_around(&self, faces: &[FaceId]) -> Option<(Lattice, Lattice)> {
         let boxes = faces.iter().map(|face| self.face_box(*face));
         boxes.reduce(|(low, high), (l, h)| {
@@ -329,7 +333,7 @@ impl Source {
         })
     }
 
-    /// The lattice box around a face.
+    /// The lowest and highest corner of the lattice box around a face; the whole lattice for a half-space.
     pub fn face_box(&self, face: FaceId) -> (Lattice, Lattice) {
         match &self.shape {
             Shape::Mesh(mesh) => mesh.face_box(face),
@@ -337,14 +341,15 @@ impl Source {
         }
     }
 
-    /// The number a face had in its input.
+    /// The index of a face in the input, before import left out any faces.
     pub fn number(&self, face: FaceId) -> u32 {
         self.mesh()
             .and_then(|m| m.numbers.as_ref())
             .map_or(face.0, |n| n[face.place()])
     }
 
-    /// The smallest cell around the source; `None` if it is empty.
+    /// The smallest cell around all vertices, or the cell of the whole lattice for a half-space; `None` if
+    /// there are no vertices.
     pub fn cell(&self) -> Option<Cell> {
         *self.cell.get_or_make(|| match &self.shape {
             Shape::Mesh(mesh) => mesh.bounds().map(|(low, high)| Cell::around(&low, &high)),
@@ -368,11 +373,12 @@ mod tests {
             source.expect("it is closed").closes_when_moved()
         };
         assert!(closes([1.0; 3], &faces));
-        // One face has another corner, which is welded.
+        // One face has a corner of its own, which is welded.
         let loose = [[4, 2, 1], faces[1], faces[2], faces[3]];
         assert!(closes([0.0; 3], &loose));
         assert!(!closes([0.1, 0.0, 0.0], &loose));
-        // An edge is divided in one face, without and with an extra face that has no area.
+        // One face has an edge that a vertex divides, first without and then with a further face that has no
+        // area.
         let divided = [[0, 2, 4], [4, 2, 1], faces[1], faces[2], faces[3]];
         assert!(!closes([1.0, 0.0, 0.0], &divided));
         let flat = [&divided[..], &[[0, 4, 1]]].concat();

@@ -1,23 +1,23 @@
-//! The connected surfaces of a mesh, and counts of its parts.
+//! The connected surfaces of a mesh, and counts of vertices, edges and surfaces.
 
 use super::disjoint::DisjointSets;
 use super::handle::VertexId;
 use crate::interrupt::poll;
 
-/// Counts of the different parts of a mesh.
+/// The numbers of vertices, edges, open edges and surfaces of a mesh.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Counts {
-    /// Vertices that a face uses.
+    /// The number of vertices that any face uses.
     pub vertices: usize,
-    /// Pairs of vertices that a face connects, in either direction.
+    /// The number of pairs of vertices that a face's edge connects, in either direction.
     pub edges: usize,
-    /// Directed edges that do not occur exactly once, or have no opposite.
+    /// The number of directed edges that occur several times, or have no opposite.
     pub open_edges: usize,
-    /// Connected surfaces.
+    /// The number of connected surfaces.
     pub surfaces: usize,
 }
 
-/// Counts the parts of a mesh, by index.
+/// Counts vertices, edges, open edges and surfaces of a mesh, by index.
 pub fn counts(faces: &[[VertexId; 3]], vertex_count: usize) -> Counts {
     let fans = Fans::new(faces, vertex_count);
     let mut edges = 0;
@@ -42,7 +42,7 @@ pub fn counts(faces: &[[VertexId; 3]], vertex_count: usize) -> Counts {
     }
 }
 
-/// Count the open directions of an edge; a loop from a vertex to itself is open.
+/// Returns the number of open directions of an edge; a loop from a vertex to itself counts as one.
 fn open(uses: &[(VertexId, bool)], is_loop: bool) -> usize {
     let forth = uses.iter().filter(|(_, forth)| *forth).count();
     match (forth, uses.len() - forth) {
@@ -61,9 +61,9 @@ fn used(faces: &[[VertexId; 3]], vertex_count: usize) -> usize {
     is_used.into_iter().filter(|&used| used).count()
 }
 
-/// The number of each face's surface: faces that share a vertex are connected.
+/// For each face, the number of its surface: faces that share a vertex belong to one surface.
 ///
-/// Surfaces are numbered in the order of their lowest vertices.
+/// Surfaces are numbered from 0, in the order of their lowest-numbered vertices.
 pub fn surfaces(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<u32> {
     let mut sets = DisjointSets::of_triangles(vertex_count, faces);
     let mut number = vec![None; vertex_count];
@@ -77,10 +77,10 @@ pub fn surfaces(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<u32> {
     faces.iter().filter_map(number_of).collect()
 }
 
-/// The edges at the lower of their two vertices, in compressed rows.
+/// Edges, each stored at the lower-numbered of its two vertices, in compressed rows.
 struct Fans {
     starts: Vec<u32>,
-    /// The higher vertex, and whether the edge runs towards it.
+    /// The higher-numbered vertex of each edge, and whether the edge runs towards it.
     edges: Vec<(VertexId, bool)>,
 }
 

@@ -1,18 +1,21 @@
-//! Linear passes over arrays, in tasks of a fixed size, so that results never depend on threads.
+//! Linear passes over arrays, in tasks of a fixed size, so that results never depend on the number of
+//! threads.
 
 use rayon::prelude::*;
 
 use crate::interrupt::{carried, handed_over, spend, Task};
 
-/// Elements of one task: some 50 µs of work, far above the cost of scheduling it.
+/// The number of elements of one task: about 50 µs of work, far above the cost of scheduling it.
 pub const CHUNK: usize = 1 << 14;
 
-/// Return whether this thread is in a pool: outside of one, sharing work costs more than most calls.
+/// Return whether this thread belongs to a thread pool: outside of one, sharing work costs more than most
+/// calls.
 pub fn in_pool() -> bool {
     rayon::current_thread_index().is_some()
 }
 
-/// A value for each chunk of an array, in order; `value` gets the index of the chunk's first element.
+/// The results of `value` for each chunk of an array, in order; `value` gets the index of the chunk's first
+/// element, and the chunk.
 pub fn each_chunk<T: Sync, R: Send>(
     items: &[T],
     value: impl Fn(usize, &[T]) -> R + Sync,
@@ -33,7 +36,8 @@ pub fn each_chunk<T: Sync, R: Send>(
     items.par_chunks(CHUNK).enumerate().map(value).collect()
 }
 
-/// As [`each_chunk`], and fills the same chunk of another array of the same length.
+/// The results of `value` for each chunk of an array, in order; `value` also fills the same chunk of `out`,
+/// an array of the same length.
 pub fn fill_chunks<T: Sync, U: Send, R: Send>(
     items: &[T],
     out: &mut [U],
@@ -57,7 +61,7 @@ pub fn fill_chunks<T: Sync, U: Send, R: Send>(
     chunks.enumerate().map(value).collect()
 }
 
-/// A value for each item, in order, with a task of this worth for each.
+/// The results of `value` for each item, in order; `worth` says whether items are shared among threads.
 pub fn each<T: Send, R: Send>(
     worth: Worth,
     items: Vec<T>,
@@ -74,19 +78,19 @@ pub fn each<T: Send, R: Send>(
     }
 }
 
-/// The worth of sharing work among threads.
+/// How much work there is: whether it pays to share it among threads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Worth {
-    /// Less than the cost of scheduling it.
+    /// Less work than the cost of scheduling a task.
     Nothing,
-    /// Enough for a task in a pool.
+    /// Enough work for a task if the caller runs in a pool.
     Task,
-    /// Enough to wake the threads of a pool.
+    /// Enough work to wake the threads of a pool.
     Pool,
 }
 
 impl Worth {
-    /// `Pool` if it pays, else `Nothing`.
+    /// `Pool` if `pays`, else `Nothing`.
     #[must_use]
     pub const fn pool_if(pays: bool) -> Self {
         if pays {
@@ -97,7 +101,7 @@ impl Worth {
     }
 }
 
-/// Two values, made at the same time where that pays.
+/// The results of both functions, computed at the same time if `worth` says that it pays.
 pub fn both<A: Send, B: Send>(
     worth: Worth,
     a: impl FnOnce() -> A + Send,
@@ -139,7 +143,7 @@ mod tests {
         }
     }
 
-    /// A caller that runs all shares itself.
+    /// A caller that runs all of the work itself.
     const ALONE: CallerHooks = CallerHooks {
         wants_to_stop: || false,
         hand_over: |task, share| task.run(share),

@@ -1,9 +1,9 @@
-//! The terrains in a mesh in doubles: pieces that each line along an axis meets in at most one triangle, as
+//! Terrains in a mesh in doubles: pieces that each line along an axis meets in at most one triangle, such as
 //! the needles between a hole and the border of a face, or those of a cone.
 //!
-//! A piece is found by a guess and proved exactly: seen along the axis all its triangles turn the same way,
-//! and its outline winds at most once around each point. So its triangles cross only triangles of other
-//! pieces.
+//! A piece is found by a heuristic and proved exactly: in the projection along the axis, all its triangles
+//! turn the same way, and its outline winds at most once around each point. So its triangles can cross only
+//! triangles of other pieces.
 //!
 //! # Source
 //! De Berg, Cheong, van Kreveld, Overmars, *Computational Geometry*, third edition, section 9: a
@@ -22,25 +22,25 @@ use crate::mesh::faces::{edges, Faces};
 use crate::mesh::handle::VertexId;
 use crate::mesh::topology::NONE;
 
-/// A needle is at least this many times as long as high. The boxes of other triangles meet few others, and
-/// comparing these is faster than finding terrains.
+/// The least ratio of length to height of a needle. The boxes of other triangles overlap only a small number
+/// of boxes, and comparing these is faster than finding terrains.
 const MIN_NEEDLE_RATIO: f64 = 16.0;
 
-/// The most needles that are compared pairwise, without terrains.
+/// The largest number of needles that are compared pairwise, without looking for terrains.
 const MAX_NEEDLES_COMPARED: usize = 256;
 
-/// Pieces of fewer triangles are not worth a sweep.
+/// The least number of triangles of a piece for which a sweep pays.
 const MIN_TRIANGLES_SWEPT: usize = 4;
 
-/// The tangent of the largest angle between normals of mates in one piece: more than in any round body,
-/// less than at a corner meant as one.
+/// The tangent of the largest angle between normals of adjoining triangles in one piece: more than in any
+/// round body, less than at an intended corner.
 const MAX_BEND_TANGENT: f64 = 0.5;
 
-/// For each of some triangles, the number of its terrain; `NONE` where none is proved, and for all but
-/// needles.
+/// For each of the given triangles, the number of its terrain; `NONE` if none is proved, and for all
+/// triangles but needles.
 ///
 /// # Cost
-/// One look at each triangle, a sort of the needles, and a sweep over the outline of each piece.
+/// One test of each triangle, a sort of the needles, and a sweep over the outline of each piece.
 pub fn terrains(faces: &Faces, some: &[u32]) -> Vec<u32> {
     let is_thin = |t: &u32| is_needle(&faces.corners(*t));
     let needles: Vec<u32> = some.iter().copied().filter(is_thin).collect();
@@ -79,7 +79,7 @@ fn needles_terrains(faces: &Faces, needles: &[u32]) -> Vec<u32> {
     search.pieces.into_iter().map(proved).collect()
 }
 
-/// Return whether a triangle is many times as long as high.
+/// Return whether a triangle is at least `MIN_NEEDLE_RATIO` times as long as high.
 pub fn is_needle(triangle: &Triangle) -> bool {
     let [a, b, c] = triangle;
     let square = |p: &Point, q: &Point| (0..3).map(|i| (p[i] - q[i]) * (p[i] - q[i])).sum();
@@ -88,17 +88,17 @@ pub fn is_needle(triangle: &Triangle) -> bool {
     longest * longest > MIN_NEEDLE_RATIO * MIN_NEEDLE_RATIO * dot(&n, &n)
 }
 
-/// Needles, by their index among these.
+/// The search for pieces among needles, which it numbers by their index in `needles`.
 struct Search<'a> {
     faces: &'a Faces<'a>,
     needles: &'a [u32],
-    /// The triangle of each directed edge.
+    /// The needle of each directed edge.
     owners: HashMap<[VertexId; 2], u32>,
-    /// The piece of each needle.
+    /// The number of each needle's piece, or `NONE`.
     pieces: Vec<u32>,
 }
 
-/// The axis along which a piece is seen, and the way its triangles turn.
+/// The axis along which a piece is projected, and the way its triangles turn in the projection.
 #[derive(Clone, Copy)]
 struct View {
     axis: usize,
@@ -106,7 +106,7 @@ struct View {
 }
 
 impl View {
-    /// The axis along which a triangle is seen best.
+    /// The axis along which a triangle's projection is largest.
     fn of(triangle: &Triangle) -> Self {
         let axis = Facing::of(triangle).main_axis();
         let way = turn(seen_along(triangle, axis));
@@ -142,7 +142,7 @@ impl<'a> Search<'a> {
         self.faces.corners(self.needles[at as usize])
     }
 
-    /// The triangles by area, largest first: rounding turned their normals least.
+    /// The needles by area, largest first: rounding has changed the directions of their normals least.
     fn largest_first(&self) -> Vec<u32> {
         let squares = (0..as_number(self.needles.len())).map(|at| {
             let n = normal(&self.corners(at));
@@ -153,7 +153,8 @@ impl<'a> Search<'a> {
         sorted.into_iter().map(|(_, at)| at).collect()
     }
 
-    /// Numbers the triangles of a piece, and lists them; those without area belong to any.
+    /// Numbers and lists the needles of the piece around a first one; needles without area may belong to any
+    /// piece.
     fn piece_around(&mut self, first: u32, view: View, number: u32) -> Vec<u32> {
         self.pieces[first as usize] = number;
         let mut piece = vec![first];
@@ -188,7 +189,8 @@ impl<'a> Search<'a> {
         edges(self.triangle(at)).map(|[from, to]| self.owners.get(&[to, from]).copied())
     }
 
-    /// The edges of only one triangle of a piece, seen so that all triangles turn left.
+    /// The edges that only one needle of a piece has, in the projection and directed so that all needles turn
+    /// left.
     fn outline(&self, piece: &[u32], view: View) -> Vec<[Place; 2]> {
         let number = self.pieces[piece[0] as usize];
         let mut outline = Vec::new();
@@ -206,7 +208,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Return whether the surface between these two normals is hardly bent.
+/// Return whether the angle between two normals is small: its tangent is at most [`MAX_BEND_TANGENT`].
 fn is_smooth(a: &Point, b: &Point) -> bool {
     let (along, across) = (dot(a, b), cross(a, b));
     along > 0.0 && dot(&across, &across) <= MAX_BEND_TANGENT * MAX_BEND_TANGENT * along * along
@@ -216,7 +218,8 @@ fn is_smooth(a: &Point, b: &Point) -> bool {
 mod tests {
     use super::*;
 
-    /// A plate with a hole of many sides, lifted by a function: top and bottom of the ring around the hole.
+    /// The top and bottom of a ring around a hole of `count` sides in a plate, lifted by a function of x and
+    /// y.
     fn ring(count: u32, height: impl Fn(f64, f64) -> f64) -> (Vec<Point>, Vec<[VertexId; 3]>) {
         let mut vertices = Vec::new();
         for radius in [1.0, 3.0] {
@@ -284,7 +287,7 @@ mod tests {
         triangles.extend(shifted.collect::<Vec<_>>());
         let apart = found(&vertices, &triangles);
         assert!(apart[0] != NONE && apart[400] != NONE && apart[0] != apart[400]);
-        // A bridge from the outer border of one to the inner border of the other makes them one piece.
+        // A bridge from the outer border of one ring to the inner border of the other makes them one piece.
         triangles.extend(VertexId::rows([[201, 200, 400], [201, 400, 401]]));
         assert!(found(&vertices, &triangles)
             .iter()

@@ -1,4 +1,4 @@
-//! The mates of half-edges.
+//! Half-edges of triangle meshes, paired with their mates: the half-edges that run the other way.
 
 use super::handle::VertexId;
 use crate::arith::convert::as_number;
@@ -7,7 +7,7 @@ use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
 
-/// "No mate."
+/// Stands for the mate of a half-edge that has none.
 pub const NONE: u32 = u32::MAX;
 
 /// The half-edges of a triangle mesh, paired with their opposites.
@@ -20,7 +20,7 @@ pub struct Topology {
 }
 
 impl Topology {
-    /// Pairs each directed edge with an opposite one, in the order of faces.
+    /// Pairs each half-edge with a half-edge that runs the other way, in the order of the faces.
     pub fn new(faces: &[[VertexId; 3]], vertex_count: usize) -> Self {
         let outgoing = Outgoing::new(faces, vertex_count);
         let mut mates = vec![NONE; 3 * faces.len()];
@@ -54,17 +54,17 @@ impl Topology {
         Self { mates, irregular }
     }
 
-    /// The mate of each half-edge, or [`NONE`].
+    /// For each half-edge, the number of its mate, or [`NONE`].
     pub fn mates(&self) -> &[u32] {
         &self.mates
     }
 
-    /// Vertices on edges of more than two faces, or with several fans, sorted.
+    /// The vertices on edges of more than two faces, or with several fans of faces, ascending.
     pub fn irregular(&self) -> &[VertexId] {
         &self.irregular
     }
 
-    /// The ends of half-edges without a mate, sorted.
+    /// The end vertices of half-edges without a mate, ascending.
     pub fn open_vertices(&self, faces: &[[VertexId; 3]]) -> Vec<VertexId> {
         let ends = |half: usize| <[VertexId; 2]>::from(ends(faces, as_number(half)));
         let mut open: Vec<VertexId> = self.unpaired().flat_map(ends).collect();
@@ -73,13 +73,14 @@ impl Topology {
         open
     }
 
-    /// The half-edges without a mate.
+    /// The numbers of the half-edges without a mate, ascending.
     pub fn unpaired(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.mates.len()).filter(|h| self.mates[*h] == NONE)
     }
 }
 
-/// Count the half-edges that leave a vertex in the fan of one of them; an open fan gives `usize::MAX`.
+/// Returns the number of half-edges that leave a vertex in the fan of one of them; `usize::MAX` if the fan is
+/// open.
 fn turns(start: u32, mate: impl Fn(u32) -> u32) -> usize {
     let mut half = start;
     let mut count = 0;
@@ -96,14 +97,14 @@ fn turns(start: u32, mate: impl Fn(u32) -> u32) -> usize {
     }
 }
 
-/// The end vertices of a half-edge.
+/// The start and the end vertex of a half-edge.
 pub fn ends(faces: &[[VertexId; 3]], half: u32) -> (VertexId, VertexId) {
     let face = &faces[half as usize / 3];
     let corner = half as usize % 3;
     (face[corner], face[(corner + 1) % 3])
 }
 
-/// A half-edge that leaves a vertex.
+/// A half-edge that leaves a vertex, by its end vertex and its number.
 #[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 struct OutgoingHalfEdge {
     head: VertexId,
@@ -146,7 +147,7 @@ impl Outgoing {
         &self.halves[row[0] as usize..row[1] as usize]
     }
 
-    /// The half-edges from one vertex to another.
+    /// The half-edges from vertex `tail` to vertex `head`.
     fn between(&self, tail: VertexId, head: VertexId) -> &[OutgoingHalfEdge] {
         let row = self.of(tail);
         let first = row.partition_point(|half| half.head < head);
@@ -155,9 +156,9 @@ impl Outgoing {
     }
 }
 
-/// The half-edges that remain after opposite edges cancel along each line of the lattice.
+/// The numbers of the half-edges that remain after opposite edges cancel along each line of the lattice.
 ///
-/// None of a closed surface with T-junctions remain: on each line the pieces of its edges cancel.
+/// None remain for a closed surface with T-junctions: on each line, parts of its edges cancel.
 pub fn open_edges(
     vertices: &[Lattice],
     faces: &[[VertexId; 3]],
@@ -204,7 +205,8 @@ impl LineEdge {
     }
 }
 
-/// The primitive direction from a to b with a positive lead, its lead axis and its sense.
+/// The primitive direction from a to b with its first nonzero component made positive, the axis of that
+/// component, and 1 or −1 for its original sign; `None` if a and b are equal.
 fn primitive_direction(a: &Lattice, b: &Lattice) -> Option<([i64; 3], usize, i32)> {
     let d = each_axis(|i| b[i] - a[i]);
     let axis = d.iter().position(|c| *c != 0)?;

@@ -1,4 +1,4 @@
-//! Triangle meshes on the lattice.
+//! Triangle meshes on the lattice, with their original doubles.
 
 use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 
@@ -10,26 +10,26 @@ use crate::geometry::axes::each_axis;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::side::Side;
 
-/// Lattice triangles, and the doubles they came from.
+/// Triangles on the lattice, and the doubles from which their vertices were snapped.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct TriangleMesh {
-    /// Vertices in lattice steps.
+    /// The vertices in lattice steps.
     pub vertices: Vec<Lattice>,
-    /// The original doubles of the vertices.
+    /// The original doubles of the vertices, in model units.
     pub doubles: Vec<[f64; 3]>,
-    /// Triangles, counterclockwise as seen from outside.
+    /// The triangles, counterclockwise as seen from outside.
     pub faces: Vec<[VertexId; 3]>,
-    /// The index of each face in the input, if faces were left out.
+    /// The index of each face in the input; `None` if no faces were left out.
     pub numbers: Option<Vec<u32>>,
 }
 
 impl TriangleMesh {
-    /// All faces, ascending.
+    /// The numbers of all faces, ascending.
     pub fn face_ids(&self) -> impl Iterator<Item = FaceId> {
         FaceId::all().take(self.faces.len())
     }
 
-    /// The corners of a face.
+    /// The corners of a face, in lattice steps.
     #[inline]
     pub fn corners(&self, face: FaceId) -> [Lattice; 3] {
         let [a, b, c] = self.vertices_of(face);
@@ -37,13 +37,13 @@ impl TriangleMesh {
         [at(a), at(b), at(c)]
     }
 
-    /// The numbers of a face's corners.
+    /// The vertex numbers of a face's corners.
     #[inline]
     pub fn vertices_of(&self, face: FaceId) -> [VertexId; 3] {
         self.faces[face.place()]
     }
 
-    /// The lattice box around a face.
+    /// The lowest and highest corner of the lattice box around a face.
     pub fn face_box(&self, face: FaceId) -> (Lattice, Lattice) {
         let [a, b, c] = self.corners(face);
         let least = |i: usize| a[i].min(b[i]).min(c[i]);
@@ -51,10 +51,10 @@ impl TriangleMesh {
         ([least(0), least(1), least(2)], [most(0), most(1), most(2)])
     }
 
-    /// Return whether some faces lie in one plane.
+    /// Return whether the given faces lie in one plane; true for no faces.
     ///
     /// # Cost
-    /// Stops at the first face off the plane of the first.
+    /// Stops at the first face that is not in the plane of the first face.
     pub fn are_in_one_plane(&self, mut faces: impl Iterator<Item = FaceId>) -> bool {
         let Some([a, b, c]) = faces.next().map(|face| self.corners(face)) else {
             return true;
@@ -66,12 +66,12 @@ impl TriangleMesh {
         faces.all(|face| self.corners(face).iter().all(lies_in))
     }
 
-    /// For each vertex, the first vertex at its place on the lattice.
+    /// For each vertex, the first vertex at the same lattice point.
     pub fn firsts(&self) -> Vec<VertexId> {
         firsts(&self.vertices)
     }
 
-    /// The first vertices at places where other vertices have other doubles, sorted.
+    /// The first vertex at each lattice point where another vertex has other doubles, ascending.
     pub fn blurred(&self) -> Vec<VertexId> {
         let firsts = VertexId::all().zip(self.firsts());
         let bits = |v: VertexId| self.doubles[v.place()].map(f64::to_bits);
@@ -82,16 +82,17 @@ impl TriangleMesh {
         blurred
     }
 
-    /// The largest distance of a coordinate from the double it came from, rounded.
+    /// The largest difference, in any coordinate, between a vertex on the lattice and its original double, in
+    /// model units.
     ///
-    /// More than half a step if the lattice was refined since.
+    /// More than half a step if the lattice has been refined after import.
     pub fn snapped_by(&self, pitch: Pitch) -> f64 {
         let pairs = self.doubles.iter().zip(&self.vertices);
         let distances = pairs.flat_map(|(p, v)| each_axis(|i| p[i] - pitch.coordinate(v[i])));
         distances.fold(0.0, |most, d| most.max(d.abs()))
     }
 
-    /// The lattice box around all vertices; `None` without any.
+    /// The lowest and highest corner of the lattice box around all vertices; `None` if there are none.
     pub fn bounds(&self) -> Option<(Lattice, Lattice)> {
         let first = *self.vertices.first()?;
         let grow = |(low, high): (Lattice, Lattice), p: &Lattice| {
@@ -104,7 +105,7 @@ impl TriangleMesh {
     }
 }
 
-/// For each point, the number of the first point at its place.
+/// For each lattice point of a list, the index of the first point equal to it.
 pub fn firsts(points: &[Lattice]) -> Vec<VertexId> {
     let mut first: HashMap<Lattice, VertexId> =
         HashMap::with_capacity_and_hasher(points.len(), FxBuildHasher);

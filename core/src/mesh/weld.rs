@@ -1,21 +1,21 @@
-//! Merges points with equal coordinates.
+//! Welding: merges points with equal coordinates.
 
 use super::handle::VertexId;
 use crate::arith::convert::{as_number, low_limb};
 use crate::interrupt::poll;
 
-/// The different points among some, in the order in which they first occur.
+/// The result of welding: the different points of a list, in the order in which they first occur.
 #[derive(Debug)]
 pub struct Welded {
-    /// Each point once, with 0.0 for -0.0.
+    /// Each different point once, with 0.0 instead of -0.0.
     pub points: Vec<[f64; 3]>,
-    /// For each given point, the number of its equal in `points`.
+    /// For each given point, the index of the equal point in `points`.
     pub same: Vec<VertexId>,
 }
 
-/// Finds the points whose coordinates are equal as numbers.
+/// Merges the points whose coordinates are equal as numbers.
 ///
-/// Linear in the points. There must be fewer than 2^32.
+/// Takes time linear in the number of points, which must be below 2^32.
 ///
 /// # Example
 /// ```
@@ -40,28 +40,28 @@ pub fn welded(points: &[[f64; 3]]) -> Welded {
     }
 }
 
-/// Points without repetition, and a table that finds them by their bits.
+/// Different points, and a hash table that finds them by their bits.
 #[derive(Debug, Default)]
 struct PointTable {
     points: Vec<[f64; 3]>,
-    /// Their number is a power of two; at most half are taken.
+    /// The number of slots is a power of two; at most half of them are occupied.
     slots: Vec<Slot>,
 }
 
-/// A place in the table. It has no coordinates, so that processor caches have room for four times as many
-/// points.
+/// A slot of the hash table. It stores no coordinates, so that processor caches have room for four times as
+/// many points.
 #[derive(Clone, Copy, Debug, Default)]
 struct Slot {
-    /// The number of a point plus one, or 0 if the slot is free.
+    /// The index of a point plus one, or 0 if the slot is free.
     next: u32,
     hash: u32,
 }
 
-/// Slots of a table with its first point.
+/// The number of slots of a table when its first point is added.
 const INITIAL_SLOTS: usize = 64;
 
 impl PointTable {
-    /// The number of a point; a new one if no equal point is known.
+    /// The index of a point, which is added if no equal point is in the table.
     fn number_of(&mut self, point: [f64; 3]) -> VertexId {
         if self.slots.len() <= 2 * self.points.len() {
             self.grow();
@@ -81,7 +81,7 @@ impl PointTable {
         VertexId(next - 1)
     }
 
-    /// Makes room for twice as many points.
+    /// Doubles the number of slots.
     fn grow(&mut self) {
         let larger = (2 * self.slots.len()).max(INITIAL_SLOTS);
         let slots = std::mem::replace(&mut self.slots, vec![Slot::default(); larger]);
@@ -94,7 +94,7 @@ impl PointTable {
         }
     }
 
-    /// The slot at which the search for a hash begins.
+    /// The index of the slot at which the search for a hash begins.
     fn home_slot(&self, hash: u32) -> usize {
         hash as usize & (self.slots.len() - 1)
     }
@@ -109,23 +109,23 @@ fn are_same([a, b, c]: &[f64; 3], [x, y, z]: &[f64; 3]) -> bool {
     a.to_bits() == x.to_bits() && b.to_bits() == y.to_bits() && c.to_bits() == z.to_bits()
 }
 
-/// A hash whose bits all depend on all bits of a point.
+/// A hash of a point, in which each bit depends on all bits of the coordinates.
 ///
-/// Coordinates of single precision end in zeros, which a product alone would keep.
+/// Coordinates of single precision end in zeros, and a product alone would end in zeros, too.
 fn hash_of([x, y, z]: &[f64; 3]) -> u32 {
     let first = folded(x.to_bits() ^ ODD[0], y.to_bits() ^ ODD[1]);
     let [.., a, b, c, d] = folded(first ^ z.to_bits(), ODD[2]).to_be_bytes();
     u32::from_be_bytes([a, b, c, d])
 }
 
-/// The first bits of the golden ratio, of √2 and of √3.
+/// The first 64 binary digits of the golden ratio, of √2 and of √3.
 const ODD: [u64; 3] = [
     0x9e37_79b9_7f4a_7c15,
     0x6a09_e667_f3bc_c909,
     0xbb67_ae85_84ca_a73b,
 ];
 
-/// The exclusive or of the halves of a product.
+/// The exclusive or of the two halves of a 128-bit product.
 fn folded(a: u64, b: u64) -> u64 {
     let product = u128::from(a) * u128::from(b);
     low_limb(product >> 64) ^ low_limb(product)
@@ -135,7 +135,7 @@ fn folded(a: u64, b: u64) -> u64 {
 mod tests {
     use super::{welded, PointTable, VertexId};
 
-    /// Points on a grid of single precision: their bits differ little, and end in zeros.
+    /// Points on a grid of single precision: their bits differ little and end in zeros.
     fn grid(side: u8) -> Vec<[f64; 3]> {
         let along = || (0..side).map(|k| f64::from(f32::from(k) * 0.1));
         let across = |x| along().flat_map(move |y| along().map(move |z| [x, y, z]));
@@ -170,7 +170,7 @@ mod tests {
             (place + slots.len() - home_slot) % slots.len()
         };
         let taken: Vec<_> = (0..slots.len()).filter(|&k| slots[k].next != 0).collect();
-        // With half of the slots taken, a random hash ends half a slot from its home on average.
+        // With half of the slots occupied, a random hash ends half a slot from its home slot on average.
         assert!(taken.iter().map(|&place| away(place)).sum::<usize>() < taken.len());
     }
 

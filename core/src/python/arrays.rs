@@ -1,4 +1,4 @@
-//! Numpy arrays to rows and back.
+//! Converts numpy arrays to rows, and rows to arrays.
 
 use std::borrow::Cow;
 
@@ -9,7 +9,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::fill_chunks;
 
-/// The rows of an (n, k) array: the array's own memory, or a copy if they are not contiguous.
+/// Returns the rows of an (n, k) array: the array's own memory, or a copy if they are not contiguous.
 pub fn rows<'a, T: Element + Copy, const K: usize>(
     array: &'a PyReadonlyArray2<'_, T>,
     name: &str,
@@ -19,7 +19,7 @@ pub fn rows<'a, T: Element + Copy, const K: usize>(
         let text = format!("{name} must have shape (n, {K}), not {:?}", view.shape());
         return Err(Error::new(ErrorKind::Shape, text));
     }
-    // A slice of an array by columns has its columns one after another.
+    // An array that was sliced by columns stores its columns one after another.
     if let (true, Ok(flat)) = (view.is_standard_layout(), array.as_slice()) {
         return Ok(Cow::Borrowed(flat.as_chunks().0));
     }
@@ -27,7 +27,7 @@ pub fn rows<'a, T: Element + Copy, const K: usize>(
     Ok(Cow::Owned(view.rows().into_iter().map(row).collect()))
 }
 
-/// The numbers of an array, row by row: its own memory, or a copy if they lie otherwise.
+/// Returns the numbers of an array, row by row: its own memory, or a copy if that has another order.
 pub fn flat<'a, T: Element + Copy>(array: &'a PyReadonlyArray2<'_, T>) -> Cow<'a, [T]> {
     let view = array.as_array();
     match array.as_slice() {
@@ -36,10 +36,10 @@ pub fn flat<'a, T: Element + Copy>(array: &'a PyReadonlyArray2<'_, T>) -> Cow<'a
     }
 }
 
-/// Triangles that name only vertices that exist.
+/// Returns triangles as vertex numbers, each below `vertex_count`.
 ///
 /// # Errors
-/// `Shape` if they have not three corners each, `IndexOutOfRange`.
+/// `Shape` if the rows have not three numbers each, `IndexOutOfRange` if a vertex does not exist.
 pub fn triangles_of(
     triangles: &PyReadonlyArray2<'_, i64>,
     vertex_count: usize,
@@ -63,7 +63,7 @@ pub fn triangles_of(
     triangles.iter().enumerate().map(row).collect()
 }
 
-/// Indices as Python has them.
+/// Converts rows of indices to 64-bit integers, as Python's arrays have them.
 pub fn wide<T: Copy + Into<i64> + Sync, const K: usize>(rows: &[[T; K]]) -> Vec<[i64; K]> {
     let mut wide = vec![[0; K]; rows.len()];
     fill_chunks(rows, &mut wide, |_, rows, wide| {
@@ -74,7 +74,7 @@ pub fn wide<T: Copy + Into<i64> + Sync, const K: usize>(rows: &[[T; K]]) -> Vec<
     wide
 }
 
-/// An (n, k) array of the same memory as the rows.
+/// Makes an (n, k) array of rows, without copying them.
 pub fn array<T: Element, const K: usize>(
     py: Python<'_>,
     rows: Vec<[T; K]>,

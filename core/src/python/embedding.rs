@@ -1,4 +1,4 @@
-//! Crossings of a mesh in doubles with itself, and meshes in single precision.
+//! Finds crossings of a mesh with itself, and rounds meshes to single precision.
 
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -14,7 +14,7 @@ use crate::mesh::faces::Faces;
 use crate::mesh::grid::Pitch;
 use crate::mesh::handle::VertexId;
 
-/// The pairs of triangles that cross or overlap, and the triangles without area.
+/// Return the pairs of triangles that cross or overlap, and the triangles without area.
 #[pyfunction]
 pub fn mesh_faults<'py>(
     py: Python<'py>,
@@ -33,7 +33,7 @@ pub fn mesh_faults<'py>(
     Ok(dict)
 }
 
-/// A mesh closed by index, rounded to single precision and mended.
+/// Return a mesh, closed by index, rounded to single precision, without the crossings that this makes.
 #[pyfunction]
 pub fn mesh_in_single<'py>(
     py: Python<'py>,
@@ -47,8 +47,8 @@ pub fn mesh_in_single<'py>(
     settled_mesh(py, mesh, settled)
 }
 
-/// A mesh closed by index, or once it is welded, whose vertices a transform moved, mended where that
-/// made it cross itself; `None` if it stays as it is.
+/// Return a mesh whose vertices a transform moved, without the crossings that this made; None if nothing was
+/// to be changed. It is closed by index, or once it is welded.
 #[pyfunction]
 pub fn mesh_moved<'py>(
     py: Python<'py>,
@@ -89,7 +89,7 @@ fn set_faults(dict: &Bound<'_, PyDict>, found: Faults) -> PyResult<()> {
     dict.set_item("flat", PyArray1::from_vec(py, flat))
 }
 
-/// A mesh of finite coordinates whose triangles name vertices that exist.
+/// Converts the arrays of a mesh, and checks that coordinates are finite and that all vertices exist.
 fn given(
     vertices: &PyReadonlyArray2<'_, f64>,
     triangles: &PyReadonlyArray2<'_, i64>,

@@ -1,4 +1,4 @@
-//! Hyperplanes from Python: rows of integers, the normal and then the offset, in lattice steps.
+//! Converts hyperplanes of Python: rows of integers, the normal and then the offset, in lattice steps.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::geometry::spaces::dim3::Dim3;
 use crate::mesh::half_space::out_of_reach;
 use crate::query::region::hyperplane::{line, plane, point};
 
-/// An error about the form of an input.
+/// Makes an error about the form of an input.
 pub fn shape(text: impl Into<String>) -> Error {
     Error::new(ErrorKind::Shape, text)
 }
@@ -22,7 +22,7 @@ pub fn shape(text: impl Into<String>) -> Error {
 /// A normal and an offset: the hyperplane normal·x = offset.
 pub type Row = Vec<BigInt>;
 
-/// The normal and the offset of a row.
+/// Splits a row into the normal and the offset.
 ///
 /// # Errors
 /// `Shape` for a row of another length, `TooLarge` for numbers that no hyperplane has.
@@ -43,7 +43,7 @@ pub fn coefficients<const N: usize>(row: &[BigInt]) -> Result<([i128; N], Int<3>
     Ok((narrow, integer(offset).ok_or_else(out_of_reach)?))
 }
 
-/// The number in three limbs, if it fits.
+/// Converts a number to three 64-bit limbs; `None` if it does not fit.
 fn integer(value: &BigInt) -> Option<Int<3>> {
     let (sign, digits) = value.to_u64_digits();
     let mut limbs = [0; 4];
@@ -54,27 +54,27 @@ fn integer(value: &BigInt) -> Option<Int<3>> {
     fits.then(|| signed.narrow())?
 }
 
-/// A row as a point of the line.
+/// Converts a row of two numbers to a point on the line.
 pub fn on_line(row: &[BigInt]) -> Result<Point1> {
     let ([n], offset) = coefficients(row)?;
     point(n, &offset)
 }
 
-/// A row as a line of the plane.
+/// Converts a row of three numbers to a line in the plane.
 pub fn in_plane(row: &[BigInt]) -> Result<Line2> {
     let (normal, offset) = coefficients(row)?;
     line(normal, &offset)
 }
 
-/// A row as a plane of space.
+/// Converts a row of four numbers to a plane in space.
 pub fn in_space(row: &[BigInt]) -> Result<Arc<Plane>> {
     let (normal, offset) = coefficients(row)?;
     plane(normal, &offset)
 }
 
-/// A space whose hyperplanes come as rows.
+/// A space whose hyperplanes are made from rows of integers.
 pub trait FromRow: Affine {
-    /// A row as a hyperplane.
+    /// Converts a row, the normal and the offset, to a hyperplane.
     ///
     /// # Errors
     /// `Shape`, `BadNormal`, `TooLarge`.
@@ -99,7 +99,7 @@ impl FromRow for Dim3 {
     }
 }
 
-/// A hyperplane as a row: the normal and the offset.
+/// Converts a hyperplane to a row: the normal and the offset.
 pub fn row_of<S: Affine>(cut: &S::Hyperplane) -> Row {
     let [a, b, c, d] = S::exact(cut);
     let mut row: Row = [a, b, c].into_iter().take(S::DIM).collect();

@@ -31,27 +31,28 @@ use self::sets::objects::ObjectTree;
 use crate::error::{panics, Error};
 use crate::mesh::grid::Pitch;
 
-/// Sets how many threads operations use that do not say so; 0 means one for each processor.
+/// Set the number of threads of operations that do not give one; 0 means one for each processor.
 #[pyfunction]
 fn set_threads(n: usize) {
     pool::set_default_threads(n);
 }
 
-/// The pitch for coordinates of this size and extent.
+/// Return the pitch for coordinates of at most `largest` in magnitude that extend over `extent`.
 #[pyfunction]
 fn suited_pitch(py: Python<'_>, largest: f64, extent: f64) -> PyResult<i64> {
     run::here(py, || Ok(Pitch::suited(largest, extent)?.exponent()))
 }
 
-/// Looks up numpy's functions, which the first array would do.
+/// Look up numpy's functions, as the first array would do otherwise.
 ///
-/// Called while modules are imported, as an interrupt waits then: one during the look-up is a panic.
+/// It is called while modules are imported, because interrupts wait then: an interrupt during the look-up is
+/// a panic.
 #[pyfunction]
 fn find_numpy(py: Python<'_>) {
     let _ = PyArray1::<f64>::zeros(py, 0, false).readonly();
 }
 
-/// Fails as a defect would: for the tests of what happens then.
+/// Fail like a defect, for tests of how defects are reported.
 #[pyfunction]
 fn fail_on_purpose(py: Python<'_>, panic: bool, size: usize) -> PyResult<()> {
     run::run(py, 0, size, || {
@@ -60,7 +61,7 @@ fn fail_on_purpose(py: Python<'_>, panic: bool, size: usize) -> PyResult<()> {
     })
 }
 
-/// The bits of the normals that half-spaces of a dimension may have.
+/// Return the largest number of bits of a half-space's normal in a dimension.
 #[pyfunction]
 fn normal_bits(dimension: usize) -> u32 {
     match dimension {

@@ -1,5 +1,5 @@
-//! The numbers of a file at once: Python's own way takes ten times as long with those of a text, and
-//! numpy's three to four times as long with those that are not aligned or of the other byte order.
+//! Reads all numbers of a file at once: Python takes ten times as long for numbers in a text, and numpy
+//! three to four times as long for numbers that are not aligned or have the other byte order.
 
 use std::str::FromStr;
 
@@ -12,12 +12,12 @@ use super::ending::detached;
 use super::errors::to_python;
 use crate::arith::convert::as_double;
 
-/// Stands for a number in a row of text.
+/// Stands for a number in the pattern of a row.
 const NUMBER: u8 = b'#';
 
-/// The decimal numbers of a text that is `row` again and again, each rounded once, in their order.
+/// Return the decimal numbers, each rounded once, of a text that consists of repetitions of `row`, in order.
 ///
-/// In `row`, `#` stands for a number; all other bytes for themselves.
+/// In `row`, `#` stands for a number; every other byte for itself.
 #[pyfunction]
 pub fn numbers_in_rows<'py>(
     py: Python<'py>,
@@ -27,7 +27,8 @@ pub fn numbers_in_rows<'py>(
     in_rows(py, text, row)
 }
 
-/// The whole numbers of a text that is `row` again and again, as for `numbers_in_rows`.
+/// Return the whole numbers of a text that consists of repetitions of `row`, in which `#` stands for a
+/// number.
 #[pyfunction]
 pub fn whole_numbers_in_rows<'py>(
     py: Python<'py>,
@@ -49,7 +50,7 @@ fn in_rows<'py, T: Decimal + Element>(
     Ok(PyArray1::from_vec(py, values))
 }
 
-/// True if the faces of a binary PLY are these triangles; each is a byte that says three, and three
+/// Return true if the faces of a binary PLY file are the given triangles; each face is a byte 3 and three
 /// little-endian `i32`.
 ///
 /// # Errors
@@ -64,8 +65,8 @@ pub fn are_triangles(
     Ok(detached(py, || same_triangles(faces, &expected)))
 }
 
-/// True if some bytes are these numbers, bit by bit; each takes eight, the lowest first, or the highest
-/// if `big_endian`.
+/// Return true if bytes are the given 64-bit numbers; each takes eight bytes, the lowest first, or the
+/// highest if `big_endian`.
 #[pyfunction]
 pub fn are_words(
     py: Python<'_>,
@@ -86,12 +87,12 @@ pub fn are_words(
 fn same_words(bytes: &[u8], expected: &[u64], word: impl Fn([u8; 8]) -> u64) -> bool {
     let (found, rest) = bytes.as_chunks();
     let pairs = found.iter().zip(expected);
-    // All bits that differ, with no branch on the way.
+    // Collects all bits that differ, without branches.
     let bits = pairs.fold(0, |bits, (a, b)| bits | word(*a) ^ b);
     rest.is_empty() && found.len() == expected.len() && bits == 0
 }
 
-/// Bytes of a triangle in a binary PLY.
+/// The number of bytes of a triangle in a binary PLY file.
 const PLY_TRIANGLE_BYTES: usize = 13;
 
 fn same_triangles(faces: &[u8], triangles: &[[i64; 3]]) -> bool {
@@ -99,7 +100,7 @@ fn same_triangles(faces: &[u8], triangles: &[[i64; 3]]) -> bool {
     if !rest.is_empty() || faces.len() != triangles.len() {
         return false;
     }
-    // All bits that differ, each number's by itself: no face waits for the one before.
+    // Collects all bits that differ, separately for each number: so no face waits for the one before.
     let mut bits = [0; 4];
     for (face, [a, b, c]) in faces.iter().zip(triangles) {
         let corner = |k: usize| {
@@ -114,13 +115,13 @@ fn same_triangles(faces: &[u8], triangles: &[[i64; 3]]) -> bool {
     bits == [0; 4]
 }
 
-/// A kind of number that a text can hold.
+/// A type of number that is read from a text.
 trait Decimal: FromStr + Send {
-    /// The value of digits without sign, point or exponent, few enough for this to be exact.
+    /// Returns the value of digits without sign, point or exponent, few enough for it to be exact.
     fn of_digits(digits: &[u8]) -> Self;
 }
 
-/// Largest number of digits that cannot pass 2^53, below which every whole number is a double.
+/// The largest number of digits that cannot exceed 2^53, below which every whole number is a double.
 const MAX_EXACT_DIGITS: usize = 15;
 
 impl Decimal for i64 {
@@ -136,7 +137,7 @@ impl Decimal for f64 {
     }
 }
 
-/// The numbers in rows, or the byte at which the text is another one.
+/// Returns the numbers of a text of rows; the error is the byte at which the text differs from the pattern.
 fn scanned<T: Decimal>(text: &[u8], row: &[u8]) -> Result<Vec<T>, usize> {
     let mut between = row.split(|byte| *byte == NUMBER);
     let first = between.next().unwrap_or_default();
@@ -144,7 +145,7 @@ fn scanned<T: Decimal>(text: &[u8], row: &[u8]) -> Result<Vec<T>, usize> {
     let mut values = Vec::new();
     let mut at = 0;
     while at < text.len() {
-        // An empty row ends no text.
+        // A pattern without bytes matches no text.
         if row.is_empty() {
             return Err(at);
         }
@@ -158,7 +159,7 @@ fn scanned<T: Decimal>(text: &[u8], row: &[u8]) -> Result<Vec<T>, usize> {
     Ok(values)
 }
 
-/// Return where the text goes on behind some bytes that must stand there.
+/// Returns the position after some bytes that must stand at `at`; the error is `at`.
 fn behind(text: &[u8], at: usize, expected: &[u8]) -> Result<usize, usize> {
     let is_there = text[at..].starts_with(expected);
     is_there.then_some(at + expected.len()).ok_or(at)

@@ -1,4 +1,4 @@
-//! Answers from the arrays of a mesh: equal points, connected surfaces, counts and sums.
+//! Computes properties of a mesh from its arrays: equal points, connected surfaces, counts and sums.
 
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -12,10 +12,11 @@ use crate::mesh::measures::{measures, moments};
 use crate::mesh::surfaces::{counts, surfaces};
 use crate::mesh::weld::welded;
 
-/// Points, and a number for each of those that were given.
+/// The different points, and for each given point its number among them.
 type Welding<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<i64>>);
 
-/// The different points in the order in which they first occur, and which each point is.
+/// Return the different points in the order in which they first occur, and for each given point its number
+/// among them.
 #[pyfunction]
 pub fn welded_points<'py>(
     py: Python<'py>,
@@ -34,8 +35,8 @@ pub fn welded_points<'py>(
     Ok((array(py, found.points)?, PyArray1::from_vec(py, same)))
 }
 
-/// Triangles of what lies on the left of edges between points of the plane; None if these are not the
-/// boundary of a region.
+/// Return triangles of the region on the left of edges between points of the plane; None if the edges are
+/// not the boundary of a region.
 #[pyfunction]
 pub fn outline_triangles<'py>(
     py: Python<'py>,
@@ -65,7 +66,7 @@ pub fn outline_triangles<'py>(
         .transpose()
 }
 
-/// For each triangle the number of its connected surface.
+/// Return for each triangle the number of its connected surface.
 #[pyfunction]
 pub fn surfaces_of<'py>(
     py: Python<'py>,
@@ -80,7 +81,7 @@ pub fn surfaces_of<'py>(
     Ok(PyArray1::from_vec(py, owner))
 }
 
-/// Used vertices, edges, open edges and connected surfaces.
+/// Return the numbers of used vertices, edges, open edges and connected surfaces.
 #[pyfunction]
 pub fn mesh_counts(
     py: Python<'_>,
@@ -95,7 +96,7 @@ pub fn mesh_counts(
     Ok((found.vertices, found.edges, found.open_edges, surfaces))
 }
 
-/// Volume, measured from a point, and area.
+/// Return the volume, summed over tetrahedra with their apex at `middle`, and the area.
 #[pyfunction]
 pub fn mesh_measures(
     py: Python<'_>,
@@ -111,7 +112,7 @@ pub fn mesh_measures(
     Ok((found.volume, found.area))
 }
 
-/// Volume, centroid seen from a point, and second moments seen from the centroid.
+/// Return the volume, the centroid relative to `middle`, and the second moments about the centroid.
 #[pyfunction]
 pub fn mesh_moments(
     py: Python<'_>,

@@ -63,7 +63,7 @@ pub struct Tree {
     rounded: OnceLock<Rounded>,
 }
 
-/// The mesh of a tree, as Python has it.
+/// The rounded mesh of a tree, with its arrays in Python.
 struct Rounded {
     vertices: Py<PyArray2<f64>>,
     triangles: Py<PyArray2<i64>>,
@@ -90,7 +90,7 @@ impl Tree {
         source.mesh().filter(|_| source.is_as_given())
     }
 
-    /// Runs a method's work; the report of a defect holds the solid.
+    /// Runs the work of a method; the report of a defect contains the solid.
     fn run<T: Send>(
         &self,
         py: Python<'_>,
@@ -146,7 +146,7 @@ impl Tree {
     }
 }
 
-/// That the coordinates of an operand were rounded to a coarser lattice.
+/// Makes the finding that an operand's coordinates were rounded to a coarser lattice.
 fn operand_rounded(text: String) -> Finding {
     Finding::about("operand_rounded", Severity::Note, &[0], text)
 }
@@ -274,7 +274,7 @@ impl Tree {
         Ok(Self::of(solid))
     }
 
-    /// The solid of the mesh without short edges and slivers; None if none can be removed.
+    /// Return the solid of its mesh without short edges and slivers; None if none can be removed.
     #[pyo3(signature = (tolerance, threads=0))]
     fn simplified(&self, py: Python<'_>, tolerance: f64, threads: usize) -> PyResult<Option<Self>> {
         let work = || simplified(&self.solid, tolerance);
@@ -282,7 +282,7 @@ impl Tree {
         Ok(solid.map(Self::of))
     }
 
-    /// Return whether the elements are the reduced boundary; None if nobody has looked.
+    /// Return whether the surface is the reduced boundary; None if that was not checked yet.
     #[getter]
     fn simple(&self) -> Option<bool> {
         let known = self.solid.is_reduced() || self.solid.simple().get().is_some();
@@ -298,19 +298,19 @@ impl Tree {
         ))
     }
 
-    /// For each triangle of the mesh its source and face.
+    /// Return for each triangle of the mesh the slot of its source and its face in the input.
     fn origins<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
         array(py, wide(&self.rounded(py, 0)?.origins))
     }
 
-    /// For each triangle of the mesh whether it faces the other way than its source's face.
+    /// Return for each triangle of the mesh whether it is oriented opposite to its source's face.
     fn flips<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let flips = self.rounded(py, 0)?.flips.clone();
         Ok(PyArray1::from_vec(py, flips))
     }
 
-    /// The same solid, whose mesh does not join faces of different patches: for each slot what each
-    /// face of its input belongs to, or None.
+    /// Return the same solid, whose mesh does not join faces of different patches; `patches` has for each
+    /// slot the patch number of each face of its input, or None.
     fn patched(&self, patches: Vec<Option<PyReadonlyArray1<'_, u32>>>) -> PyResult<Self> {
         let copied = |one: PyReadonlyArray1<'_, u32>| one.as_slice().map(<[u32]>::to_vec);
         let patches = patches
@@ -323,8 +323,8 @@ impl Tree {
         })
     }
 
-    /// A source on the lattice: the doubles it was made of, its vertices on the lattice, its faces,
-    /// and the numbers these had in the input; None for a half-space.
+    /// Return a source on the lattice: its original doubles, its lattice vertices, its faces, and their
+    /// numbers in the input; None for a half-space.
     fn source_arrays<'py>(
         &self,
         py: Python<'py>,
@@ -350,21 +350,21 @@ impl Tree {
         )))
     }
 
-    /// Return whether the meshes it was made from close wherever rounding takes their corners: no face was
-    /// left out, no corner lies in an edge of another face, and those that were welded are equal.
+    /// Return whether the input meshes stay closed however their corners are rounded: no face was left out,
+    /// no corner lies in an edge of another face, and corners that were welded are equal.
     #[getter]
     fn closes_when_moved(&self) -> bool {
         let mut sources = self.solid.sources().iter();
         sources.all(|source| source.closes_when_moved())
     }
 
-    /// Return whether the tree holds the arrays it was made from, each face as it was.
+    /// Return whether the solid is one input mesh with all faces unchanged.
     #[getter]
     fn holds_given(&self) -> bool {
         self.given().is_some()
     }
 
-    /// The arrays the tree was made from.
+    /// Return the arrays of the input mesh that the solid is.
     fn given_arrays<'py>(&self, py: Python<'py>) -> PyResult<MeshArrays<'py>> {
         let mesh = self.run(py, "given_arrays", 0, 0, || {
             let text = "the solid is not one unchanged input mesh, so it has no given arrays";
@@ -381,7 +381,7 @@ impl Tree {
         self.solid.sources().iter().map(|s| s.id()).collect()
     }
 
-    /// For each source whether faces of it may bound the solid.
+    /// Return for each source whether its faces may bound the solid.
     #[getter]
     fn named(&self) -> Vec<bool> {
         let names = self.solid.names();
@@ -394,7 +394,7 @@ impl Tree {
         self.solid.sources().iter().next().map(|s| s.id())
     }
 
-    /// The farthest that a coordinate of a source is from the double it came from.
+    /// Return the largest distance of a source's lattice coordinate from its original double.
     #[getter]
     fn snapped_by(&self) -> f64 {
         let sources = self.solid.sources();
@@ -422,7 +422,7 @@ impl Tree {
         Ok((fraction.numerator, fraction.denominator))
     }
 
-    /// The nearest double; None if the near volume has to decide.
+    /// Return the nearest double of the volume; None if cached sums do not decide it.
     fn volume_rounded(&self, py: Python<'_>) -> PyResult<Option<f64>> {
         self.run(py, "volume_rounded", 0, 0, || {
             Ok(volume_rounded(&self.solid))
@@ -487,21 +487,22 @@ impl Tree {
         found.into_iter().map(rows).collect()
     }
 
-    /// The planes of the surface, each once, the solid on the minus side beside it.
+    /// Return the planes of the surface, each once, with the solid on the minus side.
     fn planes(&self, py: Python<'_>) -> PyResult<Vec<Row>> {
         let planes = || supporting_planes(&self.solid);
         let planes = self.run(py, "planes", 0, self.size(), planes)?;
         Ok(planes.iter().map(row_of::<Dim3>).collect())
     }
 
-    /// Return whether the surface has a point in common with that of another solid on the same lattice.
+    /// Return whether the surfaces of this solid and another one on the same lattice have a common point.
     fn meets(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
         let size = self.size() + other.size();
         let meet = || surfaces_meet(&self.solid, &other.solid);
         self.run(py, "meets", 0, size, meet)
     }
 
-    /// The same solid, whose mesh divides faces in the middle of which edges lie; None if there are none.
+    /// Return the same solid, whose mesh divides faces at edges inside them; None if there are no such
+    /// edges.
     fn divided(&self, py: Python<'_>) -> PyResult<Option<Self>> {
         let contacts = || edge_contacts(&self.solid, &self.patches);
         let contacts = self.run(py, "divided", 0, self.size(), contacts)?;
@@ -550,8 +551,8 @@ impl Tree {
         self.solid.pitch().exponent()
     }
 
-    /// Return whether a mesh of the solid crosses itself once a motion has taken its doubles to those of
-    /// the lattice, where it did not before.
+    /// Return whether a mesh of the solid would newly cross itself when a motion replaces its doubles by
+    /// those of the lattice.
     fn moving_crosses(&self, py: Python<'_>, axes: [i64; 3], shift: [i64; 3]) -> PyResult<bool> {
         let motion = motion(axes, shift).map_err(|e| to_python(py, &e))?;
         let crosses = || Ok(crosses_once_snapped(&self.solid, motion.shifted()));
@@ -565,7 +566,7 @@ impl Tree {
         })
     }
 
-    /// The same tree of sources with new identities.
+    /// Return the same solid with new identities of its sources.
     fn renamed(&self, py: Python<'_>) -> PyResult<Self> {
         let renamed = || Ok(Self::of(self.solid.renamed()));
         self.run(py, "renamed", 0, self.size(), renamed)
@@ -623,8 +624,8 @@ impl Tree {
         Ok(dict)
     }
 
-    /// The stages of the evaluation that made the tree: names, seconds and counts, and why the arrangement
-    /// left it to the descent, if it did.
+    /// Return the stages of the evaluation that made the tree (names, seconds, counts), and why the
+    /// arrangement left it to the descent, if it did.
     fn profile(&self) -> (Vec<(&'static str, f64, usize)>, Option<&'static str>) {
         let Some(counters) = &self.counters else {
             return (Vec::new(), None);

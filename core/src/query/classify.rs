@@ -1,4 +1,4 @@
-//! The locations of lattice points.
+//! Decides whether lattice points lie inside, on the boundary of, or outside a solid.
 
 use crate::error::Result;
 use crate::geometry::cell::Cell;
@@ -11,23 +11,24 @@ use crate::merge::lists::list::{List, Sources};
 use crate::tree::node::{Branch, Node};
 use crate::tree::solid::Solid;
 
-/// The location of a point relative to a solid.
+/// Where a point lies relative to a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Location {
-    /// In the interior.
+    /// In the interior of the solid.
     Inside,
-    /// On the boundary.
+    /// On the boundary of the solid.
     Boundary,
-    /// In the complement's interior.
+    /// In the interior of the solid's complement.
     Outside,
 }
 
-/// Lists with at most this many elements are searched with a local tree.
+/// A list with at most this many faces and parts is not divided further to locate points in it.
 const MAX_ELEMENTS_SEARCHED: usize = 20;
 
-/// Locate each lattice point; the solid must be reduced for "on" to mean its boundary.
+/// Returns the location of each lattice point; `Boundary` means the solid's boundary if the solid is
+/// reduced.
 ///
-/// Deferred leaves are divided on the way, for the points at hand only.
+/// Divides deferred leaves for these points on the way, but does not store the result.
 ///
 /// # Errors
 /// None.
@@ -160,7 +161,7 @@ impl Search<'_> {
     }
 }
 
-/// Return whether a point lies on a closed polygon.
+/// Returns true if a point lies in a polygon, whose edges belong to it.
 fn touches(polygon: &Polygon, p: &Lattice) -> bool {
     polygon.support().side_of_lattice(p) == Side::On
         && polygon

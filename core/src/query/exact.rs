@@ -1,4 +1,4 @@
-//! Exact places of a mesh's vertices.
+//! Exact positions of the vertices of a mesh.
 
 use num_bigint::BigInt;
 use num_integer::Integer;
@@ -9,7 +9,7 @@ use crate::geometry::vertex::{Homogeneous, Vertex};
 use crate::mesh::handle::VertexId;
 use crate::tree::solid::Solid;
 
-/// The place of a vertex, if it is a lattice point.
+/// The lattice point of a vertex; `None` if the vertex is not known to be one.
 pub(super) fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: VertexId) -> Option<Lattice> {
     match mesh.vertices[vertex.place()] {
         Corner::Source(slot, index) => {
@@ -19,7 +19,7 @@ pub(super) fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: VertexId) -> Opti
     }
 }
 
-/// A vertex as a point of space.
+/// The exact position of a vertex.
 pub(super) fn vertex(solid: &Solid, mesh: &ExactMesh, vertex: VertexId) -> Vertex {
     match mesh.vertices[vertex.place()] {
         Corner::Point(point) => Vertex::clone(mesh.table.point(point)),
@@ -27,7 +27,7 @@ pub(super) fn vertex(solid: &Solid, mesh: &ExactMesh, vertex: VertexId) -> Verte
     }
 }
 
-/// The place of a vertex.
+/// The homogeneous coordinates of a vertex.
 pub(super) fn homogeneous(solid: &Solid, mesh: &ExactMesh, number: VertexId) -> Homogeneous {
     vertex(solid, mesh, number).coordinates()
 }

@@ -1,4 +1,4 @@
-//! Exact measures.
+//! Volumes of solids: exact, in doubles, and modulo primes.
 
 use num_bigint::BigInt;
 
@@ -11,7 +11,7 @@ use crate::geometry::flux::fixed::FLUX_PLACES;
 use crate::tree::flux::share;
 use crate::tree::solid::Solid;
 
-/// An exact fraction, the denominator positive; in lowest terms unless it is very long.
+/// An exact fraction; it is in lowest terms unless it is very long.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fraction {
     /// The numerator.
@@ -20,7 +20,7 @@ pub struct Fraction {
     pub denominator: BigInt,
 }
 
-/// The exact volume in cubic model units.
+/// Returns the exact volume of a solid in cubic model units.
 ///
 /// # Errors
 /// `Unbounded`.
@@ -28,9 +28,9 @@ pub fn volume(solid: &Solid) -> Result<Fraction> {
     volume_within(solid, u64::MAX)
 }
 
-/// The exact volume in cubic model units, if its denominator is not too long.
+/// Returns the exact volume in cubic model units, unless its denominator may be too long.
 ///
-/// A sum over faces, never over cells: integers for lattice triangles, fractions for the others.
+/// Sums over faces: integers for triangles with lattice corners, fractions for all others.
 ///
 /// # Errors
 /// `Unbounded`; `TooMany` if the denominator may have more than `most_bits` bits.
@@ -61,10 +61,11 @@ fn too_long(bits: u64, most_bits: u64) -> Error {
     Error::at(ErrorKind::TooMany, vec![bits], text)
 }
 
-/// The volume in cubic model units as the nearest double, from what the tree's nodes cache.
+/// Returns the volume in cubic model units as the nearest double, from sums that the tree's nodes cache.
 ///
-/// Visits only nodes that are not shared with a solid asked before. `None` if the error bound
-/// leaves a choice of doubles, or if the boundary may be unbounded; then ask [`volume_near`].
+/// Visits only nodes that are not shared with a solid whose volume was already computed. `None` if the error
+/// bound leaves a choice of doubles, or if the boundary may be unbounded; [`volume_near`] then gives the
+/// volume.
 pub fn volume_rounded(solid: &Solid) -> Option<f64> {
     let share = share(solid.root());
     if solid.root().outside > 0 || share.open {
@@ -75,7 +76,8 @@ pub fn volume_rounded(solid: &Solid) -> Option<f64> {
     low.filter(|_| low == high)
 }
 
-/// A flux as a volume in model units, if no number gets too long.
+/// Converts six times a volume in fixed-point cubic steps to model units; `None` if the exponent is too
+/// large.
 fn flux_in_units(flux: &Int<6>, exponent: i64) -> Option<f64> {
     const MAX_EXPONENT: u64 = 25;
     let size = exponent.unsigned_abs();
@@ -89,14 +91,15 @@ fn flux_in_units(flux: &Int<6>, exponent: i64) -> Option<f64> {
     (size <= MAX_EXPONENT).then_some(ratio)
 }
 
-/// Binary places that [`volume_near`] keeps of each cut triangle's share, in cubic steps.
+/// The number of binary places to which [`volume_near`] rounds the share of each cut triangle, in cubic
+/// steps.
 const BINARY_PLACES: usize = 128;
 
-/// The volume in cubic model units to within 2^-128 cubic steps for each cut triangle.
+/// Returns the volume in cubic model units, accurate to 2^-128 cubic steps for each cut triangle.
 ///
-/// The shares of lattice triangles are exact integers; each other share is rounded down once. The
-/// error is far below a double's precision, and the cost, unlike that of the exact sum, does not
-/// grow with the square of the number of cut faces.
+/// The shares of triangles with lattice corners are exact integers; the share of any other triangle is
+/// rounded down once. The error is far below a double's precision, and the cost, unlike that of the exact
+/// sum, does not grow with the square of the number of cut faces.
 ///
 /// # Errors
 /// `Unbounded`.
@@ -109,10 +112,10 @@ pub fn volume_near(solid: &Solid) -> Result<Fraction> {
     Ok(in_units(sum, denominator, solid.pitch().exponent()))
 }
 
-/// Six times the exact volume in cubic steps, modulo the primes 2^61 − 1 and 2^61 − 31.
+/// Returns six times the exact volume in cubic steps, modulo the primes 2^61 − 1 and 2^61 − 31.
 ///
-/// Compares sums of exact volumes in one pass: two different sums agree with probability 2^-122.
-/// `None` if a denominator is a multiple of a prime.
+/// Serves to compare sums of exact volumes: two different sums agree with probability 2^-122. `None` if a
+/// denominator is a multiple of a prime.
 ///
 /// # Errors
 /// `Unbounded`.
@@ -124,8 +127,8 @@ pub fn volume_residues(solid: &Solid) -> Result<Option<[u64; 2]>> {
         .and_then(|a| Some([a, shares.modulo(P2)?])))
 }
 
-/// Fractions longer than this many bits are not reduced: finding the divisor would cost more than
-/// it saves.
+/// A fraction with a denominator longer than this many bits is not reduced: finding the common divisor would
+/// cost more than it saves.
 const MAX_BITS_REDUCED: u64 = 4096;
 
 fn reduced(numerator: BigInt, denominator: BigInt) -> (BigInt, BigInt) {
@@ -149,12 +152,12 @@ pub(super) fn pairwise_sum(mut terms: Vec<(BigInt, BigInt)>) -> (BigInt, BigInt)
     terms.pop().unwrap_or((BigInt::ZERO, BigInt::from(1)))
 }
 
-/// Cubic lattice steps to cubic model units.
+/// Converts a volume from cubic lattice steps to cubic model units.
 fn in_units(numerator: BigInt, denominator: BigInt, exponent: i64) -> Fraction {
     in_powers(numerator, denominator, exponent, 3)
 }
 
-/// Lattice steps to some power as model units to that power.
+/// Converts a length, area or volume (`dimension` 1, 2 or 3) from lattice steps to model units.
 pub fn in_powers(
     numerator: BigInt,
     denominator: BigInt,

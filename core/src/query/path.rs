@@ -1,8 +1,8 @@
 //! The paths of a point and of a ray through a tree of fragments, exact and step by step.
 //!
-//! A ray visits the child on its origin's side first, then the facets in the cut, then the other
-//! child, and stops at the first hit. All depths are exact fractions. It also visits children that
-//! it only touches in a point, so that singular cases need no code.
+//! A ray visits the child on its origin's side first, then the facets in the cut, then the other child, and
+//! stops at the first hit. All depths are exact fractions. A ray also visits children that it only touches
+//! in a point, so that singular cases need no code of their own.
 //!
 //! # Source
 //! Lecture notes on BSP trees, "Ray casting" and "Distribution optimized BSP"; Havran, Kopal,
@@ -24,16 +24,16 @@ use crate::query::stab::Cast;
 use crate::tree::fragments::FragmentTree;
 use crate::tree::trace::Watcher;
 
-/// A step of a point from the root down.
+/// A node that a point passes on its path from the root to its leaf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PointStep {
-    /// The node.
+    /// The number of the node.
     pub node: NodeId,
-    /// The side of its hyperplane on which the point lies.
+    /// The side of the node's hyperplane on which the point lies.
     pub side: Side,
 }
 
-/// The nodes that a point passes, down to its leaf or to the first hyperplane it lies in.
+/// Returns the nodes that a point passes, down to its leaf or to the first hyperplane that contains it.
 pub fn locate<S: Affine>(tree: &FragmentTree<S>, point: &Viewpoint) -> Vec<PointStep> {
     let mut steps = Vec::new();
     let mut next = (!tree.nodes().is_empty()).then_some(NodeId::ROOT);
@@ -51,66 +51,67 @@ pub fn locate<S: Affine>(tree: &FragmentTree<S>, point: &Viewpoint) -> Vec<Point
     steps
 }
 
-/// An event of a ray on its way; parameters are in model units per length of the direction.
+/// An event on a ray's path through a tree; parameters are in model units per length of the direction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum RayEvent {
-    /// An inner node is visited.
+    /// The ray visits an inner node.
     Visit {
-        /// The node.
+        /// The number of the node.
         node: NodeId,
         /// The parameter at which the ray enters the node's region.
         from: f64,
-        /// The parameter at which it leaves the region; `None` if it does not.
+        /// The parameter at which the ray leaves the region; `None` if it never does.
         to: Option<f64>,
-        /// The side of the hyperplane on which the ray starts: the near child.
+        /// The side of the node's hyperplane on which the ray starts, where the near child is.
         near: Side,
         /// The parameter at which the ray's line crosses the hyperplane; `None` if it is parallel.
         at: Option<f64>,
     },
-    /// A piece in a node's hyperplane is tested.
+    /// A piece in the hyperplane of a node is tested.
     Test {
-        /// The node.
+        /// The number of the node.
         node: NodeId,
-        /// The piece.
+        /// The number of the piece.
         piece: u32,
-        /// The parameter at which the ray meets it.
+        /// The parameter at which the ray meets the piece; `None` if it does not.
         at: Option<f64>,
     },
-    /// A leaf, an empty region, is stabbed.
+    /// The ray enters a leaf, which is an empty region.
     Leaf {
-        /// The node above; `None` for a tree without nodes.
+        /// The node above the leaf and the side of the leaf; `None` for a tree without nodes.
         place: Option<(NodeId, Half)>,
         /// The parameter at which the ray enters the region.
         from: f64,
-        /// The parameter at which it leaves the region; `None` if it does not.
+        /// The parameter at which the ray leaves the region; `None` if it never does.
         to: Option<f64>,
     },
 }
 
-/// The first facet that a ray met, and the cost of finding it.
+/// The first facet that a ray meets in a tree, and the cost of finding it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RayPath {
-    /// The piece and the parameter, correctly rounded.
+    /// The number of the piece and the parameter, correctly rounded; `None` if the ray meets no piece.
     pub hit: Option<(u32, f64)>,
-    /// Inner nodes visited.
+    /// The number of inner nodes visited.
     pub nodes: u64,
-    /// Leaves stabbed.
+    /// The number of leaves visited.
     pub leaves: u64,
-    /// Pieces tested.
+    /// The number of pieces tested.
     pub tests: u64,
 }
 
 impl RayPath {
-    /// C(T): all nodes visited, leaves among them.
+    /// Returns the number of inner nodes and leaves that the ray visited, the cost C(T) of the lecture
+    /// notes.
     pub fn cost(&self) -> u64 {
         self.nodes + self.leaves
     }
 }
 
-/// The first piece on a ray.
+/// Finds the first piece that a ray meets, and reports each step to `watcher`.
 ///
-/// If several pieces lie at that point, the one that the tree meets first; within a node, the first
-/// of the input.
+/// If several pieces lie at that point, the piece that the tree reaches first is taken; within a node, the
+/// first of the input.
 ///
 /// `facets` are the tree's facets, indexed by piece number.
 pub fn cast_ray<S: Cast<D> + Affine, const D: usize>(
@@ -141,7 +142,7 @@ pub fn cast_ray<S: Cast<D> + Affine, const D: usize>(
     path
 }
 
-/// A stretch of the ray; without an end it is unbounded.
+/// An interval of parameters on a ray; without an end it is unbounded.
 #[derive(Clone, Copy)]
 struct Stretch {
     from: Ratio,
@@ -165,9 +166,9 @@ impl Stretch {
 }
 
 enum StackEntry {
-    /// A child, perhaps empty, at this place.
+    /// A child to visit, or an empty leaf, with the interval of the ray in it.
     Child(Option<NodeId>, Option<(NodeId, Half)>, Stretch),
-    /// The facets in a node's hyperplane.
+    /// The facets in a node's hyperplane, to be tested.
     Cut(NodeId, Stretch),
 }
 
@@ -285,13 +286,13 @@ impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D
     }
 }
 
-/// The crossing of a ray and a hyperplane.
+/// Where and how a ray's line crosses a hyperplane.
 struct Crossing {
-    /// The side on which the ray starts.
+    /// The side of the hyperplane on which the ray starts.
     start: Side,
-    /// The parameter at which the ray's line crosses; `None` if it is parallel.
+    /// The parameter at which the ray's line crosses the hyperplane; `None` if it is parallel.
     at: Option<Ratio>,
-    /// The half that comes first on the line; `None` if it runs within.
+    /// The side that the ray's line comes from; `None` if it runs in the hyperplane.
     first: Option<Half>,
 }
 
@@ -320,7 +321,7 @@ impl Crossing {
     }
 }
 
-/// Return where a ray first meets a convex facet, seen as a fan of facets of `D` corners.
+/// Returns the parameter at which a ray first meets a convex facet, taken as a fan of facets of `D` corners.
 fn meeting<const D: usize>(facet: &Facet, ray: &Ray<D>) -> Option<Ratio> {
     let corner = |i: usize| -> [f64; D] { std::array::from_fn(|k| facet.corners[i][k] as f64) };
     let last = facet.corners.len();

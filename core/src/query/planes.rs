@@ -1,4 +1,4 @@
-//! The planes in which a solid's surface lies.
+//! Finds the planes that contain a solid's surface.
 
 use std::sync::Arc;
 
@@ -11,9 +11,10 @@ use crate::interrupt::poll;
 use crate::mesh::handle::OrientedFace;
 use crate::tree::solid::Solid;
 
-/// Return the planes of a solid's surface, each once, with the solid on the minus side.
+/// Returns the planes that contain the faces of a solid's surface, each once, with the solid on the minus
+/// side.
 ///
-/// They are the planes of the input faces: exact, however small the remaining pieces are.
+/// These are the planes of input faces: exact, however small the remaining parts of the faces are.
 ///
 /// # Errors
 /// `Unbounded`.

@@ -1,10 +1,10 @@
-//! The shares of a mesh's triangles in its volume, and their exact sum.
+//! The volume of a mesh as an exact sum of its triangles' shares.
 //!
-//! The denominator of a triangle's share is the product of the weights of its constructed corners.
-//! Halving space recursively makes groups of triangles that share few points with the others. The
-//! sum of a group is a numerator over the weights of all its points, each taken once: the weights
-//! of points that no other triangle uses are multiplied out, the few others stay a list. So no
-//! weight is in the denominator twice, and all products have factors of similar length.
+//! The denominator of a triangle's share is the product of the weights of its constructed corners. Halving
+//! space recursively makes groups of triangles that share few points with other groups. The sum of a group
+//! is a numerator over the weights of all its points, each taken once: the weights of points that no
+//! triangle outside uses are multiplied, the few others stay in a list. So no weight is in the denominator
+//! twice, and all products have factors of similar length.
 
 use num_bigint::BigInt;
 use num_integer::Integer;
@@ -20,53 +20,54 @@ use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::{both, Worth};
 use crate::tree::solid::Solid;
 
-/// Sums whose denominators have at most this many bits are reduced: for longer ones the divisor
-/// costs more to find than it saves.
+/// A sum is reduced if its denominator has at most this many bits: for longer ones finding the common
+/// divisor costs more than it saves.
 const MAX_BITS_REDUCED: u64 = 1024;
 
-/// Groups of at least this many triangles are summed as two tasks of more than 100 µs each.
+/// Groups of at least this many triangles are summed as two tasks, of more than 100 µs each.
 const MIN_TRIANGLES_DIVIDED: usize = 64;
 
-/// The shares of all triangles in six times the volume, in cubic steps.
+/// The shares of all triangles of a mesh in six times its volume, in cubic steps.
 pub struct Shares {
-    /// The share of all lattice triangles.
+    /// The sum of the shares of all triangles between lattice points.
     pub whole: BigInt,
     cut: Vec<Share>,
     /// The weight of each constructed corner.
     weights: Vec<BigInt>,
-    /// The number of triangles that use it.
+    /// For each constructed corner, the number of triangles that use it.
     uses: Vec<u32>,
 }
 
-/// The share of a triangle with constructed corners.
+/// The share of one triangle with constructed corners in six times the volume.
 struct Share {
-    /// The numerator over the weights of the points.
+    /// The numerator; the denominator is the product of the weights of `points`.
     value: BigInt,
-    /// Ascending.
+    /// The constructed corners, by number, ascending.
     points: SmallVec<[u32; 3]>,
-    /// Three times its centre.
+    /// Three times the centre of the triangle, rounded.
     at: [f64; 3],
 }
 
-/// A sum over the product of `closed` and the weights of the open points.
+/// A sum of shares, whose denominator is the product of `closed` and of the weights of the `open` points.
 struct Partial {
     numerator: BigInt,
     /// The product of the weights of points that only this sum uses.
     closed: BigInt,
-    /// The other points, ascending, and how many triangles of this sum use each.
+    /// All other points in the denominator, ascending, each with the number of triangles of this sum that
+    /// use it.
     open: Vec<(u32, u32)>,
 }
 
-/// A point in homogeneous coordinates.
+/// A point in homogeneous coordinates, with its rounded position.
 struct Point {
     x: [BigInt; 3],
     weight: BigInt,
-    /// Its place, rounded.
+    /// The coordinates of the point, rounded.
     near: [f64; 3],
 }
 
 impl Shares {
-    /// The shares of a solid's mesh.
+    /// Computes the shares of the triangles of a solid's mesh.
     pub fn of(solid: &Solid, mesh: &ExactMesh) -> Self {
         let mut shares = Self {
             whole: BigInt::ZERO,
@@ -102,13 +103,13 @@ impl Shares {
         shares
     }
 
-    /// An upper bound on the bits of the sum's denominator.
+    /// Returns an upper bound on the bits of the denominator of the sum.
     pub fn denominator_bits(&self) -> u64 {
         let used = self.weights.iter().zip(&self.uses).filter(|w| *w.1 > 0);
         used.map(|(weight, _)| weight.bits()).sum()
     }
 
-    /// The shares of cut triangles, each rounded down to a multiple of 2^-`places`.
+    /// Yields the shares of triangles with constructed corners, rounded down to multiples of 2^-`places`.
     pub fn near(&self, places: usize) -> impl Iterator<Item = BigInt> + '_ {
         self.cut.iter().map(move |share| {
             poll();
@@ -117,7 +118,7 @@ impl Shares {
         })
     }
 
-    /// The sum modulo a prime; `None` if a weight is a multiple of it.
+    /// Returns the sum of all shares modulo a prime; `None` if a weight is a multiple of it.
     pub fn modulo(&self, prime: u64) -> Option<u64> {
         let residue = |n: &BigInt| {
             let rest = n.mod_floor(&BigInt::from(prime));
@@ -138,7 +139,7 @@ impl Shares {
         Some(self.cut.iter().map(share).fold(residue(&self.whole), add))
     }
 
-    /// The sum as a numerator and a positive denominator.
+    /// Returns the sum of all shares as a numerator and a positive denominator.
     pub fn sum(mut self) -> (BigInt, BigInt) {
         let mut cut = std::mem::take(&mut self.cut);
         let sum = self.partial(&mut cut);
@@ -172,7 +173,7 @@ impl Shares {
         }
     }
 
-    /// Adds two sums.
+    /// Adds two sums of shares.
     fn joined(&self, a: Partial, b: Partial) -> Partial {
         let missing = |here: &[(u32, u32)], there: &[(u32, u32)]| {
             let lacks = |p: &&(u32, u32)| here.binary_search_by_key(&p.0, |q| q.0).is_err();
@@ -195,7 +196,7 @@ impl Shares {
         })
     }
 
-    /// Closes the points that no other triangle uses.
+    /// Multiplies into the denominator the weights of open points that no triangle outside the sum uses.
     fn settled(&self, mut sum: Partial) -> Partial {
         let is_closed = |p: &(u32, u32)| self.uses[p.0 as usize] == p.1;
         let closed = sum.open.iter().filter(|p| is_closed(p)).map(|p| p.0);
@@ -211,7 +212,7 @@ impl Shares {
         sum
     }
 
-    /// The product of the weights of points, by halves.
+    /// The product of the weights of points, computed by halving the list.
     fn product(&self, points: &[u32]) -> BigInt {
         match points {
             [] => BigInt::from(1),
@@ -260,7 +261,7 @@ impl Point {
     }
 }
 
-/// Splits shares in two by a plane across the axis of their largest extent.
+/// Halves a list of shares by the centres of their triangles, along the axis on which these extend farthest.
 fn halves(shares: &mut [Share]) -> (&mut [Share], &mut [Share]) {
     let extent = |axis: usize| {
         let ends = shares
@@ -277,7 +278,7 @@ fn halves(shares: &mut [Share]) -> (&mut [Share], &mut [Share]) {
     shares.split_at_mut(middle)
 }
 
-/// Six times the volume of the tetrahedron from the origin.
+/// Six times the volume of the tetrahedron from the origin over the triangle a b c.
 fn determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> Int<4> {
     let minor = |i: usize, j: usize| {
         i128::from(b[i]) * i128::from(c[j]) - i128::from(b[j]) * i128::from(c[i])

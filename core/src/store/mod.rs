@@ -1,4 +1,4 @@
-//! Boundaries as bytes: stored, checked, moved, and made into trees again.
+//! Stores boundaries as bytes, checks them, moves them, and makes trees of them again.
 
 pub mod sealed;
 pub mod snapshot;

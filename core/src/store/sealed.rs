@@ -1,31 +1,31 @@
-//! The seal of stored bytes: their kind, their version, and a checksum over all of it.
+//! Seals stored bytes with their kind, their version, and a checksum.
 //!
-//! A mark of eight bytes, the payload, and the CRC-32 of both (zlib's, which other languages have
-//! too). The checksum detects bursts of up to 32 damaged bits always, other damage but for a chance
-//! of 2⁻³². Forgeries show when the payload is checked.
+//! The bytes are a mark of eight bytes, the payload, and the CRC-32 of both (zlib's, which other languages
+//! have, too). The checksum detects bursts of up to 32 damaged bits always, other damage except with
+//! probability 2⁻³². Forgeries are found when the payload is checked.
 
 use serde::de::DeserializeOwned;
 use serde::Serialize;
 
 use crate::error::{Error, ErrorKind, Result};
 
-/// The kind of thing that the bytes describe.
+/// The kind of object that the bytes describe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// The boundary of a solid.
     Solid,
     /// A partition tree of a set.
     Set,
-    /// A tree that rays have grown.
+    /// A stab tree that rays have grown.
     Rays,
 }
 
 const MARK: [u8; 6] = *b"bspcsg";
 
-/// The version that is written.
+/// The version of the format that is written.
 const VERSION: u8 = 3;
 
-/// The first version with a mark. It stores of whole faces only whether they are turned.
+/// The oldest version with a mark. Of whole faces it stores only whether they are turned around.
 const OLDEST_VERSION: u8 = 2;
 
 /// The first byte of version 1, which had neither mark nor checksum.
@@ -56,13 +56,13 @@ impl Kind {
         Error::new(ErrorKind::BadSnapshot, text)
     }
 
-    /// The error for a payload that contradicts itself.
+    /// Returns the error for a payload that contradicts itself.
     pub fn contradiction(self) -> Error {
         self.refusal("their contents are inconsistent")
     }
 }
 
-/// A value as bytes.
+/// Encodes a value as sealed bytes.
 ///
 /// # Errors
 /// `Internal` if encoding fails.
@@ -75,7 +75,7 @@ pub fn seal(kind: Kind, value: &impl Serialize) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// A value from bytes, also of earlier versions.
+/// Decodes a value from sealed bytes, also from those of earlier versions.
 ///
 /// # Errors
 /// `BadSnapshot`.

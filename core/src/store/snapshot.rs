@@ -35,7 +35,7 @@ use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node, Part, PartElement};
 use crate::tree::solid::Solid;
 
-/// An exact boundary without its tree.
+/// The exact boundary of a solid as plain data, without its tree.
 ///
 /// # Example
 /// ```
@@ -69,7 +69,7 @@ pub struct Snapshot {
 enum SourceData {
     Mesh(TriangleMesh),
     HalfSpace(PlaneData),
-    /// A mesh with its known close pairs: its images need no search of their own.
+    /// A mesh with its known close pairs of faces, so that its images need no search.
     Searched(TriangleMesh, Vec<[u32; 2]>),
 }
 
@@ -77,7 +77,7 @@ enum SourceData {
 struct PartData {
     slot: Slot,
     face: FaceId,
-    /// True if it is turned around.
+    /// True if the part is turned around.
     flip: bool,
     edges: Vec<EdgeData>,
 }
@@ -114,7 +114,7 @@ fn bad_snapshot() -> Error {
 }
 
 impl Snapshot {
-    /// The exact boundary of a solid.
+    /// Collects the exact boundary of a solid.
     pub fn of(solid: &Solid) -> Self {
         let sources = Sources::new(solid.sources().clone());
         let boundary = collect(solid, &sources);
@@ -138,7 +138,7 @@ impl Snapshot {
         }
     }
 
-    /// The solid with this boundary, in one deferred leaf.
+    /// Makes the solid with this boundary, as one deferred leaf.
     ///
     /// # Errors
     /// `BadSnapshot` if the data contradict themselves.
@@ -195,14 +195,14 @@ impl Snapshot {
         ))
     }
 
-    /// The image of a solid under a motion of its lattice; a source keeps one image per motion.
+    /// Returns the image of a solid under a motion of its lattice; each source stores its image for each
+    /// motion.
     ///
-    /// Along axes on which a motion shifts, vertices take the lattice's doubles. If that makes a
-    /// mesh cross itself, the solid is first united with itself, and takes all its doubles from the
-    /// lattice.
+    /// On axes along which a motion shifts, vertices take the doubles of the lattice. If that makes a mesh
+    /// cross itself, the solid is first united with itself, and takes all its doubles from the lattice.
     ///
     /// # Errors
-    /// `TooLarge` if something leaves the lattice; `Unbounded`, `Internal`.
+    /// `TooLarge` if a point or plane leaves the lattice; `Unbounded`, `Internal`.
     pub fn image(solid: &Solid, motion: &Motion) -> Result<Solid> {
         let pitch = solid.pitch();
         if crosses_once_snapped(solid, motion.shifted()) {
@@ -221,10 +221,10 @@ impl Snapshot {
         data.solid_of(pitch, &images?)
     }
 
-    /// The image under a motion of the lattice, on a lattice of the given pitch.
+    /// Returns the image of the boundary under a motion of the lattice, on a lattice of the given pitch.
     ///
     /// # Errors
-    /// `TooLarge` if something leaves the lattice.
+    /// `TooLarge` if a point or plane leaves the lattice.
     pub fn moved(&self, motion: &Motion, pitch: Pitch) -> Result<Self> {
         if self.reaches_infinity() {
             let text = "an unbounded solid other than a half-space cannot be moved";
@@ -242,10 +242,11 @@ impl Snapshot {
         Ok(image)
     }
 
-    /// The same solid on a finer lattice; the empty and the full set fit any lattice.
+    /// Returns the same boundary on a finer lattice; the empty and the full set fit any lattice.
     ///
     /// # Errors
-    /// `TooLarge` if something leaves the lattice; `PitchMismatch` if that is not finer.
+    /// `TooLarge` if a point or plane leaves the lattice; `PitchMismatch` if `finer` is coarser than the
+    /// lattice.
     pub fn refined(&self, finer: Pitch) -> Result<Self> {
         let own = Pitch::new(self.pitch)?;
         if self.wholes.is_empty() && self.parts.is_empty() {
@@ -271,8 +272,8 @@ impl Snapshot {
         self.moved(&motion, finer)
     }
 
-    /// Return whether an unbounded face has other faces beside it, or is cut at the border of the
-    /// universe.
+    /// Returns true if the boundary has an unbounded face and other faces, or a face that is cut at the
+    /// border of the universe.
     fn reaches_infinity(&self) -> bool {
         let unbounded = |slot: Slot| {
             matches!(
@@ -292,7 +293,8 @@ impl Snapshot {
                 .any(|e| e.carrier.carrier().is_ok_and(|c| c.is_border()))
     }
 
-    /// The label at the low corner of the universe: a lone plane decides it by its side there.
+    /// Returns the winding number at the low corner of the universe; a plane that is the whole boundary
+    /// decides it.
     fn label_at_infinity(&self) -> Result<i32> {
         if let [only] = self.wholes.as_slice()
             && let Some(SourceData::HalfSpace(plane)) = self.sources.get(only.slot.place())
@@ -304,7 +306,7 @@ impl Snapshot {
         Ok(self.outside)
     }
 
-    /// The data as bytes.
+    /// Encodes the boundary as bytes.
     ///
     /// # Errors
     /// `Internal` if encoding fails.
@@ -317,10 +319,10 @@ impl Snapshot {
         seal(Kind::Solid, &written)
     }
 
-    /// The solid stored in bytes, which are checked in full.
+    /// Decodes a solid from bytes, which are checked in full.
     ///
-    /// Only one claim is trusted ([`Solid::claimed`]): that its faces are the reduced boundary.
-    /// Checking it would cost ten times as much as all the rest.
+    /// One claim is trusted ([`Solid::claimed`]): that the faces are the reduced boundary. Checking it would
+    /// cost ten times as much as all other checks together.
     ///
     /// # Errors
     /// `BadSnapshot`.
@@ -334,14 +336,14 @@ impl Snapshot {
     }
 }
 
-/// Return whether only the border of the universe bounds a half-space's face.
+/// Returns true if a half-space's face is cut only by the border of the universe.
 fn is_full_plane(cut: &CutFace) -> bool {
     let mut edges = cut.outline.edges().iter();
     edges.all(|e| e.carrier.is_border())
 }
 
 impl SourceData {
-    /// The sources of a solid; those without a boundary face keep only their places.
+    /// Returns the data of a solid's sources; a source without a boundary face becomes an empty mesh.
     fn of_all(solid: &Solid, wholes: &[WholeFaces], parts: &[PartData]) -> Vec<Self> {
         let mut is_named = vec![false; solid.sources().len()];
         let slots = wholes.iter().map(|w| w.slot);
@@ -399,10 +401,10 @@ impl SourceData {
         }
     }
 
-    /// The image of a source; these are its data.
+    /// Returns the image of a source under a motion, made of `self`, the data of the moved source.
     fn image(&self, source: &Source, motion: &Motion) -> Result<Arc<Source>> {
         let made = || Ok(Arc::new(self.source(source.pitch())?));
-        // A source that bounds nothing keeps only its place, even where its image is known.
+        // A source that bounds nothing becomes an empty mesh, even if its image is known.
         if matches!(self, Self::Mesh(mesh) if mesh.faces.is_empty()) {
             return made();
         }
@@ -412,7 +414,7 @@ impl SourceData {
         Ok(source.images().keep(motion, made()?))
     }
 
-    /// The data to write: close pairs only if some cross, because a reader would not search for
+    /// Returns the data to write: with close pairs only if some cross, because a reader would not search for
     /// them.
     fn written(self) -> Self {
         match self {
@@ -423,7 +425,7 @@ impl SourceData {
         }
     }
 
-    /// Replaces the doubles of vertices by those of the lattice.
+    /// Replaces the doubles of all vertices by the doubles of their lattice points.
     fn snap(&mut self, pitch: Pitch) {
         if let Some(mesh) = self.mesh() {
             for (place, double) in mesh.vertices.iter().zip(&mut mesh.doubles) {
@@ -452,7 +454,7 @@ impl SourceData {
     }
 }
 
-/// Return whether the lists match, and no face is flat or names a missing vertex.
+/// Returns true if the lists have matching lengths, and no face is flat or names a missing vertex.
 fn is_sound_mesh(mesh: &TriangleMesh) -> bool {
     let TriangleMesh {
         vertices,
@@ -549,7 +551,7 @@ impl CarrierData {
     }
 }
 
-/// Return whether a carrier and a support meet in a line that both ends lie on.
+/// Returns true if a carrier and the support meet in a line that contains both ends of an edge.
 fn carries(carrier: &Carrier, support: &Plane, from: &Vertex, to: &Vertex) -> bool {
     let on = |plane: &Plane| from.side_of(plane) == Side::On && to.side_of(plane) == Side::On;
     let crosses = |plane: &Plane| {
@@ -571,7 +573,7 @@ fn carries(carrier: &Carrier, support: &Plane, from: &Vertex, to: &Vertex) -> bo
     carried && on(support) && !from.same(to)
 }
 
-/// Return whether as many edges of an outline leave each point as arrive.
+/// Returns true if, at each point, as many edges of an outline start as end.
 fn is_balanced(edges: &[OutlineEdge]) -> bool {
     let mut ends: Vec<_> = edges.iter().map(|e| e.from.key()).collect();
     let mut starts: Vec<_> = edges.iter().map(|e| e.to.key()).collect();

@@ -1,7 +1,7 @@
-//! The check that a boundary from outside bounds a set, which is all that the kernel assumes.
+//! Checks that a stored boundary bounds a set, which is all that the core assumes of it.
 //!
-//! A closed boundary gives every point a winding number that does not depend on the path to it.
-//! That suffices: the kernel itself finds faces that overlap or cross.
+//! A closed boundary gives every point a winding number that does not depend on the path to it. That
+//! suffices: set operations find faces that overlap or cross themselves.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Deferred, Node, Part, PartElement};
 use crate::tree::solid::Solid;
 
-/// Return whether the one leaf of a solid, with its indices and ranges already checked, is the
+/// Returns true if the leaf of a one-leaf solid, whose indices and ranges are checked already, is the
 /// boundary of a set.
 pub fn is_sound(solid: &Solid) -> bool {
     let Node::Deferred(leaf) = &*solid.root().node else {
@@ -35,7 +35,7 @@ pub fn is_sound(solid: &Solid) -> bool {
         && fates(leaf, &sources).is_some_and(|fates| is_closed(leaf, &fates, &sources))
 }
 
-/// Return whether a source could result from an import, motions and refinements.
+/// Returns true if a source could be the result of an import, motions and refinements.
 fn is_proper(source: &Source) -> bool {
     let Some(mesh) = source.mesh() else {
         return true;
@@ -45,8 +45,8 @@ fn is_proper(source: &Source) -> bool {
     numbers.into_iter().all(ascending) && doubles_fit(mesh, source.pitch()) && source.closes()
 }
 
-/// Return whether the doubles of each vertex snap to it, on this lattice or on a coarser one that
-/// contains all coordinates.
+/// Returns true if the doubles of each vertex snap to it, on this lattice or on a coarser one that contains
+/// all coordinates.
 fn doubles_fit(mesh: &TriangleMesh, pitch: Pitch) -> bool {
     (0..3).all(|axis| {
         let slack = as_double(coarsest_step(&mesh.vertices, axis)) * 0.5;
@@ -59,7 +59,7 @@ fn doubles_fit(mesh: &TriangleMesh, pitch: Pitch) -> bool {
     })
 }
 
-/// The largest power of ten that divides all coordinates along an axis; at most 10^18.
+/// The largest power of ten, up to 10^18, that divides all coordinates along an axis.
 fn coarsest_step(vertices: &[Lattice], axis: usize) -> i64 {
     let mut step = 10i64.pow(18);
     for vertex in vertices {
@@ -70,10 +70,10 @@ fn coarsest_step(vertices: &[Lattice], axis: usize) -> i64 {
     step
 }
 
-/// Return whether the outline bounds a part of the face, with the part on its left everywhere.
+/// Returns true if the outline of a part bounds a part of its face, which lies on the left of each edge.
 ///
-/// The convex pieces are disjoint parts of the face. If their edges cancel the outline's, it bounds
-/// exactly them.
+/// The convex pieces are disjoint parts of the face. If their edges cancel the outline's edges, the outline
+/// bounds exactly these pieces.
 fn lies_on_face(part: &Part) -> bool {
     let Some(face) = part.source.clip(part.face, &part.home) else {
         return false;
@@ -88,8 +88,8 @@ fn lies_on_face(part: &Part) -> bool {
     !pieces.is_empty() && cancel(bounds.chain(reversed).collect()).is_empty()
 }
 
-/// Return whether no corner of an outline lies outside a face, and its lattice edges are the
-/// face's.
+/// Returns true if no corner of an outline lies outside a face, and each of its edges between lattice points
+/// lies on an edge of the face.
 fn is_within(part: &Part, face: &Polygon) -> bool {
     let own: Vec<&Carrier> = face.edges().map(|(_, _, carrier)| carrier).collect();
     let walls: Vec<Plane> = own.iter().map(|c| c.plane(face.support())).collect();
@@ -106,7 +106,7 @@ fn is_within(part: &Part, face: &Polygon) -> bool {
         .all(|e| inside(&e.from) && known(&e.carrier))
 }
 
-/// Return the fate of each listed face; `None` if something is listed twice.
+/// Returns the fate of each listed face; `None` if a face or part is listed twice.
 fn fates(leaf: &Deferred, sources: &Sources) -> Option<Fates> {
     let gone = |s: &Arc<Source>| vec![Fate::Gone; s.face_count()];
     let mut fates = Fates::new(sources.table().iter().map(gone).collect());
@@ -138,7 +138,7 @@ fn fates(leaf: &Deferred, sources: &Sources) -> Option<Fates> {
     once.then_some(fates)
 }
 
-/// Return whether all listed edges cancel, except at the border of the universe.
+/// Returns true if all edges of whole faces and parts cancel, except at the border of the universe.
 fn is_closed(leaf: &Deferred, fates: &Fates, sources: &Sources) -> bool {
     let rims = Rims::of(fates, sources);
     let frontier = rims.frontier(fates, sources).into_iter();
@@ -154,7 +154,7 @@ fn is_closed(leaf: &Deferred, fates: &Fates, sources: &Sources) -> bool {
     cancel(rim.chain(parts).collect()).is_empty()
 }
 
-/// An edge of a whole face, in the direction of the face's orientation.
+/// Returns an edge of a whole face as an outline edge, in the direction of the face's orientation.
 fn rim_edge(edge: FrontierEdge, fates: &Fates, sources: &Sources) -> Option<OutlineEdge> {
     let mesh = sources.get(edge.slot).mesh()?;
     let [from, to] = half_edge_ends(mesh, edge.half).map(|v| mesh.vertices[v.place()]);

@@ -1,4 +1,4 @@
-//! The whole faces of a stored boundary.
+//! Whole faces of a stored boundary, grouped by source and orientation.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use crate::extract::boundary::leaves::Fate;
 use crate::geometry::side::Orientation;
 use crate::mesh::handle::{FaceId, Slot, SourceFace};
 
-/// Whole faces of one source in the same manner.
+/// Whole faces of one source with the same orientation that all may, or all may not, touch other faces.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct WholeFaces {
     pub(super) slot: Slot,
@@ -15,8 +15,8 @@ pub(super) struct WholeFaces {
     pub(super) faces: Vec<FaceId>,
 }
 
-/// The orientation of whole faces, and whether they may touch others anywhere. The first two
-/// variants encode like version 2's `false` and `true`.
+/// The orientation of whole faces, and whether they may touch other faces. The first two variants are
+/// encoded like version 2's `false` and `true`.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) enum Manner {
     Same,
@@ -45,7 +45,7 @@ impl Manner {
 }
 
 impl WholeFaces {
-    /// The whole faces of a boundary, by source and manner.
+    /// Groups the whole faces of a boundary by source and manner.
     pub(super) fn of(boundary: &Boundary) -> Vec<Self> {
         let mut wholes = Vec::new();
         for (slot, fates) in boundary.fates.by_slot() {

@@ -1,7 +1,8 @@
-//! The volume of a tree as a sum over its leaves, cached in the nodes.
+//! The volume of a solid's tree as a sum over its leaves, cached in the nodes.
 //!
-//! The volume of a bounded solid is the flux of (0, 0, z) through its boundary. Each node stores the flux
-//! through the boundary in its cell, so that a chain of operations sums anew only what it changed.
+//! The volume of a bounded solid is the flux of the field (0, 0, z) through its boundary. Each node stores
+//! the flux through the boundary in its cell, so that after an operation only the changed nodes are summed
+//! again.
 
 use std::sync::Arc;
 
@@ -23,7 +24,7 @@ use crate::interrupt::poll;
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::{Shape, Source};
 
-/// Return what a branch contributes; computes only what is not cached.
+/// Return the flux through a branch's boundary, computing only the nodes without a cached share.
 pub fn share(root: &Branch) -> Share {
     for branch in unknown(root).into_iter().rev() {
         match &*branch.node {
@@ -47,7 +48,8 @@ pub fn share(root: &Branch) -> Share {
     sum
 }
 
-/// The cached share of a branch's node, without the branch's complement bit.
+/// The cached share of a branch's node, disregarding whether the branch is complemented; `None` if not yet
+/// computed.
 fn known(branch: &Branch) -> Option<Share> {
     match &*branch.node {
         Node::Leaf(_) => Some(Share::NONE),
@@ -56,7 +58,7 @@ fn known(branch: &Branch) -> Option<Share> {
     }
 }
 
-/// The branches without a cached share, each before those below it.
+/// The branches under a root without a cached share, each before its children.
 fn unknown(root: &Branch) -> Vec<&Branch> {
     let mut found = Vec::new();
     let mut open = vec![root];
@@ -72,13 +74,13 @@ fn unknown(root: &Branch) -> Vec<&Branch> {
     found
 }
 
-/// The sum over the elements of a leaf.
+/// The sum of fluxes over the faces and parts of a leaf, clipped to its cell.
 struct Sum {
     walls: Walls,
     cell: Cell,
-    /// Six times the flux through faces inside the cell, in cubic steps.
+    /// Six times the flux through the whole faces inside the cell, in cubic steps.
     inside: Int<4>,
-    /// The flux through everything else.
+    /// The share of all other faces and parts.
     rest: Share,
 }
 
@@ -109,7 +111,7 @@ fn leaf_share(leaf: &Deferred, cell: &Cell) -> Share {
 }
 
 impl Sum {
-    /// Adds the part of a whole face in the cell.
+    /// Adds the flux through the part of a mesh face inside the cell.
     fn add_face(&mut self, corners: &[Lattice; 3], orientation: Orientation) {
         let area = minor(corners, 0, 1);
         if area == 0 {
@@ -126,7 +128,8 @@ impl Sum {
         }
     }
 
-    /// Adds the part of a whole face in the cell, cut by walls across several axes.
+    /// Adds the flux through the part of a mesh face inside the cell, for a face that walls across several
+    /// axes cut.
     fn add_clipped(&mut self, corners: &[Lattice; 3], area: i128, orientation: Orientation) {
         let normal = [minor(corners, 1, 2), minor(corners, 2, 0), area];
         if let Some(ring) = Triangle::new(corners, normal).clipped(&self.walls) {
@@ -136,7 +139,7 @@ impl Sum {
         }
     }
 
-    /// Adds the part of a half-space's border in the cell.
+    /// Adds the flux through the part of a half-space's boundary plane inside the cell.
     fn add_plane(&mut self, source: &Source, orientation: Orientation) {
         let Some(polygon) = source.clip(FaceId::ONLY, &self.cell) else {
             return;
@@ -148,7 +151,7 @@ impl Sum {
         self.rest.flux.add(&Flux { value, error }, orientation);
     }
 
-    /// Adds the part of a part in the cell.
+    /// Adds the flux through a part of a face, clipped to the cell.
     fn add_part(&mut self, part: &Part, orientation: Orientation) {
         let bounded = part.source.mesh().is_some();
         self.rest.open |= !bounded && part.edges.iter().any(|e| e.carrier.is_border());
@@ -161,7 +164,7 @@ impl Sum {
         }
     }
 
-    /// Return whether all of a part lies in the cell; may return false negatives.
+    /// Return whether a part of a face lies entirely in the cell; may return false negatives.
     fn surely_holds(&self, part: &Part) -> bool {
         self.cell.holds(&part.home) || {
             let mut corners = part.edges.iter().map(|e| e.from.approx());
@@ -170,12 +173,13 @@ impl Sum {
     }
 }
 
-/// The flux through all of a part.
+/// The flux through a part of a face, without clipping.
 fn part_flux(part: &Part) -> Flux {
     part_slope(part).map_or(Flux::ZERO, |slope| fan_flux(&fixed_ends(part), None, slope))
 }
 
-/// The flux through an outline, clipped by walls if given: signed triangles from one corner to all edges.
+/// The flux through an outline, clipped by a cell's walls if given: a sum over signed triangles from one
+/// corner to all edges.
 fn fan_flux(ends: &[[Fixed; 2]], walls: Option<&Walls>, slope: f64) -> Flux {
     let Some([apex, _]) = ends.first() else {
         return Flux::ZERO;
@@ -197,7 +201,7 @@ fn fan_flux(ends: &[[Fixed; 2]], walls: Option<&Walls>, slope: f64) -> Flux {
     Flux { value, error }
 }
 
-/// The edges of a part's outline; computes each corner once.
+/// The edges of a part's outline in fixed-point binary; computes each corner once.
 fn fixed_ends(part: &Part) -> SmallVec<[[Fixed; 2]; 8]> {
     let mut seen: SmallVec<[(&Arc<Vertex>, Fixed); 8]> = SmallVec::new();
     let mut fixed = |vertex| {
@@ -212,8 +216,9 @@ fn fixed_ends(part: &Part) -> SmallVec<[[Fixed; 2]; 8]> {
     edges.map(|e| [fixed(&e.from), fixed(&e.to)]).collect()
 }
 
-/// |z| / max(|x|, |y|) of a face's normal; 0 for faces that no wall across z cuts.
-// A factor of an error bound, which rounding changes by less than the bound's own slack.
+/// The ratio |z| / max(|x|, |y|) of a normal's components; 0 for a face perpendicular to z, which no wall
+/// across z cuts.
+// The ratio is a factor of an error bound; rounding changes it by less than the bound's own slack.
 #[allow(clippy::cast_precision_loss)]
 fn slope([x, y, z]: &[i128; 3]) -> f64 {
     match x.unsigned_abs().max(y.unsigned_abs()) {
@@ -222,7 +227,8 @@ fn slope([x, y, z]: &[i128; 3]) -> f64 {
     }
 }
 
-/// The slope of a part's plane; `None` if it stands upright, where the field has no flux.
+/// The slope of a part's plane; `None` if the plane is parallel to z, so that the field has no flux through
+/// it.
 fn part_slope(part: &Part) -> Option<f64> {
     let normal = match part.source.shape() {
         Shape::Mesh(mesh) => {

@@ -1,4 +1,4 @@
-//! Partition trees: the nodes of solids, and generic trees in one, two and three dimensions.
+//! Partition trees: the nodes of solids, and generic trees on the line, in the plane and in space.
 
 pub mod flux;
 pub mod fragments;

@@ -1,4 +1,4 @@
-//! The partition tree of a solid: dyadic cuts, with deferred leaves below.
+//! The partition tree of a solid: cuts that halve cells, and below them deferred leaves that list faces.
 
 use std::sync::Arc;
 
@@ -15,21 +15,21 @@ use crate::mesh::cached::Cached;
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::Source;
 
-/// A node of the tree. Immutable and shared.
+/// A node of the tree of a solid; immutable and shared.
 ///
-/// Labels are winding numbers: a region is inside where its number is positive.
+/// Labels are winding numbers: a region is inside the solid where its number is positive.
 #[derive(Debug)]
 pub enum Node {
-    /// No boundary: one winding number everywhere.
+    /// A cell without boundary: it has one winding number everywhere.
     Leaf(i32),
-    /// A preliminary leaf: its boundary is listed but not yet partitioned.
+    /// A cell whose boundary is listed but not yet partitioned.
     Deferred(Deferred),
-    /// The cell's dyadic cut.
+    /// A cell that is cut into two halves.
     Cut(Halves),
 }
 
 impl Node {
-    /// A cut with these halves.
+    /// A node with these halves.
     pub fn cut(minus: Branch, plus: Branch) -> Self {
         Self::Cut(Halves {
             children: [minus, plus],
@@ -41,30 +41,31 @@ impl Node {
 /// The two halves of a node's cell.
 #[derive(Debug)]
 pub struct Halves {
-    /// Minus half first.
+    /// The branches of the minus and of the plus half.
     pub children: [Branch; 2],
-    /// The node's cached share of the volume.
+    /// The node's share of the solid's volume, once it is computed.
     pub share: Cached<Share>,
 }
 
-/// A subtree in its place.
+/// A subtree, with the cell that it describes.
 ///
-/// The node describes `cell`; the rest of the parent's half is uniformly `outside` (path compression). If
-/// `complement` is set, the node's winding numbers w count as 1 − w.
+/// `cell` may be smaller than the half of the parent's cell: the rest of that half has the winding number
+/// `outside` everywhere (path compression). If `complement` is set, the node's winding numbers w count as 1 −
+/// w.
 #[derive(Clone, Debug)]
 pub struct Branch {
-    /// The region of the node.
+    /// The region that the node describes.
     pub cell: Cell,
-    /// The winding number around the cell.
+    /// The winding number around the cell, in the rest of the parent's half.
     pub outside: i32,
-    /// Whether the node is turned inside out.
+    /// True if the node's winding numbers w count as 1 − w.
     pub complement: bool,
-    /// The node.
+    /// The root of the subtree.
     pub node: Arc<Node>,
 }
 
 impl Branch {
-    /// One winding number everywhere.
+    /// A branch with one winding number everywhere.
     pub fn uniform(cell: Cell, w: i32) -> Self {
         Self {
             cell,
@@ -74,7 +75,8 @@ impl Branch {
         }
     }
 
-    /// A branch for a node and the cell that it covers.
+    /// A branch with this node for a cell, and with the winding number 0 around the cell unless the node is a
+    /// leaf.
     pub fn of_node(cell: Cell, node: Node) -> Self {
         match node {
             Node::Leaf(w) => Self::uniform(cell, w),
@@ -87,7 +89,7 @@ impl Branch {
         }
     }
 
-    /// The winding number, if it is the same everywhere.
+    /// The winding number if it is the same in the node and around the cell, else `None`.
     pub fn constant(&self) -> Option<i32> {
         match *self.node {
             Node::Leaf(w) => {
@@ -98,7 +100,7 @@ impl Branch {
         }
     }
 
-    /// A winding number of the node, complemented if this branch is.
+    /// A winding number w of the node as this branch counts it: 1 − w if the branch is complemented, else w.
     pub fn oriented(&self, w: i32) -> i32 {
         if self.complement {
             1 - w
@@ -107,7 +109,7 @@ impl Branch {
         }
     }
 
-    /// The same set turned inside out.
+    /// The branch of the complement: each winding number w becomes 1 − w.
     #[must_use]
     pub fn complemented(&self) -> Self {
         Self {
@@ -117,7 +119,7 @@ impl Branch {
         }
     }
 
-    /// A child, complemented if this branch is.
+    /// A child of the node as this branch counts it: complemented if the branch is.
     #[must_use]
     pub fn child(&self, child: &Self) -> Self {
         if self.complement {
@@ -128,68 +130,69 @@ impl Branch {
     }
 }
 
-/// A preliminary leaf: elements, and the winding number at the cell's low corner.
+/// A leaf that lists the boundary in its cell without dividing it: whole faces, parts of faces, and the
+/// winding number at the cell's corner of least coordinates.
 ///
-/// All elements that meet the closed cell are listed; others may be.
+/// All faces and parts that meet the closed cell are listed; others may be.
 #[derive(Debug, Default)]
 pub struct Deferred {
-    /// Whole faces by source, sources in the order of the expression.
+    /// The whole faces, grouped by source and orientation, with sources in the order of the expression.
     pub groups: Vec<Group>,
-    /// Parts of faces.
+    /// The parts of faces.
     pub parts: Vec<PartElement>,
-    /// The winding number at the cell's low corner.
+    /// The winding number at the cell's corner of least coordinates.
     pub corner: i32,
-    /// True if a kernel made the elements; else they are an operand's boundary, unchanged.
+    /// True if a kernel made the list; false if it is an operand's boundary, unchanged.
     pub worked: bool,
-    /// The node's cached share of the volume.
+    /// The leaf's share of the solid's volume, once it is computed.
     pub share: Cached<Share>,
 }
 
-/// Whole faces of one source with one orientation.
+/// A list of whole faces of one source with one orientation.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// True if they may touch other elements anywhere, as results of local trees or a grid. Other faces
-    /// touch only where one was cut.
+    /// True if the faces may touch other faces or parts anywhere, as in results of local trees or a grid;
+    /// false if they touch others only where one of them was cut.
     pub touching: bool,
     /// The source of the faces.
     pub source: Arc<Source>,
     /// The orientation of the faces relative to the source.
     pub orientation: Orientation,
-    /// The faces, ascending.
+    /// The numbers of the faces, ascending.
     pub faces: Vec<FaceId>,
 }
 
-/// A part of a face, with an orientation.
+/// A part of a face, together with its orientation in a solid.
 #[derive(Clone, Debug)]
 pub struct PartElement {
-    /// The part.
+    /// The part of a face, in the orientation of its source.
     pub part: Arc<Part>,
-    /// Its orientation relative to the source.
+    /// The orientation in the solid relative to the source.
     pub orientation: Orientation,
 }
 
-/// The part of a face that is boundary inside its home cell.
+/// The part of a face that belongs to the boundary of a solid inside a cell, its home.
 ///
-/// The outline runs along the face's own edges, input planes and the home cell's border.
+/// Its outline runs along the face's own edges, planes of other faces and the home cell's walls.
 #[derive(Debug)]
 pub struct Part {
     /// The source of the face.
     pub source: Arc<Source>,
-    /// The face.
+    /// The number of the face in its source.
     pub face: FaceId,
-    /// The cell the outline describes.
+    /// The cell inside which the outline describes the boundary.
     pub home: Cell,
-    /// The outline, counterclockwise on the face; no two edges overlap or continue each other.
+    /// The outline, counterclockwise on the face; no two edges overlap, or continue each other on one line.
     pub edges: Box<[BareEdge]>,
-    /// The lattice points next to the corners of a box around it; its walls lie halfway between lattice
-    /// points.
+    /// The lowest and highest lattice point in a box around the part; the walls of the box lie halfway
+    /// between lattice points.
     pub around: [Lattice; 2],
-    /// The cached flux through the part.
+    /// The flux through the whole part, once it is computed.
     pub flux: Cached<Flux>,
 }
 
 impl PartElement {
-    /// The element, turned over if the flag is set.
+    /// The same part, with the orientation reversed if `turned`.
     #[must_use]
     pub fn turned_if(&self, turned: bool) -> Self {
         Self {
@@ -200,9 +203,9 @@ impl PartElement {
 }
 
 impl Part {
-    /// The part of a face inside an outline in a cell.
+    /// The part of a face inside an outline, for the cell `home`.
     ///
-    /// No two of the edges may overlap or continue each other on one line.
+    /// No two of the edges may overlap, or continue each other on one line.
     pub fn new(
         source: Arc<Source>,
         face: FaceId,
@@ -224,26 +227,27 @@ impl Part {
         }
     }
 
-    /// The outline with the keys of its lines.
+    /// The edges of the outline with the keys of their lines.
     pub fn outline(&self) -> Vec<OutlineEdge> {
         let support = self.source.plane_residues(self.face);
         OutlineEdge::keyed(self.edges.to_vec(), &support)
     }
 
-    /// A lattice box that contains the part; `around` may be half a step smaller.
+    /// A lattice box that contains the part, by its lowest and highest point; `around` may be half a step too
+    /// small.
     pub fn enclosing(&self) -> [Lattice; 2] {
         let [low, high] = self.around;
         [low.map(|x| x - 1), high.map(|x| x + 1)]
     }
 
-    /// A box of doubles around the part.
+    /// The low and high corner of a box of doubles around the part.
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         bounds(self.edges.iter().map(|edge| &*edge.from))
     }
 
-    /// The convex pieces, computed from the outline.
+    /// The convex pieces of the part, computed from its outline.
     ///
-    /// Not cached: they take more room than the part, and are rarely needed twice.
+    /// They are not cached: they need more memory than the part, and are rarely needed twice.
     pub fn pieces(&self) -> Vec<Polygon> {
         if let Some(whole) = outline::convex_loop(&self.source.plane(self.face), &self.edges) {
             return vec![whole];
@@ -254,19 +258,19 @@ impl Part {
 }
 
 impl Deferred {
-    /// The number of listed elements.
+    /// The number of listed faces and parts.
     pub fn len(&self) -> usize {
         self.parts.len() + self.groups.iter().map(|g| g.faces.len()).sum::<usize>()
     }
 
-    /// Return whether all elements are perpendicular to axes.
+    /// Return whether all listed faces and parts are perpendicular to coordinate axes.
     pub fn is_orthogonal(&self) -> bool {
         let faces = |g: &Group| g.faces.iter().all(|f| g.source.is_orthogonal(*f));
         let part = |p: &PartElement| p.part.source.is_orthogonal(p.part.face);
         self.groups.iter().all(faces) && self.parts.iter().all(part)
     }
 
-    /// Return whether there are no elements.
+    /// Return whether the leaf lists no faces and no parts.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -1,4 +1,4 @@
-//! The convex pieces of parts, with their boxes.
+//! The convex pieces of parts of faces, with the boxes around them.
 
 use std::sync::Arc;
 
@@ -8,16 +8,16 @@ use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
 
-/// A convex piece of a part.
+/// A convex piece of a part of a face.
 #[derive(Clone, Debug)]
 pub struct Piece {
-    /// The piece.
+    /// The piece as a polygon.
     pub polygon: Polygon,
-    /// A lattice box around it.
+    /// The lowest and highest corner of a lattice box around the piece.
     pub around: [Lattice; 2],
 }
 
-/// The convex pieces of a part.
+/// The convex pieces of a part of a face, with boxes around them.
 pub fn pieces(part: &Arc<Part>) -> Arc<[Piece]> {
     part.pieces().into_iter().map(Piece::of).collect()
 }
@@ -32,13 +32,13 @@ impl Piece {
         }
     }
 
-    /// Return whether the piece may meet a cell; may return false positives.
+    /// Return whether the box around the piece meets a cell; the piece itself may miss it.
     pub fn may_meet(&self, cell: &Cell) -> bool {
         let ([low, high], least, most) = (&self.around, cell.low(), cell.high());
         (0..3).all(|i| low[i] <= most[i] && high[i] >= least[i])
     }
 
-    /// The part of the piece in a cell, if it has an area.
+    /// The part of the piece inside a cell, or `None` if it has no area.
     pub fn clipped(&self, cell: &Cell) -> Option<Polygon> {
         let polygon = self.may_meet(cell).then(|| self.polygon.clone());
         polygon.and_then(|polygon| polygon.clipped(cell))
@@ -52,7 +52,7 @@ mod tests {
     use crate::mesh::handle::FaceId;
     use crate::mesh::import::import;
 
-    /// A whole face of a tetrahedron as a part.
+    /// The whole face of a tetrahedron as a part of that face.
     fn part() -> Arc<Part> {
         let corners = [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]];
         let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];

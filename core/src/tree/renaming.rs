@@ -1,4 +1,4 @@
-//! Solids with renamed sources: attributes of one do not apply to the other.
+//! Copies of solids whose sources have new ids, so that attributes of the original do not apply to the copy.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::mesh::cached::Cached;
 use crate::mesh::source::Source;
 
 impl Solid {
-    /// The same solid with renamed sources.
+    /// The same solid over copies of its sources with new ids.
     #[must_use]
     pub fn renamed(&self) -> Self {
         let mut renaming = Renaming::default();
@@ -20,7 +20,8 @@ impl Solid {
     }
 }
 
-/// Renamed sources, nodes and parts; each is renamed once. Keys are addresses, valid while the solid lives.
+/// The copies of sources, nodes and parts, each made once. Keys of nodes and parts are addresses, valid while
+/// the solid exists.
 #[derive(Default)]
 struct Renaming {
     sources: HashMap<u64, Arc<Source>>,
@@ -52,7 +53,7 @@ impl Renaming {
         self.replaced(root)
     }
 
-    /// The renamed node, once its children are.
+    /// The copy of a node whose children are copied already.
     fn node(&mut self, node: &Arc<Node>) -> Arc<Node> {
         match &**node {
             Node::Leaf(_) => Arc::clone(node),

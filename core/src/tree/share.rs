@@ -1,25 +1,25 @@
-//! Contributions of boundary to the volume.
+//! Shares of a solid's volume, as contributions of parts of its boundary.
 
 use crate::geometry::flux::fixed::Flux;
 use crate::geometry::side::Orientation;
 
-/// The contribution of a node's boundary to the volume.
+/// The share of a solid's volume that a node of its tree contributes.
 #[derive(Clone, Copy, Debug)]
 pub struct Share {
-    /// Six times the flux through the boundary in the node's cell.
+    /// Six times the flux of (0, 0, z) through the boundary in the node's cell.
     pub flux: Flux,
-    /// Whether the boundary may be unbounded, so that the flux means nothing.
+    /// True if the boundary may be unbounded, so that the flux has no meaning.
     pub open: bool,
 }
 
 impl Share {
-    /// No contribution.
+    /// The share of a node without boundary.
     pub const NONE: Self = Self {
         flux: Flux::ZERO,
         open: false,
     };
 
-    /// Adds another contribution, turned inside out if `complement` is set.
+    /// Adds another share, with its flux subtracted if `complement` is set.
     pub fn add(&mut self, other: &Self, complement: bool) {
         self.flux
             .add(&other.flux, Orientation::turned_around(complement));

@@ -1,4 +1,4 @@
-//! Solids: a tree, the winding number outside its root, and its sources.
+//! Solids: sets of points in space, as a partition tree and the sources whose faces it lists.
 
 use std::sync::Arc;
 
@@ -12,11 +12,11 @@ use crate::mesh::cached::Cached;
 use crate::mesh::grid::Pitch;
 use crate::mesh::source::{Shape, Source};
 
-/// Sources that a table may have beyond twice those the tree uses, so that operands of short expressions
-/// keep their numbers.
+/// The number of sources by which a table may exceed twice the number that the tree uses, so that operands of
+/// short expressions stay in the table.
 const SPARE_SOURCES: usize = 64;
 
-/// A set of points as a partition tree. Immutable; clones share everything.
+/// A set of points of space as a partition tree; immutable, and clones share all data.
 ///
 /// # Example
 /// ```
@@ -41,21 +41,22 @@ pub struct Solid {
     root: Branch,
     pitch: Pitch,
     sources: Table,
-    /// The number of sources that the tree used when last counted.
+    /// The number of sources that the tree used when they were last counted.
     named: usize,
     reduced: bool,
-    /// Whether stored data say that it, or an operand, is reduced.
+    /// True if stored data, which may be forged, say that the solid or an operand is reduced.
     claimed: bool,
-    /// Solids of unchecked meshes: if all are simple, this solid is reduced.
+    /// Solids of unchecked meshes: this solid is reduced if all of them are. `None` if not known.
     doubts: Option<Arc<[Solid]>>,
     simple: Arc<Cached<bool>>,
     united: Arc<Cached<Solid>>,
-    /// The number of elements in cells that kernels solved to make the solid.
+    /// The number of faces and parts in all cells that kernels solved to make the solid.
     effort: u64,
 }
 
 impl Solid {
-    /// A solid from its parts; `reduced` says whether its elements are the reduced boundary.
+    /// A solid from its tree and its sources; `reduced` is true if the listed faces and parts are its reduced
+    /// boundary.
     pub fn new(root: Branch, pitch: Pitch, sources: Table, reduced: bool) -> Self {
         let named = sources.len();
         Self {
@@ -72,33 +73,33 @@ impl Solid {
         }
     }
 
-    /// The same solid, with the number of elements that kernels solved to make it.
+    /// The same solid, with the number of faces and parts in all cells that kernels solved to make it.
     #[must_use]
     pub fn by_effort(self, effort: u64) -> Self {
         Self { effort, ..self }
     }
 
-    /// The number of elements that kernels solved to make the solid: in a chain the next step takes about
-    /// as long as the last one.
+    /// The number of faces and parts in all cells that kernels solved to make the solid: in a chain of
+    /// operations, the next step takes about as long as the last one.
     pub fn effort(&self) -> u64 {
         self.effort
     }
 
-    /// The same solid, reduced according to stored data, which may be forged.
+    /// The same solid, noted as reduced only by the word of stored data, which may be forged.
     #[must_use]
     pub fn claimed(mut self) -> Self {
         self.claimed = self.reduced;
         self
     }
 
-    /// Return whether only stored data say that it is reduced.
+    /// Return whether the solid is known to be reduced only from stored data.
     pub fn is_claimed(&self) -> bool {
         self.claimed
     }
 
-    /// The solid as the result of operations on these operands, reduced if they all are.
+    /// The same solid as the result of operations on these operands: reduced if all operands are.
     ///
-    /// If that is not known yet, the solid remembers the meshes that decide it, unless they are many.
+    /// If that is not known yet, the solid stores the meshes that decide it, unless they are too many.
     #[must_use]
     pub fn made_of(mut self, operands: &[Self]) -> Self {
         let open: Vec<&Self> = operands.iter().filter(|o| !o.is_reduced()).collect();
@@ -118,17 +119,18 @@ impl Solid {
         self
     }
 
-    /// The meshes that decide whether the solid is reduced, if they are known.
+    /// The meshes that decide whether the solid is reduced: it is if all of them are. `None` if they are not
+    /// known.
     pub fn doubts(&self) -> Option<&[Self]> {
         self.doubts.as_deref()
     }
 
-    /// Return whether known meshes decide if the solid is reduced.
+    /// Return whether it is known which meshes decide if the solid is reduced.
     fn is_settled_by_meshes(&self) -> bool {
         self.doubts.is_some() || self.whole_mesh().is_some()
     }
 
-    /// The same solid as a tree over other sources equal to its own.
+    /// The same solid with another tree over other sources that are equal to its own.
     pub(super) fn of_others(&self, root: Branch, sources: Table) -> Self {
         Self {
             root,
@@ -139,7 +141,7 @@ impl Solid {
         }
     }
 
-    /// The mesh, if the solid is an unchanged mesh.
+    /// The mesh, if the solid is an unchanged mesh; else `None`.
     pub fn whole_mesh(&self) -> Option<&Arc<Source>> {
         let Node::Deferred(leaf) = &*self.root.node else {
             return None;
@@ -154,11 +156,11 @@ impl Solid {
         (whole && group.source.mesh().is_some()).then_some(&group.source)
     }
 
-    /// The solid, given that no operand it was made from used more than `named` sources.
+    /// The same solid, given that no operand from which it was made used more than `named` sources.
     ///
-    /// Once the table has far outgrown this number, drops the sources that the tree does not use; the
-    /// others keep their order. So chains of operations do not collect what they cut away, and counting
-    /// costs little per operation.
+    /// Once the table has far more sources, drops those that the tree does not use; the others remain in
+    /// order. So chains of operations do not collect the sources that they cut away, and counting costs
+    /// little per operation.
     #[must_use]
     pub fn outgrowing(mut self, named: usize) -> Self {
         self.named = named;
@@ -171,24 +173,25 @@ impl Solid {
         self
     }
 
-    /// The ids of the sources that the tree uses: other sources bound nothing.
+    /// The ids of the sources whose faces the tree lists; no other source bounds the solid.
     pub fn names(&self) -> HashSet<u64> {
         names(&self.root)
     }
 
-    /// Return the number of sources that the tree used when last counted.
+    /// Return the number of sources that the tree used when they were last counted.
     pub fn named(&self) -> usize {
         self.named
     }
 
-    /// The empty set, or all of space.
+    /// The empty set, or all of space if `inside`.
     pub fn uniform(pitch: Pitch, inside: bool) -> Self {
         let cell = Cell::around(&[0; 3], &[0; 3]);
         let root = Branch::uniform(cell, i32::from(inside));
         Self::new(root, pitch, Table::default(), true)
     }
 
-    /// The solid a source bounds: all its faces in one deferred leaf.
+    /// The solid that a source bounds, with all its faces in one deferred leaf; `trusted` says that a mesh is
+    /// reduced.
     pub fn of_source(source: Arc<Source>, trusted: bool) -> Self {
         let pitch = source.pitch();
         let Some(cell) = source.cell() else {
@@ -224,44 +227,45 @@ impl Solid {
         Self::new(root, pitch, sources, reduced)
     }
 
-    /// The root.
+    /// The root of the tree.
     pub fn root(&self) -> &Branch {
         &self.root
     }
 
-    /// The lattice step.
+    /// The lattice step of all sources.
     pub fn pitch(&self) -> Pitch {
         self.pitch
     }
 
-    /// The sources, in the order of the expression.
+    /// The sources of the solid, in the order of the expression.
     pub fn sources(&self) -> &Table {
         &self.sources
     }
 
-    /// Return whether the elements are known to be the reduced boundary (promise G2).
+    /// Return whether the listed faces and parts are known to be the reduced boundary (promise G2).
     pub fn is_reduced(&self) -> bool {
         self.reduced || self.simple.get() == Some(&true)
     }
 
-    /// The same solid, with its elements known to be the reduced boundary or not.
+    /// The same solid, noted as reduced or not, with empty caches.
     #[must_use]
     pub fn with_reduced(mut self, reduced: bool) -> Self {
         self.reduced = reduced;
         self.claimed = false;
         self.doubts = None;
-        // Not the old solid's caches: this one is unchecked.
+        // The caches of the old solid do not apply: this one is unchecked.
         self.simple = Arc::default();
         self.united = Arc::default();
         self
     }
 
-    /// The cached answer to whether the elements are the reduced boundary; shared by clones.
+    /// Whether the listed faces and parts are the reduced boundary, once it is checked; shared by clones.
     pub fn simple(&self) -> &Cached<bool> {
         &self.simple
     }
 
-    /// The cached union of the solid with itself, for solids that overlap themselves; shared by clones.
+    /// The union of the solid with itself, for solids that overlap themselves, once it is computed; shared by
+    /// clones.
     pub fn united(&self) -> &Cached<Self> {
         &self.united
     }

@@ -1,26 +1,26 @@
-//! The size of a tree.
+//! Counts of the nodes and faces of a solid's tree.
 
 use super::node::Node;
 use super::solid::Solid;
 
-/// Counts over a tree.
+/// Counts of the nodes, faces and parts in the tree of a solid, and its depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stats {
-    /// Cuts.
+    /// The number of cuts, which are the inner nodes.
     pub nodes: usize,
-    /// Leaves without boundary.
+    /// The number of leaves without boundary.
     pub leaves: usize,
-    /// Deferred leaves.
+    /// The number of deferred leaves.
     pub deferred: usize,
-    /// Listed whole faces, once for each leaf.
+    /// The number of whole faces that deferred leaves list; a face counts once for each leaf that lists it.
     pub elements: usize,
-    /// Listed parts.
+    /// The number of parts of faces that deferred leaves list.
     pub parts: usize,
-    /// The longest path, in cuts.
+    /// The number of cuts on the longest path from the root to a leaf.
     pub depth: usize,
 }
 
-/// Counts a solid's tree; shared subtrees count at each occurrence.
+/// Counts the nodes and faces of a solid's tree; a shared subtree counts at each occurrence.
 pub fn stats(solid: &Solid) -> Stats {
     let mut total = Stats::default();
     let mut open = vec![(solid.root().node.clone(), 0)];

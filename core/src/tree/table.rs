@@ -1,4 +1,4 @@
-//! Tables of sources that grow cheaply: a step that adds one source costs one source.
+//! Tables of sources that are extended cheaply: the cost of adding a source does not depend on their number.
 
 use std::sync::{Arc, OnceLock, RwLock, TryLockError};
 
@@ -9,8 +9,8 @@ use crate::mesh::source::Source;
 
 /// The sources of a solid or an evaluation, in the order of the expression.
 ///
-/// Most tables have a single mesh, and nothing else is allocated. Longer ones are a prefix of a log that
-/// others may share and extend.
+/// The usual table has a single mesh and allocates nothing else. Longer tables are a prefix of a log that
+/// other tables may share and extend.
 #[derive(Clone, Debug, Default)]
 pub struct Table(Entries);
 
@@ -22,8 +22,8 @@ enum Entries {
     Many(LogPrefix),
 }
 
-/// A prefix of a log. The first table to extend the log, and tables that extend it the same way, share it;
-/// others copy the prefix.
+/// The first `len` sources of a log. The first table that extends the log, and all tables that extend it with
+/// the same sources, share it; others copy the prefix.
 #[derive(Clone, Debug, Default)]
 struct LogPrefix {
     log: Arc<Log>,
@@ -32,13 +32,13 @@ struct LogPrefix {
 
 type Chunk = Box<[OnceLock<Arc<Source>>]>;
 
-/// An append-only list of sources.
+/// An append-only list of sources, shared by several tables.
 #[derive(Debug, Default)]
 struct Log {
-    /// Chunk k has room for 2^k sources, so that no source ever moves.
+    /// Chunk k has room for 2^k sources, so that no source is ever moved in memory.
     chunks: [OnceLock<Chunk>; 31],
-    /// The slots by source id, locked while sources are added. Nobody blocks on it: in a forked process, a
-    /// thread that no longer exists may hold it.
+    /// The slot of each source by its id; locked while sources are added. No thread waits for the lock: in a
+    /// forked process, a thread that no longer exists may own it.
     slots: RwLock<HashMap<u64, usize>>,
 }
 
@@ -61,7 +61,7 @@ impl Log {
         slots.insert(source.id(), slots.len());
     }
 
-    /// The slot of a source among the first `len`.
+    /// The slot of a source, if it is among the first `len` of the log; else `None`.
     fn slot(&self, source: &Source, len: usize) -> Option<usize> {
         let found = match free(self.slots.try_read()) {
             Some(slots) => slots.get(&source.id()).copied(),
@@ -71,7 +71,7 @@ impl Log {
     }
 }
 
-/// Return what a lock guards, unless it is held.
+/// Return the guard of a lock, or `None` if another thread owns the lock.
 fn free<T>(lock: Result<T, TryLockError<T>>) -> Option<T> {
     match lock {
         Ok(guard) => Some(guard),
@@ -81,14 +81,14 @@ fn free<T>(lock: Result<T, TryLockError<T>>) -> Option<T> {
 }
 
 impl<'a> FromIterator<&'a Arc<Source>> for Table {
-    /// A table of these sources, at their first occurrences.
+    /// The table of these sources, in the order of their first occurrences.
     fn from_iter<I: IntoIterator<Item = &'a Arc<Source>>>(sources: I) -> Self {
         Self::default().extended(sources)
     }
 }
 
 impl Table {
-    /// The number of sources.
+    /// The number of sources in the table.
     pub fn len(&self) -> usize {
         match &self.0 {
             Entries::None => 0,
@@ -97,15 +97,15 @@ impl Table {
         }
     }
 
-    /// Return whether there are no sources.
+    /// Return whether the table has no sources.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The source in a slot.
+    /// The source in a slot of the table.
     ///
     /// # Panics
-    /// If the slot is empty.
+    /// If the slot is not below the number of sources.
     pub fn get(&self, slot: Slot) -> &Arc<Source> {
         let found = match &self.0 {
             Entries::One(only) if slot.0 == 0 => Some(only),
@@ -115,7 +115,7 @@ impl Table {
         found.expect("a slot of the table")
     }
 
-    /// The slot of a source.
+    /// The slot of a source, or `None` if it is not in the table.
     pub fn slot(&self, source: &Source) -> Option<Slot> {
         match &self.0 {
             Entries::None => None,
@@ -124,12 +124,12 @@ impl Table {
         }
     }
 
-    /// The sources in order.
+    /// The sources in the order of their slots.
     pub fn iter(&self) -> impl Iterator<Item = &Arc<Source>> {
         Slot::all().take(self.len()).map(|slot| self.get(slot))
     }
 
-    /// This table, followed by the other's sources that it lacks.
+    /// This table, followed by those sources of the other table that it lacks.
     #[must_use]
     pub fn joined(&self, other: &Self) -> Self {
         if let (Entries::Many(own), Entries::Many(others)) = (&self.0, &other.0)
@@ -140,7 +140,7 @@ impl Table {
         self.extended(other.iter())
     }
 
-    /// This table, followed by the given sources that it lacks.
+    /// This table, followed by those of the given sources that it lacks.
     fn extended<'a>(&self, sources: impl IntoIterator<Item = &'a Arc<Source>>) -> Self {
         let entries = self.0.clone();
         Self(sources.into_iter().fold(entries, Entries::with))
@@ -148,7 +148,7 @@ impl Table {
 }
 
 impl Entries {
-    /// These entries, with a source added if it is new.
+    /// The same sources, followed by the given one unless it is among them.
     fn with(self, source: &Arc<Source>) -> Self {
         match self {
             Self::None => Self::One(Arc::clone(source)),
@@ -164,7 +164,8 @@ impl LogPrefix {
         self.log.slot(source, self.len)
     }
 
-    /// This prefix, with a source added if it is new.
+    /// The same sources, followed by the given one unless it is among them; copies the log if it cannot
+    /// extend it.
     fn with(mut self, source: &Arc<Source>) -> Self {
         if !self.add(source) {
             self.log = Arc::new(self.log.copied(self.len));
@@ -173,7 +174,8 @@ impl LogPrefix {
         self
     }
 
-    /// Adds a source if it is new; false if the log continues differently, or is locked.
+    /// Adds a source unless it is among the prefix; returns false if the log continues with another source,
+    /// or is locked.
     fn add(&mut self, source: &Arc<Source>) -> bool {
         let Some(mut slots) = free(self.log.slots.try_write()) else {
             return false;
@@ -190,7 +192,7 @@ impl LogPrefix {
 }
 
 impl Log {
-    /// A new log of this one's first sources.
+    /// A new log of the first `len` sources.
     fn copied(&self, len: usize) -> Self {
         let mut slots = HashMap::default();
         let copy = Self::default();

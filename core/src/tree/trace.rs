@@ -1,19 +1,20 @@
-//! Tracing of algorithms on trees.
+//! Traces of algorithms on trees: reports of their steps.
 //!
-//! A traced algorithm is generic over its watcher. For `()`, which ignores events, none is made and the
-//! compiled code has no trace of it; a list keeps all events. Events are plain numbers, which can be stored
-//! and shown elsewhere.
+//! A traced algorithm is generic over a [`Watcher`]. For the watcher `()`, which ignores events, no event is
+//! made, and the compiled code does nothing for it; a `Vec` stores all events. Events are plain numbers,
+//! which can be saved and displayed elsewhere.
 
-/// Receives the events of an algorithm.
+/// Receives the events that a traced algorithm reports.
 pub trait Watcher<E> {
-    /// Whether events are used; if not, data that only events need is not computed.
+    /// True if the watcher uses events; if false, the algorithm computes no data that only events need.
     const LISTENS: bool;
 
-    /// Takes an event, which is only made if it is used.
+    /// Receives an event, by a function that makes it; a watcher that ignores events does not call the
+    /// function.
     fn notify(&mut self, event: impl FnOnce() -> E);
 }
 
-/// Ignores all events.
+/// A watcher that ignores all events.
 impl<E> Watcher<E> for () {
     const LISTENS: bool = false;
 
@@ -21,7 +22,7 @@ impl<E> Watcher<E> for () {
     fn notify(&mut self, _: impl FnOnce() -> E) {}
 }
 
-/// Keeps all events in order.
+/// A watcher that stores all events in order.
 impl<E> Watcher<E> for Vec<E> {
     const LISTENS: bool = true;
 

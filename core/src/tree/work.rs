@@ -1,4 +1,4 @@
-//! The work of an operation: how much it may have to examine.
+//! Estimates of how much an operation on solids may have to examine.
 
 use super::node::{Branch, Node};
 use super::solid::Solid;
@@ -6,9 +6,10 @@ use crate::geometry::plane::Lattice;
 use crate::mesh::handle::Slot;
 use crate::mesh::triangles::TriangleMesh;
 
-/// Cuts and elements that an operation on solids may have to examine, counted up to a limit.
+/// The number of cuts, faces and parts that an operation on solids may have to examine, counted up to
+/// `limit`.
 ///
-/// Of two operands, only what is near the other counts.
+/// For two operands, only branches whose cells meet the box around the other operand count.
 pub fn work(solids: &[Solid], limit: usize) -> usize {
     let mut sum = 0;
     for (k, solid) in solids.iter().enumerate() {
@@ -24,14 +25,16 @@ pub fn work(solids: &[Solid], limit: usize) -> usize {
     sum
 }
 
-/// The number of faces to examine to find whether a solid is reduced, if few meshes decide it.
+/// The number of faces to examine to find out whether a solid is reduced; 0 if that is known, or if no known
+/// meshes decide it.
 pub fn work_to_settle(solid: &Solid) -> usize {
     let open = solid.doubts().filter(|_| !solid.is_reduced());
     let faces = |mesh: &Solid| mesh.sources().iter().map(|s| s.face_count()).sum::<usize>();
     open.map_or(0, |doubts| doubts.iter().map(faces).sum())
 }
 
-/// A box around a solid's boundary: of a small mesh its own, else the root's cell.
+/// A lattice box around a solid's boundary: the box of its mesh if it has only one with fewer than `limit`
+/// faces, else the root's cell.
 fn extent(solid: &Solid, limit: usize) -> (Lattice, Lattice) {
     let cell = solid.root().cell;
     let only = (solid.sources().len() == 1).then(|| solid.sources().get(Slot(0)));

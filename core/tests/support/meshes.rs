@@ -1,4 +1,4 @@
-//! Checks of meshes.
+//! Checks of meshes that tests share.
 
 use std::collections::{HashMap, HashSet};
 
@@ -10,8 +10,8 @@ use bspcsg::tree::solid::Solid;
 
 use super::{applied, is_empty};
 
-/// The mesh, checked: every directed edge has exactly one opposite, every vertex is used and has one
-/// fan of triangles.
+/// Returns the mesh, after checking that every directed edge has exactly one opposite, and that every vertex
+/// is used and has one fan of triangles.
 pub fn manifold_mesh(solid: &Solid, context: &str) -> Mesh {
     let mesh = round::mesh(solid).unwrap_or_else(|e| panic!("{context}: {e}"));
     let after = corners(&mesh, context);
@@ -31,7 +31,7 @@ pub fn manifold_mesh(solid: &Solid, context: &str) -> Mesh {
     mesh
 }
 
-/// For each vertex and edge that leaves it the end of the next edge around the vertex.
+/// Maps each vertex and the end of an edge that leaves it to the end of the next edge around the vertex.
 fn corners(mesh: &Mesh, context: &str) -> HashMap<(VertexId, VertexId), VertexId> {
     let mut after = HashMap::new();
     for &[a, b, c] in &mesh.triangles {
@@ -43,7 +43,7 @@ fn corners(mesh: &Mesh, context: &str) -> HashMap<(VertexId, VertexId), VertexId
     after
 }
 
-/// Count the closed fans that the corners make, given what comes after each edge around its start.
+/// Counts the closed fans, given for each edge that leaves a vertex the next one around the vertex.
 fn fans(after: &HashMap<(VertexId, VertexId), VertexId>) -> usize {
     let mut seen: HashSet<(VertexId, VertexId)> = HashSet::with_capacity(after.len());
     let mut count = 0;
@@ -75,7 +75,7 @@ fn triangle_set(mesh: &Mesh) -> Vec<[[u64; 3]; 3]> {
     set
 }
 
-/// Asserts that two solids differ nowhere.
+/// Asserts that two solids are the same set.
 pub fn assert_same_set(a: &Solid, b: &Solid) {
     assert!(is_empty(&applied(SetOp::SymmetricDifference, a, b)));
 }

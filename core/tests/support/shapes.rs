@@ -1,4 +1,4 @@
-//! Random numbers and closed surfaces on the lattice.
+//! Random numbers and closed surfaces on the lattice, for tests.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -16,41 +16,41 @@ use super::normalized;
 /// The largest lattice coordinate.
 pub const LIMIT: i64 = (1 << 53) - 1;
 
-/// Deterministic numbers below a bound.
+/// A deterministic generator of random integers.
 pub struct Numbers(u64);
 
 impl Numbers {
-    /// The sequence named by a seed.
+    /// Starts the sequence of a seed.
     pub fn new(seed: u64) -> Self {
         let mut numbers = Self(seed ^ 0x9e37_79b9_7f4a_7c15);
         numbers.below(2);
         numbers
     }
 
-    /// A number in `0..bound`.
+    /// Returns a random integer in `0..bound`.
     pub fn below(&mut self, bound: i64) -> i64 {
         let next = self.0.wrapping_mul(6_364_136_223_846_793_005);
         self.0 = next.wrapping_add(1_442_695_040_888_963_407);
         i64::try_from(self.0 >> 9).expect("55 bits") % bound
     }
 
-    /// A number in `0..bound`.
+    /// Returns a random index in `0..bound`.
     pub fn index(&mut self, bound: usize) -> usize {
         usize::try_from(self.below(i64::try_from(bound).expect("small"))).expect("not negative")
     }
 
-    /// A lattice point with coordinates in `0..bound`.
+    /// Returns a random lattice point with coordinates in `0..bound`.
     pub fn point(&mut self, bound: i64) -> Lattice {
         [0; 3].map(|_| self.below(bound))
     }
 
-    /// One entry of a list.
+    /// Returns a random entry of a list.
     pub fn pick<T: Copy>(&mut self, list: &[T]) -> T {
         list[self.index(list.len())]
     }
 }
 
-/// A closed surface of lattice triangles, outside where they turn counterclockwise.
+/// A closed surface of lattice triangles, which turn counterclockwise as seen from outside.
 #[derive(Clone, Debug, Default)]
 pub struct Shape {
     pub vertices: Vec<Lattice>,
@@ -58,7 +58,7 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// A tetrahedron with its inside inside; `None` if it is flat.
+    /// A tetrahedron with its faces oriented outwards; `None` if it is flat.
     pub fn tetrahedron(corners: [Lattice; 4]) -> Option<Self> {
         let [a, b, c, d] = &corners;
         let mut faces = vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
@@ -121,7 +121,7 @@ impl Shape {
         }
     }
 
-    /// This surface and another one, as one.
+    /// The union of this surface and another one, as one list of triangles.
     #[must_use]
     pub fn with(mut self, other: Self) -> Self {
         let offset = i64::try_from(self.vertices.len()).expect("small");
@@ -131,14 +131,14 @@ impl Shape {
         self
     }
 
-    /// The same surface turned inside out.
+    /// The same surface with its faces turned inside out.
     #[must_use]
     pub fn inverted(mut self) -> Self {
         self.faces.iter_mut().for_each(|f| f.swap(1, 2));
         self
     }
 
-    /// The image under a map of the vertices.
+    /// The image of the surface under a map of its vertices.
     #[must_use]
     pub fn mapped(mut self, map: impl Fn(Lattice) -> Lattice) -> Self {
         for vertex in &mut self.vertices {
@@ -160,7 +160,7 @@ impl Shape {
         Arc::new(import(&vertices, &self.faces, Some(pitch)).expect("a closed surface"))
     }
 
-    /// The solid the surface bounds; its boundary is taken to be reduced.
+    /// The solid that the surface bounds; the surface is trusted to be its reduced boundary.
     pub fn solid(&self) -> Solid {
         Solid::of_source(self.source(), true)
     }
@@ -210,7 +210,7 @@ impl Ball {
         Self { points, faces }
     }
 
-    /// The triangles of neighbouring points, counterclockwise as seen from outside.
+    /// The triangles of neighbouring points of an icosahedron, counterclockwise as seen from outside.
     fn hull(points: &[[f64; 3]]) -> Vec<[i64; 3]> {
         let near = |i: usize, j: usize| dot(&points[i], &points[j]) > 0.4;
         let mut faces = Vec::new();
@@ -261,7 +261,7 @@ fn unit(p: [f64; 3]) -> [f64; 3] {
     p.map(|c| c / length)
 }
 
-/// A turn of the lattice, three times as large: no axis stays parallel to an axis.
+/// A rotation of the lattice, three times as large, after which no axis is parallel to an axis.
 pub fn turned(p: Lattice) -> Lattice {
     let [x, y, z] = p;
     [
@@ -271,7 +271,7 @@ pub fn turned(p: Lattice) -> Lattice {
     ]
 }
 
-/// Leaves the lattice where it is.
+/// The identity map of the lattice.
 pub fn straight(p: Lattice) -> Lattice {
     p
 }

@@ -1,4 +1,4 @@
-//! Operations on solids and questions to them.
+//! Operations on solids, and queries of them, for tests.
 
 use bspcsg::extract::boundary::collect::has_no_boundary;
 use bspcsg::geometry::plane::Lattice;
@@ -9,7 +9,7 @@ use bspcsg::merge::SetOp;
 use bspcsg::query::classify::{classify, Location};
 use bspcsg::tree::solid::Solid;
 
-/// The value of an expression; its lines come after one line for each operand.
+/// Evaluates an expression: one line for each operand, followed by `lines`.
 pub fn combined(solids: &[Solid], lines: Vec<Term>) -> Solid {
     let count = u32::try_from(solids.len()).expect("few");
     let terms = (0..count).map(Term::Operand).chain(lines).collect();
@@ -18,7 +18,7 @@ pub fn combined(solids: &[Solid], lines: Vec<Term>) -> Solid {
     done.expect("evaluates").0
 }
 
-/// One set operation.
+/// Applies one set operation to two solids.
 pub fn applied(op: SetOp, a: &Solid, b: &Solid) -> Solid {
     let lines = match op {
         SetOp::Union => vec![Term::Or(vec![0, 1])],
@@ -29,27 +29,27 @@ pub fn applied(op: SetOp, a: &Solid, b: &Solid) -> Solid {
     combined(&[a.clone(), b.clone()], lines)
 }
 
-/// The complement.
+/// The complement of a solid.
 pub fn complement(a: &Solid) -> Solid {
     combined(std::slice::from_ref(a), vec![Term::Not(0)])
 }
 
-/// Return whether no point is inside.
+/// Returns true if no point is inside the solid.
 pub fn is_empty(solid: &Solid) -> bool {
     has_no_boundary(solid) && solid.root().outside <= 0
 }
 
-/// Return whether all points are inside.
+/// Returns true if all points are inside the solid.
 pub fn is_full(solid: &Solid) -> bool {
     has_no_boundary(solid) && solid.root().outside > 0
 }
 
-/// The solid united with itself.
+/// The solid united with itself under a winding rule.
 pub fn normalized(solid: &Solid, rule: Rule) -> Solid {
     normalize(solid, rule).expect("normalizes")
 }
 
-/// Return what a rule says of a winding number, in words of its own.
+/// Returns whether a rule calls a winding number inside, without the code under test.
 pub fn wanted(rule: Rule, number: i32) -> bool {
     match rule {
         Rule::Positive => number >= 1,
@@ -58,12 +58,12 @@ pub fn wanted(rule: Rule, number: i32) -> bool {
     }
 }
 
-/// Locate lattice points.
+/// Returns the locations of lattice points.
 pub fn located(solid: &Solid, points: &[Lattice]) -> Vec<Location> {
     classify(solid, points).expect("lattice points")
 }
 
-/// Mark the places of a labelling that are inside; for points on no boundary.
+/// Returns for each point whether it is inside the solid; no point may be on the boundary.
 pub fn inside(solid: &Solid, points: &[Lattice]) -> Vec<bool> {
     let is_inside = |l: &Location| *l == Location::Inside;
     located(solid, points).iter().map(is_inside).collect()

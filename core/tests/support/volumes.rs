@@ -1,4 +1,4 @@
-//! Exact sums.
+//! Exact rational numbers and volumes for tests.
 
 use std::cmp::Ordering;
 
@@ -30,7 +30,7 @@ impl Ratio {
         self.plus(&Self(-&other.0, other.1.clone()))
     }
 
-    /// This many times the number.
+    /// The product of the number and an integer.
     #[must_use]
     pub fn times(&self, factor: i64) -> Self {
         Self(&self.0 * factor, self.1.clone())
@@ -42,7 +42,7 @@ impl Ratio {
         Self(fraction.numerator, fraction.denominator)
     }
 
-    /// A finite double, exactly.
+    /// A finite double as an exact ratio.
     pub fn of_double(x: f64) -> Self {
         let (mantissa, exponent) = mantissa_and_exponent(x);
         let power = BigInt::from(1) << exponent.unsigned_abs();
@@ -52,7 +52,7 @@ impl Ratio {
         }
     }
 
-    /// The absolute value.
+    /// The absolute value of the number.
     #[must_use]
     pub fn size(&self) -> Self {
         Self(self.0.magnitude().clone().into(), self.1.clone())
@@ -83,7 +83,7 @@ impl PartialEq for Ratio {
     }
 }
 
-/// The exact volume; what the nodes have kept must agree with it.
+/// The exact volume of a solid, after checking that the bounds cached in its nodes enclose it.
 pub fn volume(solid: &Solid) -> Ratio {
     let exact = Ratio::of(measure::volume(solid).expect("a bounded solid"));
     let exponent = u32::try_from(-3 * solid.pitch().exponent()).expect("steps are not long");
@@ -95,7 +95,7 @@ pub fn volume(solid: &Solid) -> Ratio {
     exact
 }
 
-/// Six times the volume of the tetrahedron from the origin to three points.
+/// Six times the volume of the tetrahedron between the origin and three points.
 pub fn sixfold_volume(corners: [&Homogeneous; 3]) -> Ratio {
     let [a, b, c] = corners.map(|h| h.x.map(|x| big(&x)));
     let minor = |i: usize, j: usize| &b[i] * &c[j] - &b[j] * &c[i];

@@ -22,7 +22,7 @@ impl Voxels {
         Self { side, bits }
     }
 
-    /// The places of all cubes.
+    /// The lattice indices of all cubes.
     pub fn places(side: i64) -> impl Iterator<Item = Lattice> {
         let cubes = side * side * side;
         (0..cubes).map(move |i| [i % side, i / side % side, i / side / side])
@@ -57,7 +57,7 @@ impl Voxels {
         shape
     }
 
-    /// The solid of the cubes under a map of the lattice; `None` stands for no cubes.
+    /// The solid of the cubes, moved by a map of the lattice; the empty solid if there are no cubes.
     pub fn solid(&self, map: impl Fn(Lattice) -> Lattice) -> Solid {
         if self.bits == 0 {
             return Solid::uniform(Pitch::new(0).expect("a pitch"), false);
@@ -66,7 +66,7 @@ impl Voxels {
     }
 }
 
-/// The face of the cube at a place, counterclockwise as seen from outside.
+/// The corners of a face of the cube at an index, counterclockwise as seen from outside.
 pub fn square(at: Lattice, axis: usize, sign: i64) -> [Lattice; 4] {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let corner = |s: i64, t: i64| {

@@ -1,4 +1,4 @@
-"""The file of a font: the bundled one, one given by path, or one of the system."""
+"""Search for the file of a font: bundled with the package, given by path, or of the system."""
 
 import os
 import re
@@ -14,7 +14,7 @@ from ....errors import FormatError, InvalidParameterError
 from ....formats.source import limited_content
 from ....parameters import file_path, shown
 
-#: The font that comes with the package, and its styles.
+#: The family of the font that comes with the package, and the files of its styles.
 FAMILY = "Liberation Sans"
 _FACES = {"regular": "LiberationSans-Regular.ttf", "bold": "LiberationSans-Bold.ttf"}
 
@@ -24,21 +24,22 @@ _MAX_NAME_CHARACTERS = 200
 #: Suffixes of font files.
 _SUFFIXES = (".ttf", ".otf", ".ttc", ".otc")
 
-#: The place of the flags in the table "head" of a font.
+#: The byte range of the flags in the table "head" of a font.
 _HEAD_FLAGS = slice(16, 18)
 
-#: The longest time that fontconfig may take, in seconds; its first run looks at all fonts.
+#: The time limit of fontconfig, in seconds; its first run reads all fonts of the system.
 _TIMEOUT = 120.0
 
 
 class FontFile(NamedTuple):
-    """A font in a file.
+    """A font file, and the font in it.
 
     Parameters
     ----------
     path : Path
+        The font file.
     face : int
-        Its number in the file.
+        The number of the font in the file, which may be a collection.
     """
 
     path: Path
@@ -46,23 +47,23 @@ class FontFile(NamedTuple):
 
 
 def font_file(name: str | os.PathLike[str], *, paths: bool = True) -> FontFile:
-    """Return the file of a font.
+    """Return the file of a font, given its name or path.
 
     Parameters
     ----------
     name : str or path
-        ``"Family"`` or ``"Family:style=Style"``, as fontconfig has it; empty for the font that
-        comes with the package; or the path of a font file. If a family is missing, one that
-        fontconfig knows to have the same metrics is used.
+        ``"Family"`` or ``"Family:style=Style"`` in fontconfig's notation; empty for the font that
+        comes with the package; or the path of a font file. A missing family is replaced by a family
+        that fontconfig knows to have the same metrics.
     paths : bool
-        True if a name may be a path.
+        True if `name` may be a path.
 
     Raises
     ------
     InvalidParameterError
         If there is no such font (code "unknown_font").
     FormatError
-        If the path names no file.
+        If a path is not the name of a file.
     """
     text = file_path(name, "font").strip()
     if paths and (isinstance(name, os.PathLike) or text.lower().endswith(_SUFFIXES)):
@@ -77,7 +78,7 @@ def font_file(name: str | os.PathLike[str], *, paths: bool = True) -> FontFile:
 
 
 def unknown_font(name: str) -> InvalidParameterError:
-    """Return the error for a missing font."""
+    """Return the error for a font name that is not found (code "unknown_font")."""
     message = (
         f"There is no font {shown(name)} on this machine. Give the path of a .ttf or .otf file, or"
         f' one of "{FAMILY}" and "{FAMILY}:style=Bold", which come with the package.'
@@ -86,14 +87,14 @@ def unknown_font(name: str) -> InvalidParameterError:
 
 
 def stand_in(name: str) -> FontFile:
-    """Return the bundled font that replaces a missing one, bold if the missing one was bold."""
+    """Return the bundled font to use in place of a missing font: bold if the name says bold."""
     _, style = _family_and_style(name)
     return _own_file("bold" if "bold" in style else "regular")
 
 
 @lru_cache(maxsize=16)
 def opened(file: FontFile) -> uharfbuzz.Font:
-    """Open a font, with measures in design units.
+    """Return the HarfBuzz font of a file, with measures in design units.
 
     Raises
     ------
@@ -112,9 +113,9 @@ def opened(file: FontFile) -> uharfbuzz.Font:
 
 
 def wants_whole_pixels(file: FontFile) -> bool:
-    """Say whether a font requires its em to be a whole number of pixels."""
+    """Return True if a font asks for an em of a whole number of pixels (bit 3 of its flags)."""
     head = opened(file).face.reference_table("head").data or b""
-    # This is bit 3 of the flags in the table "head".
+    # Byte 1 of the big-endian flags has the lower 8 bits.
     return len(head) >= _HEAD_FLAGS.stop and bool(head[_HEAD_FLAGS][1] & 8)
 
 
@@ -130,19 +131,19 @@ def _own_file(style: str) -> FontFile:
 
 
 def _family_and_style(name: str) -> tuple[str, str]:
-    """Return family and style of a name in fontconfig's notation, in lower case."""
+    """Return the family and the style of a font name in fontconfig's notation, in lower case."""
     family, *properties = (part.strip().lower() for part in name.split(":"))
     pairs = [part.rpartition("=") for part in properties]
-    # A single word is also a style.
+    # A property without "=" is a style, too.
     styles = [value.strip() for key, _, value in pairs if key.strip() in ("", "style")]
     return family, " ".join(styles)
 
 
 @lru_cache(maxsize=64)
 def _fontconfig(name: str) -> FontFile | None:
-    """Return fontconfig's font of this family, or of an equivalent one.
+    """Return the system's font of a family, or of a family with equal metrics.
 
-    Also return None without fontconfig.
+    None means that there is no such font, or that fontconfig is not installed.
     """
     told = _answer("fc-match", "-f", "%{index}\n%{file}\n%{family}", "--", name)
     index, path, families = [*told.split("\n", 2), "", "", ""][:3]
@@ -153,15 +154,15 @@ def _fontconfig(name: str) -> FontFile | None:
         if own is not None:
             return own
         if like in there:
-            # The bits above the lower 16 are the number of a variable font's instance.
+            # Bits above the lower 16 number the instance of a variable font.
             return FontFile(Path(path), int(index or 0) & 0xFFFF)
     return None
 
 
 def _equals(name: str) -> list[str]:
-    """Return the families that fontconfig treats as equivalent to one, in lower case.
+    """Return the families, in lower case, that fontconfig treats as equivalent to a font name.
 
-    Their metrics are equal: fontconfig binds them as strongly as the name itself.
+    They are the families with strong binding ("s"), whose metrics equal the named family's.
     """
     lines = _answer("fc-pattern", "-c", "--", name).splitlines()
     families = [line for line in lines if line.strip().startswith("family:")]
@@ -169,7 +170,10 @@ def _equals(name: str) -> list[str]:
 
 
 def _answer(program: str, *arguments: str) -> str:
-    """Return the output of a fontconfig program; nothing without it or for an invalid name."""
+    """Return the output of a fontconfig program.
+
+    It is empty if the program is not installed or fails, or for an unprintable or long font name.
+    """
     path, name = shutil.which(program), arguments[-1]
     if path is None or not name.isprintable() or len(name) > _MAX_NAME_CHARACTERS:
         return ""

@@ -1,4 +1,4 @@
-"""The layout of glyphs by HarfBuzz."""
+"""The layout of the glyphs of a text by HarfBuzz, and their outlines."""
 
 from typing import NamedTuple, TypeAlias
 
@@ -8,21 +8,21 @@ import uharfbuzz
 from ...._types import FloatArray
 from ..curves import bezier_points
 
-#: The control points of a line (2) or a Bézier curve (3 or 4) that a glyph's outline is made of.
+#: The control points of a part of a glyph's outline: 2 for a line, 3 or 4 for a Bézier curve.
 _Stroke: TypeAlias = list[tuple[float, float]]
 
 
 class Writing(NamedTuple):
-    """The direction, script and language of text; empty ones follow from the text.
+    """The direction, language and script of a text.
 
     Parameters
     ----------
     direction : str
-        ``"ltr"``, ``"rtl"``, ``"ttb"`` or ``"btt"``.
+        ``"ltr"``, ``"rtl"``, ``"ttb"`` or ``"btt"``; empty to derive it from the text.
     language : str
-        Such as ``"en"``, never empty.
+        A language code such as ``"en"``, never empty.
     script : str
-        Such as ``"Latn"``.
+        A script code such as ``"Latn"``; empty to derive it from the text.
     """
 
     direction: str = ""
@@ -36,11 +36,11 @@ class PlacedGlyph(NamedTuple):
     Parameters
     ----------
     glyph : int
-        0 if the font lacks the letter.
+        The number of the glyph in the font; 0 if the font lacks the letter.
     cluster : int
-        The number of its first letter in the text.
+        The index in the text of the first letter that the glyph represents.
     offset, advance : (2,) float64
-        Vectors from the pen to the glyph, and to the next position of the pen.
+        Vectors from the pen's position to the glyph, and to the next position of the pen.
     """
 
     glyph: int
@@ -50,13 +50,13 @@ class PlacedGlyph(NamedTuple):
 
 
 def shaped(font: uharfbuzz.Font, text: str, writing: Writing) -> tuple[list[PlacedGlyph], bool]:
-    """Return the glyphs of a line of text, and whether it runs along x."""
+    """Return the glyphs of a line of text, and True if the line is horizontal."""
     buffer = uharfbuzz.Buffer()
     buffer.add_str(text)
     buffer.guess_segment_properties()
     if writing.direction:
         buffer.direction = writing.direction
-    # HarfBuzz would guess the language of the machine.
+    # Set the language, since HarfBuzz would take the machine's.
     buffer.language = writing.language
     if writing.script:
         buffer.script = writing.script
@@ -80,7 +80,9 @@ class Glyph:
     Parameters
     ----------
     font : uharfbuzz.Font
+        The font that contains the glyph.
     number : int
+        The number of the glyph in the font.
     """
 
     def __init__(self, font: uharfbuzz.Font, number: int) -> None:
@@ -94,14 +96,17 @@ class Glyph:
 
     @property
     def bounds(self) -> FloatArray:
-        """Lowest and highest coordinates of control points, (2, 2) float64; zeros for none."""
+        """The bounding box of the control points, (2, 2) float64; zeros if there are none.
+
+        The rows are the least and the greatest coordinates.
+        """
         points = [p for contour in self._contours for stroke in contour for p in stroke]
         if not points:
             return np.zeros((2, 2))
         return np.array([np.min(points, axis=0), np.max(points, axis=0)])
 
     def loops(self, steps: int) -> list[FloatArray]:
-        """Return the corners of each outline, with `steps` chords for each curve."""
+        """Return the corners of each outline, (n, 2), with `steps` chords for each curve."""
         loops = []
         for contour in self._contours:
             parts = [

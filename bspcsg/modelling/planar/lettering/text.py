@@ -1,4 +1,4 @@
-"""Text as a plane figure."""
+"""A line of text as a plane region."""
 
 import math
 import os
@@ -20,7 +20,8 @@ HorizontalAlignment: TypeAlias = Literal["left", "center", "right"]
 VerticalAlignment: TypeAlias = Literal["baseline", "bottom", "center", "top"]
 Direction: TypeAlias = Literal["ltr", "rtl", "ttb", "btt"]
 
-#: The em of a font of size one, in model units: points of 1/72 inch at 100 dots per inch.
+#: The em of a font of size 1, in model units, as in OpenSCAD: a point of 1/72 inch at 100 dots per
+#: inch.
 EM = 100 / 72
 
 
@@ -33,17 +34,19 @@ class Lettering:
     em : float
         The em of the font, in model units.
     halign, valign : str
+        The alignment of the line with x = 0 and y = 0.
     spacing : float
-        The factor of distances between letters.
+        The factor by which the pen's steps between letters are multiplied.
     writing : Writing
+        The direction, language and script.
     steps : int
         The number of chords of each curve of a glyph.
     ink : float
         The factor by which glyphs are enlarged.
     tightness : float
-        The factor of distances and of the size of the line.
+        The factor by which positions of glyphs, and the extent of the line, are multiplied.
     grid : float
-        The reach of the line is rounded up to multiples of this, unless it is 0.
+        The step to which the extent of the line is rounded up; 0 for no rounding.
     """
 
     em: float
@@ -57,15 +60,15 @@ class Lettering:
     grid: float = 0.0
 
     def reach(self, distance: float) -> float:
-        """Return the extent of a line for alignment, never below 0."""
+        """Return the extent of a line to use for its alignment, given its measured extent."""
         steps = math.ceil(distance / self.grid) * self.grid if self.grid else distance
         return max(steps, 0.0) * self.tightness
 
 
 def steps_of(segments: float) -> int:
-    """Return the number of chords of a glyph's curves, given the segments of a circle of its size.
+    """Return the number of chords of a glyph's curves, given the segments of a full circle.
 
-    This is OpenSCAD's rule: curves of glyphs are short, so an eighth of a circle's sides suffices.
+    By OpenSCAD's rule, it is an eighth of the segments plus one, at least two.
     """
     return max(int(segments // 8) + 1, 2)
 
@@ -83,12 +86,12 @@ def text(
     script: str | None = None,
     segments: int = SEGMENTS,
 ) -> Region:
-    """Return a line of text, laid out by HarfBuzz.
+    """Return a line of text as a region, laid out by HarfBuzz.
 
     Parameters
     ----------
     string : str
-        One line.
+        The text, without line breaks.
     size : float
         About the height of capitals, in model units; as in OpenSCAD, the em is 100/72 of it.
     font : str or path
@@ -98,18 +101,19 @@ def text(
     halign : {"left", "center", "right"}
         The part of the line that is at x = 0.
     valign : {"baseline", "bottom", "center", "top"}
-        The part of it that is at y = 0.
+        The part of the line that is at y = 0.
     spacing : float
-        The factor of distances between letters, above 0.
+        The factor by which distances between letters are multiplied, above 0.
     direction : {"ltr", "rtl", "ttb", "btt"}, optional
-        By default the direction of the text's script.
+        The direction of writing; by default the direction of the text's script.
     language : str
-        The language of the text, such as ``"en"``; some fonts have variants for some languages.
+        The language of the text, such as ``"en"``; fonts may have variants for a language.
     script : str, optional
-        The script as four letters of ISO 15924, such as ``"Latn"``; by default that of the text.
+        The script as four letters of ISO 15924, such as ``"Latn"``; by default it is derived from
+        the text.
     segments : int
-        Sides that a circle of this size would have. Curves of glyphs get an eighth of them and one
-        more, at least two.
+        The number of sides of a full circle. Each curve of a glyph gets an eighth of them plus one
+        chord, at least two.
 
     Returns
     -------
@@ -119,7 +123,7 @@ def text(
     Raises
     ------
     InvalidParameterError
-        If there is no such font (code "unknown_font"), it has no glyph for a letter
+        If there is no such font (code "unknown_font"), the font has no glyph for a letter
         ("missing_glyph"), the text has several lines, or a parameter is out of its range.
     FormatError
         If the file of the font cannot be read.
@@ -179,7 +183,10 @@ def lettered(string: str, file: FontFile, look: Lettering) -> tuple[Region, list
 
 
 def _places(placed: Sequence[PlacedGlyph], unit: float, spacing: float) -> list[FloatArray]:
-    """Return the position of each glyph if the pen starts at the origin, and the pen's end."""
+    """Return the position of each glyph in a line, (2,), and as last entry the pen's end.
+
+    The pen starts at the origin; `unit` is the length of a design unit of the font.
+    """
     pen, places = np.zeros(2), []
     for one in placed:
         places.append(pen + one.offset * unit)
@@ -188,11 +195,11 @@ def _places(placed: Sequence[PlacedGlyph], unit: float, spacing: float) -> list[
 
 
 def _anchor(end: FloatArray, boxes: FloatArray, look: Lettering, is_horizontal: bool) -> FloatArray:
-    """Return the start of the pen, by OpenSCAD's rules.
+    """Return the start position of the pen, (2,), that aligns a line by OpenSCAD's rules.
 
-    The width of a line along x is the sum of its advances, and its height is the extent of control
-    points. The height of a line along y is the sum of its advances, downwards, and its width is
-    that of the widest glyph.
+    The width of a horizontal line is the sum of its advances, and its height is the extent of the
+    glyphs' control points. The height of a vertical line is the sum of its advances, downwards, and
+    its width is the width of its widest glyph.
     """
     low, high = boxes[:, 0], boxes[:, 1]
     if is_horizontal:

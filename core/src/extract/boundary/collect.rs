@@ -1,4 +1,4 @@
-//! The fates of faces, read from a tree: kept whole, cut, or gone.
+//! Reads from a solid's tree which source faces are boundary as a whole, in part (cut) or not at all (gone).
 
 use rayon::prelude::*;
 use smallvec::{smallvec, SmallVec};
@@ -18,30 +18,30 @@ use crate::mesh::tasks::in_pool;
 use crate::tree::node::{Branch, Deferred, Node};
 use crate::tree::solid::Solid;
 
-/// A face that is partly boundary.
+/// A source face of which only a part belongs to the boundary of a solid.
 #[derive(Debug)]
 pub struct CutFace {
-    /// The face.
+    /// The face and its orientation in the boundary.
     pub face: OrientedFace,
-    /// The outline, counterclockwise on the face in its source's orientation.
+    /// The outline of the part that is boundary, counterclockwise in the orientation of the face's source.
     pub outline: Outline,
 }
 
-/// A solid's boundary by faces.
+/// The boundary of a solid, described by the fate of each source face.
 #[derive(Debug)]
 pub struct Boundary {
-    /// The fates of the faces.
+    /// The fate of each face of each source.
     pub fates: Fates,
-    /// The cut faces, ascending.
+    /// The faces that are boundary in part, ascending.
     pub cut: Vec<CutFace>,
-    /// Faces in cells where several operands met, ascending: they may touch others.
+    /// Faces in cells where several operands met, ascending: they may touch other faces.
     pub near: Vec<SourceFace>,
 }
 
-/// Above this number of faces several threads share the work.
+/// If more faces than this are to be processed, several threads share the work.
 const PARALLEL_FROM: usize = 256;
 
-/// At least one in this many faces must be listed for counting to be faster than sorting.
+/// Listings are sorted, not counted by face, if there are fewer than one for this many faces.
 const COUNTED_IF_ONE_IN: usize = 16;
 
 struct Collector<'a> {
@@ -50,7 +50,7 @@ struct Collector<'a> {
     listed: Listed<'a>,
 }
 
-/// Collects the boundary of a solid.
+/// Finds the faces and parts of faces that make up the boundary of a solid.
 pub fn collect(solid: &Solid, sources: &Sources) -> Boundary {
     let collector = Collector {
         sources,
@@ -61,7 +61,8 @@ pub fn collect(solid: &Solid, sources: &Sources) -> Boundary {
 }
 
 impl Collector<'_> {
-    /// Decides the faces that span leaves, and outlines the cut ones.
+    /// Decides which faces that span several leaves are whole or cut, and finds the outlines of the cut
+    /// faces.
     fn settle(mut self) -> Boundary {
         let spanning = by_face(&self.listed.spanning, &self.listed.fates);
         let runs: Vec<&[Spanning]> = spanning
@@ -93,7 +94,8 @@ impl Collector<'_> {
         Boundary { fates, cut, near }
     }
 
-    /// Return whether a face that spans leaves is boundary as a whole, in one orientation.
+    /// Returns true only if every leaf that a face meets lists it in the same orientation, so that all of it
+    /// is boundary; may return false negatives.
     fn is_whole(&self, run: &[Spanning]) -> bool {
         let first = run[0].face;
         let source = self.sources.get(first.slot());
@@ -103,8 +105,8 @@ impl Collector<'_> {
             && (self.fill_box(run, source) || covers(self.root, source, first))
     }
 
-    /// Return whether the cells of the leaves that list a face fill its box; may return false
-    /// negatives.
+    /// Returns true only if the cells of the leaves that list a face fill the face's bounding box; may
+    /// return false negatives.
     fn fill_box(&self, run: &[Spanning], source: &Source) -> bool {
         let leaves = run.chunk_by(|a, b| a.leaf == b.leaf).map(|s| s[0].leaf);
         fill(
@@ -114,7 +116,8 @@ impl Collector<'_> {
         )
     }
 
-    /// The outlines of the faces that are neither whole nor gone.
+    /// Returns the faces that are boundary in part, with outlines; a face whose pieces add up to all of it
+    /// becomes whole instead.
     fn outline(&mut self, open: &[&[Spanning]]) -> Vec<CutFace> {
         let spans = open.iter().flat_map(|run| run.iter()).map(Piece::from);
         let mut pieces: Vec<Piece> = spans.collect();
@@ -141,7 +144,7 @@ impl Collector<'_> {
         cut
     }
 
-    /// Joins the pieces of one face.
+    /// Joins the pieces of one face to one outline.
     fn joined(&self, run: &mut [Piece]) -> CutFace {
         let cells = &self.listed.cells;
         let face = run[0].face;
@@ -155,7 +158,7 @@ impl Collector<'_> {
     }
 }
 
-/// Sorts listings by face; the leaves of a face keep their order.
+/// Sorts listings by face; listings of one face stay in the order of their leaves.
 fn by_face(spanning: &[Spanning], fates: &Fates) -> Vec<Spanning> {
     let faces = fates.faces();
     let mut sorted = spanning.to_vec();
@@ -188,7 +191,7 @@ fn by_face(spanning: &[Spanning], fates: &Fates) -> Vec<Spanning> {
     sorted
 }
 
-/// Return whether an outline is the face's own triangle.
+/// Returns true if the outline of a cut face is the face's whole triangle.
 fn is_full_face(cut: &mut CutFace, source: &Source) -> bool {
     let Shape::Mesh(mesh) = source.shape() else {
         return false;
@@ -206,7 +209,7 @@ fn is_full_face(cut: &mut CutFace, source: &Source) -> bool {
     distinct && own.iter().all(|k| [&*p, q, r].contains(&k))
 }
 
-/// A subtree to search for a face, and the face's box in it.
+/// A subtree to search for a face, and the part of the face's bounding box in the subtree's cell.
 #[derive(Clone, Copy)]
 struct Place<'a> {
     branch: &'a Branch,
@@ -216,14 +219,14 @@ struct Place<'a> {
 }
 
 impl<'a> Place<'a> {
-    /// Moves to a child; returns false if the box is not in its cell.
+    /// Replaces the subtree by one of its children; returns false if the box is not inside the child's cell.
     fn enter(&mut self, child: &'a Branch) -> bool {
         self.branch = child;
         self.complement ^= child.complement;
         child.cell.holds_box(&self.low, &self.high)
     }
 
-    /// Return whether this is a leaf that lists the face.
+    /// Returns true if the subtree is a single leaf that lists the face.
     fn is_listed(&self, source: &Source, face: OrientedFace) -> bool {
         match &*self.branch.node {
             Node::Deferred(leaf) => lists(leaf, source, face, self.complement),
@@ -232,7 +235,7 @@ impl<'a> Place<'a> {
     }
 }
 
-/// Return whether every leaf that a face meets lists it; may return false negatives.
+/// Returns true only if every leaf that a face meets lists it; may return false negatives.
 fn covers(root: &Branch, source: &Source, face: OrientedFace) -> bool {
     let (low, high) = source.face_box(face.id());
     if !root.cell.holds_box(&low, &high) {
@@ -278,12 +281,12 @@ fn covers(root: &Branch, source: &Source, face: OrientedFace) -> bool {
     true
 }
 
-/// Return whether a face has area in a cell.
+/// Returns true if the part of a face inside a cell has an area.
 fn enters(source: &Source, face: FaceId, cell: &Cell) -> bool {
     !misses(source, face, cell) && source.clip(face, cell).is_some()
 }
 
-/// Return whether a leaf, inverted if `complement`, lists a face.
+/// Returns true if a leaf lists a face in its orientation, or in the opposite one if `complement` is true.
 fn lists(leaf: &Deferred, source: &Source, face: OrientedFace, complement: bool) -> bool {
     let orientation = face.orientation.turned_if(complement);
     leaf.groups.iter().any(|g| {
@@ -292,9 +295,9 @@ fn lists(leaf: &Deferred, source: &Source, face: OrientedFace, complement: bool)
     })
 }
 
-/// Return whether a solid has no boundary: it is empty or all of space.
+/// Returns true if a solid has no boundary: it is empty or all of space.
 ///
-/// A tree may list faces that meet none of their cells, so the tree alone does not decide.
+/// A leaf may list a face that does not meet its cell, so the tree alone does not decide.
 ///
 /// # Example
 /// ```
@@ -350,7 +353,7 @@ mod tests {
         assert_eq!(fates(Term::And), [0, 4, 4]);
     }
 
-    /// Small boxes cross one side of a large one, whose other sides span many leaves.
+    /// Small boxes cross one side of a large box, whose other sides span many leaves.
     #[test]
     fn faces_that_span_leaves_are_whole_where_nothing_crosses_them() {
         let large = cuboid([0; 3], [64; 3]);

@@ -1,4 +1,4 @@
-//! The listings of all leaves of a tree at once.
+//! Collects, in one pass, the faces and parts of faces that the leaves of a solid's tree list.
 
 use std::ops::{Index, IndexMut};
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -21,29 +21,29 @@ use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node, Part};
 
-/// A face that extends beyond a leaf that lists it.
+/// A face that a leaf lists, though it extends beyond the leaf's cell.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Spanning {
-    /// The face.
+    /// The face and its orientation in the boundary.
     pub face: OrientedFace,
-    /// The number of the leaf.
+    /// The number of the leaf that lists the face.
     pub leaf: u32,
 }
 
-/// The part of a face that one leaf lists.
+/// A part of a face that belongs to the boundary of a solid.
 pub struct Piece<'a> {
-    /// The face.
+    /// The face and its orientation in the boundary.
     pub face: OrientedFace,
     extent: Extent<'a>,
 }
 
-/// The extent of a piece; most outlines are computed only when needed.
+/// The part of a face that a piece covers; its outline is computed only on demand.
 enum Extent<'a> {
-    /// The face, clipped to the cell of the leaf with this number.
+    /// The part of the face in the cell of the leaf with this number.
     Face(u32),
-    /// A whole part.
+    /// A whole part that the tree stores.
     Part(&'a Part),
-    /// These edges.
+    /// The region inside these edges.
     Edges(Vec<OutlineEdge>),
 }
 
@@ -57,7 +57,7 @@ impl From<&Spanning> for Piece<'_> {
 }
 
 impl Piece<'_> {
-    /// The outline of a piece that is the only one of its face.
+    /// Returns the outline of a piece that is the only piece of its face.
     pub fn outline(&mut self, sources: &Sources, cells: &[Cell]) -> Outline {
         match self.extent {
             Extent::Part(part) => Outline::of_bare(&part.edges),
@@ -65,7 +65,7 @@ impl Piece<'_> {
         }
     }
 
-    /// The edges around the piece; moved out of it if it stores them.
+    /// Returns the edges around the piece; if the piece stores them, it has none afterwards.
     pub fn take_edges(&mut self, sources: &Sources, cells: &[Cell]) -> Vec<OutlineEdge> {
         match &mut self.extent {
             Extent::Face(leaf) => {
@@ -79,22 +79,23 @@ impl Piece<'_> {
     }
 }
 
-/// The listings of leaves, in the leaves' order.
+/// The faces and parts that the leaves of a tree list, in the order of the leaves.
 #[derive(Default)]
 pub struct Listed<'a> {
-    /// Faces inside a leaf's cell are whole; faces with a part in a leaf are cut.
+    /// The fates that follow from single leaves: `Whole` for a face inside the cell of a leaf that lists it,
+    /// `Cut` for a face of which a leaf lists a part.
     pub fates: Fates,
-    /// The faces that extend beyond leaves.
+    /// The faces that extend beyond the cell of a leaf that lists them, once for each such leaf.
     pub spanning: Vec<Spanning>,
-    /// The pieces made of the leaves' parts, by face.
+    /// The pieces that the listed parts make up, sorted by face.
     pub parts: Vec<Piece<'a>>,
     /// Faces in cells where several operands met.
     pub near: Vec<SourceFace>,
-    /// The leaves' cells.
+    /// The cell of each leaf.
     pub cells: Vec<Cell>,
 }
 
-/// The listing of one leaf, except for the faces inside its cell.
+/// The faces that extend beyond one leaf's cell, its parts, and its faces near other operands.
 #[derive(Default)]
 struct Found<'a> {
     spanning: Vec<Spanning>,
@@ -102,14 +103,14 @@ struct Found<'a> {
     near: Vec<SourceFace>,
 }
 
-/// A part that a leaf lists.
+/// A part of a face that a leaf lists.
 struct Listing<'a> {
     face: OrientedFace,
     leaf: u32,
     part: &'a Part,
 }
 
-/// A leaf, its number and its element groups' slots.
+/// A leaf of a tree, with its number, its cell, and whether its content is complemented.
 struct Leaf<'a> {
     number: u32,
     cell: Cell,
@@ -117,7 +118,7 @@ struct Leaf<'a> {
     content: &'a Deferred,
 }
 
-/// Collects the listings of all leaves.
+/// Collects the faces and parts that all leaves of a tree list.
 pub fn listed<'a>(root: &'a Branch, sources: &Sources) -> Listed<'a> {
     let leaves = leaves_of(root);
     let fates = AtomicFates::of(&leaves, sources);
@@ -148,12 +149,12 @@ pub fn listed<'a>(root: &'a Branch, sources: &Sources) -> Listed<'a> {
     all
 }
 
-/// The pieces of one face: mostly one.
+/// The pieces of one face; usually there is only one.
 type Pieces<'a> = SmallVec<[Piece<'a>; 1]>;
 
 type Extents<'a> = SmallVec<[Extent<'a>; 1]>;
 
-/// Return the pieces of listed parts, sorted by face, in their leaves.
+/// Turns listed parts, which are sorted by face, into pieces of faces.
 fn pieces<'a>(parts: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
     let runs: Vec<&[Listing]> = parts.chunk_by(|a, b| a.face == b.face).collect();
     let face = carried(|run: &&[Listing<'a>]| pieces_of_face(run, cells));
@@ -165,7 +166,7 @@ fn pieces<'a>(parts: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
     pieces.into_iter().flatten().collect()
 }
 
-/// The pieces of one face: a whole part where it remains, else its parts in the leaves.
+/// Returns the pieces of one face: a whole part if its leaves contain all of it, else its clip to each leaf.
 fn pieces_of_face<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Pieces<'a> {
     let extents = match run {
         [single] => extents(single.part, &[single.leaf], cells),
@@ -194,7 +195,7 @@ fn extents_by_part<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Extents<'a> {
         .collect()
 }
 
-/// Return the extents of a part in the leaves that list it.
+/// Returns a part as one extent if the leaves that list it contain all of it, else its clip to each leaf.
 fn extents<'a>(part: &'a Part, leaves: &[u32], cells: &[Cell]) -> Extents<'a> {
     if is_whole(part, leaves, cells) {
         return smallvec![Extent::Part(part)];
@@ -203,7 +204,7 @@ fn extents<'a>(part: &'a Part, leaves: &[u32], cells: &[Cell]) -> Extents<'a> {
     edges.filter(|e| !e.is_empty()).map(Extent::Edges).collect()
 }
 
-/// Return whether the leaves that list a part contain all of it; may return false negatives.
+/// Returns whether the leaves that list a part together contain all of it; may return false negatives.
 fn is_whole(part: &Part, leaves: &[u32], cells: &[Cell]) -> bool {
     if let [leaf] = leaves
         && cells[*leaf as usize] == part.home
@@ -214,7 +215,7 @@ fn is_whole(part: &Part, leaves: &[u32], cells: &[Cell]) -> bool {
     once && fill(part_box(part), leaves.iter().copied(), cells)
 }
 
-/// A lattice box around a part inside its home cell.
+/// The lattice box of a part, clipped to the part's home cell.
 fn part_box(part: &Part) -> (Lattice, Lattice) {
     let ((low, high), home) = (part.bounds(), (part.home.low(), part.home.high()));
     (
@@ -223,7 +224,7 @@ fn part_box(part: &Part) -> (Lattice, Lattice) {
     )
 }
 
-/// Return whether the cells of different leaves fill a box; may return false negatives.
+/// Returns whether the cells of some leaves together fill a box; may return false negatives.
 ///
 /// Leaves are disjoint, so counting lattice points suffices.
 pub fn fill(
@@ -248,7 +249,7 @@ pub fn fill(
     rest == 0
 }
 
-/// Count the lattice points of a box; `None` for huge ones.
+/// Counts the lattice points of a box; `None` if the count exceeds 128 bits.
 fn count(low: &Lattice, high: &Lattice) -> Option<u128> {
     let extent = |i: usize| u64::try_from(high[i] - low[i] + 1).unwrap_or(0);
     let area = u128::from(extent(0)) * u128::from(extent(1));
@@ -279,44 +280,44 @@ fn leaves_of(root: &Branch) -> Vec<Leaf<'_>> {
     leaves
 }
 
-/// The fate of a face.
+/// How much of a source face belongs to the boundary of a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fate {
-    /// No part of it is boundary.
+    /// No part of the face is boundary.
     Gone,
-    /// All of it is boundary, in this orientation. Never used for a half-space's face, which only
+    /// All of the face is boundary, in this orientation. Never used for the face of a half-space, which only
     /// ends at the border of the universe.
     Whole(Orientation),
-    /// Part of it is boundary, or it joins a polygon of its plane.
+    /// Part of the face is boundary, or the face is joined to a polygon of its plane.
     Cut,
 }
 
-/// The fates of all sources' faces; none for sources that no leaf names.
+/// The fate of each face of each source, by slot; a source that no leaf names has an empty list.
 #[derive(Debug, Default)]
 pub struct Fates(Vec<Vec<Fate>>);
 
 impl Fates {
-    /// The fates of each source's faces.
+    /// Takes one list of fates for each source, by slot.
     pub fn new(by_slot: Vec<Vec<Fate>>) -> Self {
         Self(by_slot)
     }
 
-    /// The fates of a source's faces.
+    /// The fates of the faces of the source at a slot.
     pub fn of(&self, slot: Slot) -> &[Fate] {
         &self.0[slot.place()]
     }
 
-    /// The sources with their faces' fates.
+    /// Yields each slot with the fates of its source's faces.
     pub fn by_slot(&self) -> impl Iterator<Item = (Slot, &[Fate])> {
         Slot::all().zip(self.0.iter().map(Vec::as_slice))
     }
 
-    /// The number of sources.
+    /// The number of sources of the solid.
     pub fn sources(&self) -> usize {
         self.0.len()
     }
 
-    /// The number of faces.
+    /// The number of faces of all sources that some leaf names.
     pub fn faces(&self) -> usize {
         self.0.iter().map(Vec::len).sum()
     }
@@ -336,7 +337,7 @@ impl IndexMut<SourceFace> for Fates {
     }
 }
 
-/// Fates that several threads mark, by slot; empty for sources that no leaf names.
+/// The fate of each source face, by slot, as a byte that several threads may set.
 struct AtomicFates(Vec<Vec<AtomicU8>>);
 
 const GONE: u8 = 0;
@@ -423,7 +424,7 @@ impl<'a> Leaf<'a> {
     }
 }
 
-/// Return a test of whether a face's corners lie in a cell.
+/// Returns a test that is true for a face whose three corners lie in a cell.
 fn holder<'a>(mesh: &'a TriangleMesh, cell: &Cell) -> impl Fn(FaceId) -> bool + 'a {
     let (low, high) = (*cell.low(), cell.high());
     move |face| {
@@ -434,7 +435,7 @@ fn holder<'a>(mesh: &'a TriangleMesh, cell: &Cell) -> impl Fn(FaceId) -> bool + 
     }
 }
 
-/// The edges of a part inside a leaf's cell.
+/// Returns the edges around the part of a face's part that lies in a leaf's cell.
 fn part_edges(part: &Part, cell: &Cell) -> Vec<OutlineEdge> {
     if part.home == *cell {
         return part.outline();

@@ -1,4 +1,4 @@
-//! The boundary as a tree lists it: the fates of its sources' faces, and the rims of whole faces.
+//! The boundary as a tree lists it: the fates of source faces, and the edges where whole faces end.
 
 pub mod collect;
 pub mod leaves;

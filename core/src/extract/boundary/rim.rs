@@ -1,7 +1,7 @@
-//! The rim of a source's whole faces, found by vertices, so that no mates are needed.
+//! Finds where the whole faces of a source end (their rim), by vertices, without opposite half-edges.
 //!
-//! Two faces at an edge share both its ends. So only faces with corners where fates meet can lie
-//! beside a face of another fate. They are few, and are compared by their edges.
+//! Two faces at an edge share both ends of the edge. So a face can lie beside a face of another fate only if
+//! it has a corner where fates differ. Such faces are few, and are compared edge by edge.
 
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
@@ -20,41 +20,42 @@ use crate::mesh::source::Source;
 use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
 
-/// Bits for the faces at a vertex: a whole face, a whole one turned around, any other.
+/// Bit of a vertex at a whole face in its source's orientation; `TURNED`: at a whole face turned around;
+/// `OTHER`: at a face that is cut or gone.
 const KEPT: u8 = 1;
 const TURNED: u8 = 2;
 const OTHER: u8 = 4;
-/// The vertex lies on edges without an opposite by index, which cancel only along lines.
+/// Bit of a vertex on an edge that has no opposite by index, but cancels with other edges on its line.
 const OPEN: u8 = 8;
 
-/// The rims of all sources, by slot.
+/// For each slot, where the whole faces of its source end.
 #[derive(Debug)]
 pub struct Rims {
     by_slot: Vec<Rim>,
-    /// The half-edges near a rim by their ends, found on first use.
+    /// For each slot, half-edges near the rim by their two ends; made on first use.
     by_ends: Vec<OnceLock<HashMap<[VertexId; 2], u32>>>,
-    /// The faces around each vertex of a source, found on first use.
+    /// For each slot, the faces around each vertex of its source; made on first use.
     around: Vec<OnceLock<Around>>,
-    /// Slots whose fates have changed.
+    /// Slots of sources whose fates have changed since their rims were found.
     outdated: BTreeSet<Slot>,
 }
 
-/// An edge of a whole face whose mate is not a whole face of the same orientation.
+/// An edge of a whole face that has no other whole face of the same orientation on its other side.
 #[derive(Clone, Copy, Debug)]
 pub struct FrontierEdge {
-    /// The source.
+    /// The slot of the face's source.
     pub slot: Slot,
-    /// The half-edge.
+    /// The number of the half-edge: three times its face's number, plus its index in the face.
     pub half: u32,
 }
 
 impl FrontierEdge {
-    /// The face it bounds.
+    /// The face that this edge bounds.
     pub fn face(&self) -> SourceFace {
         SourceFace::new(self.slot, FaceId::beside(self.half))
     }
 
-    /// The line it lies on.
+    /// The line that this edge lies on.
     pub fn line(&self, sources: &Sources) -> LineKey {
         let mesh = sources.get(self.slot).mesh();
         let ends = mesh.map(|m| half_edge_ends(m, self.half).map(|v| m.vertices[v.place()]));
@@ -64,7 +65,7 @@ impl FrontierEdge {
 }
 
 impl Rims {
-    /// The rims of these fates.
+    /// Finds for each source where its whole faces end.
     pub fn of(fates: &Fates, sources: &Sources) -> Self {
         let slots: Vec<Slot> = Slot::all().take(fates.sources()).collect();
         let rim = carried(|slot: &Slot| Rim::of(sources.get(*slot), fates.of(*slot)));
@@ -81,12 +82,12 @@ impl Rims {
         }
     }
 
-    /// Remembers that the fates of a source have changed.
+    /// Marks the rim of a source as outdated, because the fates of its faces have changed.
     pub fn outdated(&mut self, slot: Slot) {
         self.outdated.insert(slot);
     }
 
-    /// Finds again the rims of sources whose fates have changed.
+    /// Recomputes the rims that were marked as outdated.
     pub fn renew(&mut self, fates: &Fates, sources: &Sources) {
         for slot in std::mem::take(&mut self.outdated) {
             self.by_slot[slot.place()] = Rim::of(sources.get(slot), fates.of(slot));
@@ -94,12 +95,12 @@ impl Rims {
         }
     }
 
-    /// The rim of a source.
+    /// The rim of the source at a slot.
     pub fn get(&self, slot: Slot) -> &Rim {
         &self.by_slot[slot.place()]
     }
 
-    /// The frontier: half-edges of whole faces without a whole mate of the same orientation.
+    /// Returns the half-edges of whole faces that have no opposite in a whole face of the same orientation.
     pub fn frontier(&self, fates: &Fates, sources: &Sources) -> Vec<FrontierEdge> {
         let mut found = Vec::new();
         for (rim, (slot, fates)) in self.by_slot.iter().zip(fates.by_slot()) {
@@ -111,9 +112,9 @@ impl Rims {
         found
     }
 
-    /// The face across a half-edge, if it may be whole.
+    /// Returns the face on the other side of a half-edge; `None` if no whole face can be there.
     ///
-    /// Finds faces near the rim by their edges, others by their corners.
+    /// Looks up faces near the rim by their edges, and others by their corners.
     pub fn across(&self, slot: Slot, half: u32, sources: &Sources) -> Option<FaceId> {
         let mesh = sources.get(slot).mesh()?;
         let rim = self.get(slot);
@@ -138,7 +139,8 @@ impl Rims {
 /// The faces around each vertex of a mesh.
 #[derive(Clone, Debug)]
 struct Around {
-    /// By vertex, where its faces start in `faces`; ends with the end of the last one's.
+    /// For each vertex, the index in `faces` at which its faces start; the last entry is the length of
+    /// `faces`.
     starts: Vec<u32>,
     faces: Vec<FaceId>,
 }
@@ -173,17 +175,17 @@ impl Around {
     }
 }
 
-/// The vertices where a source's faces of different fates meet, and the whole faces there.
+/// The vertices at which faces of one source have different fates, and the whole faces with such a corner.
 #[derive(Debug, Default)]
 pub struct Rim {
-    /// By vertex, which of the bits above apply.
+    /// For each vertex, those of the bits `KEPT`, `TURNED`, `OTHER` and `OPEN` that apply.
     touch: Vec<u8>,
-    /// The whole faces with a mixed corner, ascending.
+    /// The whole faces with a corner at which fates differ, ascending.
     near: Vec<FaceId>,
 }
 
 impl Rim {
-    /// The rim of a source's whole faces; empty if nothing of the source is left.
+    /// Finds where a source's whole faces end; empty if `fates` is empty.
     fn of(source: &Source, fates: &[Fate]) -> Self {
         let (Some(mesh), false) = (source.mesh(), fates.is_empty()) else {
             return Self::default();
@@ -220,12 +222,13 @@ impl Rim {
         self.touch.iter().map(|touch| touch & (KEPT | TURNED) != 0)
     }
 
-    /// Return whether faces of different fates meet at a vertex.
+    /// Returns true if faces of different fates meet at a vertex, or if the vertex lies on an open edge of a
+    /// face.
     fn is_mixed(&self, vertex: VertexId) -> bool {
         is_mixed(self.touch[vertex.place()])
     }
 
-    /// The half-edges of whole faces without an opposite of the same orientation, ascending.
+    /// Returns the half-edges of whole faces that have no opposite of the same orientation, ascending.
     fn half_edges(&self, mesh: &TriangleMesh, fates: &[Fate]) -> Vec<u32> {
         let mut halves: Vec<Half> = Vec::new();
         for &face in &self.near {
@@ -250,7 +253,7 @@ impl Rim {
         alone
     }
 
-    /// The half-edges of the whole faces with a mixed corner by their ends.
+    /// Maps the two ends of a half-edge to its number, for whole faces with a corner at which fates differ.
     fn by_ends(&self, mesh: &TriangleMesh) -> HashMap<[VertexId; 2], u32> {
         let halves = self.near.iter().flat_map(|face| face.half_edges());
         let mut by_ends = HashMap::default();
@@ -261,7 +264,7 @@ impl Rim {
     }
 }
 
-/// A half-edge of a whole face, sorted by its edge.
+/// A half-edge of a whole face, with the fields by which half-edges are sorted into edges.
 struct Half {
     edge: [VertexId; 2],
     turned: bool,
@@ -280,7 +283,7 @@ impl Half {
     }
 }
 
-/// Return whether several kinds of faces meet.
+/// Returns true if more than one bit of a vertex is set.
 fn is_mixed(touch: u8) -> bool {
     touch & touch.wrapping_sub(1) != 0
 }
@@ -303,7 +306,7 @@ fn touch(mesh: &TriangleMesh, fates: &[Fate]) -> Vec<u8> {
     touch
 }
 
-/// The end vertices of a half-edge.
+/// The vertices at which a half-edge starts and ends.
 pub fn half_edge_ends(mesh: &TriangleMesh, half: u32) -> [VertexId; 2] {
     let face = mesh.vertices_of(FaceId::beside(half));
     let corner = half as usize % 3;
@@ -324,7 +327,8 @@ mod tests {
         let boundary = collect(&solid, &sources);
         let rims = Rims::of(&boundary.fates, &sources);
         let frontier = rims.frontier(&boundary.fates, &sources);
-        // The last face of each has three edges, beside whole faces and beside cut ones.
+        // The last face of the first tetrahedron is cut, beside three whole faces; that of the second is
+        // whole, beside three cut faces.
         assert_eq!(frontier.len(), 6);
         let is_whole = |e: &FrontierEdge| matches!(boundary.fates[e.face()], Fate::Whole(_));
         assert!(frontier.iter().all(is_whole));

@@ -14,10 +14,10 @@ use crate::arith::Sign;
 use crate::interrupt::poll;
 use crate::mesh::handle::VertexId;
 
-/// The fan of a corner not yet visited.
+/// Marks a corner that does not belong to a fan yet.
 const NONE: usize = usize::MAX;
 
-/// The geometry that the splitting needs.
+/// The exact geometry that the splitting of edges and vertices asks for.
 pub trait Radial {
     /// Outward normal of a triangle's plane, exact up to a positive factor, with components below 2^120.
     fn normal(&self, triangle: u32) -> [i128; 3];
@@ -26,14 +26,15 @@ pub trait Radial {
     fn direction(&self, a: VertexId, b: VertexId) -> [Sign; 3];
 }
 
-/// A surface with one vertex for every fan of triangles.
+/// A surface in which the triangles around each vertex form one fan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Split {
     /// The triangles, in the given order, with the new vertices.
     pub corners: Vec<[VertexId; 3]>,
-    /// New vertex to old vertex. Each old vertex keeps its number as its first copy; further copies follow.
+    /// For each new vertex the old vertex that it copies. The first copy has the number of its old vertex;
+    /// further copies follow.
     pub origin: Vec<VertexId>,
-    /// Edges with more than two triangles: old vertices, the lower first, in increasing order.
+    /// Edges with more than two triangles: two old vertices, the lower number first, in increasing order.
     pub split_edges: Vec<[VertexId; 2]>,
     /// Old vertices with more than one copy, in increasing order.
     pub split_vertices: Vec<VertexId>,
@@ -44,15 +45,15 @@ pub struct Split {
 pub enum Error {
     /// A corner is not the index of a vertex, or two corners of the triangle are the same.
     BadTriangle {
-        /// Index of the triangle.
+        /// The number of the triangle.
         triangle: usize,
     },
     /// The edge is not used equally often in both directions.
     Open {
-        /// The edge's vertices, the lower first.
+        /// The edge's vertices, the lower number first.
         edge: [VertexId; 2],
     },
-    /// Triangles or copies of vertices cannot be counted in 32 bits.
+    /// There are too many triangles, or too many copies of vertices, to count them in 32 bits.
     TooMany,
 }
 
@@ -73,9 +74,9 @@ impl std::error::Error for Error {}
 
 /// Splits a closed surface until it is a manifold by index.
 ///
-/// At an edge of more than two triangles, two that bound the same wedge of the inside stay
-/// together. If that would give two copies of an edge the same ends, so that vertices cannot tell
-/// them apart, their mates are exchanged: then the outside between them is separated.
+/// At an edge of more than two triangles, the two that bound the same wedge of the inside stay together. If
+/// two copies of the edge would then have the same ends, their opposite half-edges are exchanged: then the
+/// outside between them is separated.
 ///
 /// # Order
 /// Triangles keep their order. Copies are numbered by the first triangle that uses them.
@@ -142,7 +143,7 @@ fn check_triangles(triangles: &[[VertexId; 3]], vertex_count: u32) -> Result<(),
     }
 }
 
-/// Triangles and, for every half-edge, the opposite one across the surface.
+/// Triangles and, for every half-edge, the number of its opposite half-edge.
 struct Surface<'a> {
     triangles: &'a [[VertexId; 3]],
     mates: Vec<usize>,
@@ -150,9 +151,9 @@ struct Surface<'a> {
 
 /// An edge of more than two triangles.
 struct Crowded {
-    /// The lower vertex first.
+    /// The edge's vertices, the lower number first.
     ends: [VertexId; 2],
-    /// The half-edges from the lower to the higher vertex.
+    /// The half-edges that run from the lower to the higher vertex.
     forward: Vec<usize>,
 }
 
@@ -162,7 +163,8 @@ impl Surface<'_> {
         self.mates[h] = g;
     }
 
-    /// Finds all mates; returns the crowded edges, ordered by their vertices.
+    /// Pairs each half-edge with an opposite one; returns the edges of more than two triangles, ordered by
+    /// vertices.
     fn pair_all<R: Radial>(
         &mut self,
         vertex_count: u32,
@@ -181,7 +183,8 @@ impl Surface<'_> {
         Ok(crowded)
     }
 
-    /// Half-edges grouped by the lower of their vertices, and where each group starts.
+    /// Groups half-edges by the lower of their vertices; returns where each group starts, and all
+    /// half-edges.
     fn halves_by_lower_end(&self, vertex_count: u32) -> (Vec<usize>, Vec<usize>) {
         let group = |half: usize| ends(self.triangles, half)[0].place();
         let mut starts = vec![0; vertex_count as usize + 1];
@@ -207,12 +210,13 @@ impl Surface<'_> {
         origin(self.triangles, half) < origin(self.triangles, next(half))
     }
 
-    /// Orders half-edges by edge, forward ones first.
+    /// The sort key of a half-edge among those with the same lower vertex: edge, then forward ones first.
     fn edge_key(&self, half: usize) -> (VertexId, bool, usize) {
         (ends(self.triangles, half)[1], !self.is_forward(half), half)
     }
 
-    /// Pairs the half-edges of one edge, forward ones first.
+    /// Pairs the half-edges of one edge, of which the forward ones come first; returns the edge if there are
+    /// more than two.
     fn pair_edge<R: Radial>(
         &mut self,
         halves: &[usize],
@@ -240,7 +244,7 @@ impl Surface<'_> {
         }
     }
 
-    /// The next corner around the same vertex.
+    /// Returns the next corner around the vertex of a corner.
     fn turn(&self, corner: usize) -> usize {
         self.mates[next(next(corner))]
     }
@@ -250,7 +254,7 @@ fn origin(triangles: &[[VertexId; 3]], half: usize) -> VertexId {
     triangles[half / 3][half % 3]
 }
 
-/// The vertices of a half-edge, the lower first.
+/// The vertices of a half-edge, the lower number first.
 fn ends(triangles: &[[VertexId; 3]], half: usize) -> [VertexId; 2] {
     let (a, b) = (origin(triangles, half), origin(triangles, next(half)));
     [a.min(b), a.max(b)]
@@ -266,7 +270,7 @@ fn next(half: usize) -> usize {
 
 /// The corners around vertices, grouped into connected fans.
 struct Fans {
-    /// Corner to fan.
+    /// For each corner the number of its fan.
     of: Vec<usize>,
     count: usize,
 }
@@ -286,7 +290,8 @@ impl Fans {
         fans
     }
 
-    /// Makes the corners reached from `start` a new fan.
+    /// Gives a new fan number to all corners around the vertex of corner `start` that are reached by
+    /// turning.
     fn label(&mut self, surface: &Surface, start: usize) {
         let mut corner = start;
         while self.of[corner] != self.count {
@@ -296,7 +301,8 @@ impl Fans {
         self.count += 1;
     }
 
-    /// Exchanges mates at an edge until no two of its copies have the same fans at both ends.
+    /// Exchanges opposite half-edges at an edge until no two copies of the edge have the same fans at both
+    /// ends.
     ///
     /// Exchanging the mates of two half-edges in one fan cuts the fan in two, at either end. Fans
     /// are only ever cut, so distinct copies stay distinct.
@@ -314,7 +320,7 @@ impl Fans {
         }
     }
 
-    /// Gives every fan its own vertex.
+    /// Gives each fan its own vertex; returns the triangles over these vertices.
     fn number(
         &self,
         surface: &Surface,

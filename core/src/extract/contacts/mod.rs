@@ -1,4 +1,4 @@
-//! The places where a solid touches itself: edges of four or more faces, vertices of several fans.
+//! Edges of four or more faces, and vertices of several fans, at which a solid's surface touches itself.
 
 pub mod fans;
 
@@ -17,8 +17,9 @@ use crate::merge::lists::list::Sources;
 use crate::mesh::finding::{Finding, Severity};
 use crate::mesh::handle::VertexId;
 
-/// Splits contacts, so that every directed edge has exactly one opposite by index and every vertex
-/// one fan, and reports them. Copies follow their vertex.
+/// Splits edges and vertices at which the surface touches itself, and adds findings about them: then every
+/// directed edge has exactly one opposite by index and every vertex one fan. Copies directly follow their
+/// vertex.
 pub(super) fn split(mesh: &mut ExactMesh, sources: &Sources) -> Result<()> {
     let count = as_number(mesh.vertices.len());
     let split = split_fans(&mesh.triangles, count, &Geometry { mesh, sources })
@@ -41,7 +42,7 @@ pub(super) fn split(mesh: &mut ExactMesh, sources: &Sources) -> Result<()> {
     Ok(())
 }
 
-/// Adds a finding about vertices, given with their new numbers, if there are any.
+/// Adds a finding about vertices, if there are any; `numbers` maps each given vertex to its final number.
 fn add_finding(
     mesh: &mut ExactMesh,
     code: &'static str,
@@ -56,7 +57,8 @@ fn add_finding(
     }
 }
 
-/// Return whether the triangles around special vertices form one closed fan each.
+/// Returns true if the triangles around each special vertex, one that not only untouched faces use, form one
+/// closed fan.
 ///
 /// # Errors
 /// `Overlap` if an edge at a special vertex has no opposite: the assembly is not closed.
@@ -81,11 +83,12 @@ pub(super) fn is_manifold(assembly: &Assembly) -> Result<bool, Failure> {
     Ok(single)
 }
 
-/// The corners at special vertices, by vertex: the next and the previous vertex of each triangle.
+/// For each special vertex, one that not only untouched faces use, the next and the previous vertex in each
+/// triangle around it.
 struct Fans {
     starts: Vec<usize>,
     corners: Vec<[VertexId; 2]>,
-    /// Directed edges between other vertices, of triangles with a special vertex.
+    /// Directed edges of these triangles between vertices that are not special.
     apart: Vec<[VertexId; 2]>,
 }
 
@@ -122,14 +125,14 @@ impl Fans {
         fans
     }
 
-    /// Return whether no directed edge between vertices that are not special occurs twice.
+    /// Sorts the directed edges between vertices that are not special; returns true if none occurs twice.
     fn edges_apart_are_single(&mut self) -> bool {
         self.apart.sort_unstable();
         self.apart.windows(2).all(|pair| pair[0] != pair[1])
     }
 }
 
-/// Return whether as many triangles leave as arrive along each edge at a vertex.
+/// Returns true if, along each edge at a vertex, as many triangles start there as end.
 fn is_balanced(fan: &[[VertexId; 2]]) -> bool {
     let mut starts: Vec<VertexId> = fan.iter().map(|c| c[0]).collect();
     let mut ends: Vec<VertexId> = fan.iter().map(|c| c[1]).collect();
@@ -138,7 +141,7 @@ fn is_balanced(fan: &[[VertexId; 2]]) -> bool {
     starts == ends
 }
 
-/// Return whether corners are one closed fan that leaves along each edge once; sorts them.
+/// Sorts the corners at a vertex; returns true if they form one closed fan that uses each edge once.
 fn is_single_fan(fan: &mut [[VertexId; 2]]) -> bool {
     fan.sort_unstable();
     if fan.windows(2).any(|pair| pair[0][0] == pair[1][0]) {

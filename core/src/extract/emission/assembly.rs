@@ -14,26 +14,26 @@ use crate::merge::lists::list::Sources;
 use crate::mesh::handle::{OrientedFace, Slot, VertexId};
 use crate::mesh::triangles::TriangleMesh;
 
-/// The mesh under construction.
+/// A triangle mesh under construction, with exact vertices.
 pub(in crate::extract) struct Assembly<'a> {
     pub(in crate::extract) sources: &'a Sources,
     pub(in crate::extract) table: VertexTable,
-    /// For each slot the output vertex of each of its vertices.
+    /// For each slot, the output vertex of each vertex of its source.
     pub(in crate::extract) images: Vec<Vec<VertexId>>,
-    /// For each table point its output vertex.
+    /// For each point of the vertex table, its output vertex.
     pub(in crate::extract) point_images: Vec<VertexId>,
-    /// For each table point the first source vertex there.
+    /// For each point of the vertex table, the first source vertex at the same position.
     pub(in crate::extract) names: HashMap<u32, (Slot, VertexId)>,
     pub(in crate::extract) vertices: Vec<Corner>,
     pub(in crate::extract) triangles: Vec<[VertexId; 3]>,
     pub(in crate::extract) faces: Vec<OrientedFace>,
-    /// The triangles at the start, which are untouched faces of sources.
+    /// The triangles at the start of `triangles`, which are untouched faces of sources.
     pub(in crate::extract) untouched: Untouched,
     /// True if areas are compared, because faces of one plane might overlap.
     pub(in crate::extract) verify: bool,
 }
 
-/// Marks a vertex without a number.
+/// Stands for a vertex that has no number yet.
 pub(in crate::extract) const NONE: VertexId = VertexId(u32::MAX);
 
 impl<'a> Assembly<'a> {
@@ -56,7 +56,7 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// The table number of a source's vertex, which is that point from now on.
+    /// Returns the table number of a source vertex, and from now on uses this table point for the vertex.
     pub(in crate::extract) fn point_of(
         &mut self,
         slot: Slot,
@@ -74,8 +74,8 @@ impl<'a> Assembly<'a> {
         point
     }
 
-    /// Records that a point is a vertex of a source; the first of several names it, in any order of
-    /// calls.
+    /// Records that a table point is a vertex of a source; of several such vertices the first by slot and
+    /// number names it, whatever the order of calls.
     pub(in crate::extract) fn name(&mut self, point: u32, vertex: (Slot, VertexId)) {
         let name = self.names.entry(point).or_insert(vertex);
         *name = vertex.min(*name);
@@ -93,18 +93,19 @@ impl<'a> Assembly<'a> {
         *image
     }
 
-    /// The triangles with a special vertex.
+    /// Yields the triangles with a special vertex, one that not only untouched faces use.
     pub(in crate::extract) fn special_triangles(&self) -> impl Iterator<Item = u32> + '_ {
         let last = as_number(self.untouched.count)..as_number(self.triangles.len());
         self.untouched.special.iter().copied().chain(last)
     }
 
-    /// Return the number of special vertices.
+    /// Returns the number of special vertices, those that not only untouched faces use.
     pub(in crate::extract) fn special_count(&self) -> usize {
         self.vertices.len() - self.untouched.own_count()
     }
 
-    /// The place of a vertex among the special ones, if it is special.
+    /// Returns the index of a vertex among those that not only untouched faces use; `None` if only they use
+    /// it.
     pub(in crate::extract) fn special_place(&self, vertex: VertexId) -> Option<usize> {
         let others = &self.untouched.vertices;
         if vertex < others.start {
@@ -114,7 +115,7 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// The special vertex at a place.
+    /// Returns the vertex at an index among the vertices that not only untouched faces use.
     pub(in crate::extract) fn special_vertex(&self, place: usize) -> VertexId {
         let before = place < self.untouched.vertices.start.place();
         VertexId::of(if before {
@@ -124,14 +125,14 @@ impl<'a> Assembly<'a> {
         })
     }
 
-    /// The faces of the triangles at a vertex.
+    /// Returns the faces that the triangles at a vertex lie in.
     pub(in crate::extract) fn faces_at(&self, vertex: VertexId) -> Vec<OrientedFace> {
         let around = self.triangles.iter().zip(&self.faces);
         let around = around.filter(|(triangle, _)| triangle.contains(&vertex));
         around.map(|(_, face)| *face).collect()
     }
 
-    /// Emits a triangle of table points.
+    /// Appends a triangle whose corners are points of the vertex table.
     pub(in crate::extract) fn push(&mut self, triangle: [u32; 3], face: OrientedFace) {
         let triangle = triangle.map(|p| self.image_of_point(p));
         self.triangles.push(triangle);
@@ -161,7 +162,8 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// The vertices that triangles use: those of sources by slot and number, then constructed points.
+    /// Returns the vertices that triangles use, in output order: those of sources by slot and number, then
+    /// constructed points.
     fn order(&self) -> Vec<VertexId> {
         let mut given: Vec<(Slot, VertexId, VertexId)> = Vec::new();
         let mut points: Vec<VertexId> = Vec::new();
@@ -172,7 +174,7 @@ impl<'a> Assembly<'a> {
             }
         }
         given.sort_unstable();
-        // The others are already in order.
+        // The vertices that only untouched faces use are already in order.
         let Range { start, end } = self.untouched.vertices.clone();
         let own = &self.vertices[start.place()..end.place()];
         let mut order = Vec::with_capacity(own.len() + given.len() + points.len());
@@ -189,7 +191,7 @@ impl<'a> Assembly<'a> {
         order
     }
 
-    /// The special vertices that triangles use, ascending.
+    /// Yields the vertices that triangles use, ascending, without those that only untouched faces use.
     fn used_special_vertices(&self) -> impl Iterator<Item = VertexId> {
         let mut used = vec![false; self.special_count()];
         for triangle in self.special_triangles() {

@@ -1,4 +1,4 @@
-//! The emission of triangles and vertices: whole faces, and triangulated polygons.
+//! Adds the triangles and vertices of whole faces and of triangulated polygons to the mesh.
 
 pub(super) mod assembly;
 pub(super) mod origin;

@@ -1,4 +1,4 @@
-//! The origins of new triangles: the source face that each triangle of a joined polygon lies in.
+//! Finds the source face that each new triangle of a joined polygon lies in.
 
 use crate::arith::convert::as_number;
 use crate::extract::joining::group::PlaneGroup;
@@ -9,24 +9,24 @@ use crate::merge::lists::list::Sources;
 use crate::mesh::handle::OrientedFace;
 use crate::mesh::source::Shape;
 
-/// At most this many points are compared with all faces near them: halving more costs less.
+/// At most this many points are compared with all faces near them; longer lists are halved first.
 const MAX_POINTS_UNHALVED: usize = 8;
 
-/// Halving points does not pay if the halves together keep more than this many sixteenths of the
-/// faces, seven of eight each.
+/// A list of points is not halved if both halves together would list more than this many sixteenths of the
+/// faces, that is, seven eighths each.
 const MAX_SIXTEENTHS_LEFT: usize = 28;
 
-/// The share of the largest coordinate by which rounding may move a corner or a side.
+/// A bound on how far rounding may move a corner or a side, relative to the largest coordinate.
 const ROUNDING: f64 = 1e-12;
 
-/// The faces of one plane in a projection, for queries by point.
+/// Finds the face of a plane group at a point, in a projection of the plane.
 ///
-/// A triangle of a joined polygon may lie in several faces; the face at its centre stands for it.
-/// Doubles decide, because only the name depends on it. The first face that contains the centre up
-/// to rounding wins: so a centre on a common edge always gets the same one.
+/// A triangle of a joined polygon may lie in several faces; its origin is the face at its centre. Doubles
+/// decide, because nothing else depends on the origin. The first face that contains the centre up to
+/// rounding is taken: so a centre on a common edge always gets the same face.
 pub struct Owners<'a> {
     group: &'a PlaneGroup,
-    /// The corners of each face; none for a half-space, which is everywhere.
+    /// The corners of each face; `None` for the face of a half-space, which covers the plane.
     corners: Vec<Option<[[f64; 2]; 3]>>,
 }
 
@@ -40,7 +40,7 @@ struct Search<'p> {
 }
 
 impl<'a> Owners<'a> {
-    /// The faces of a group.
+    /// Projects the faces of a plane group.
     pub fn new(group: &'a PlaneGroup, view: &Projection, sources: &Sources) -> Self {
         let corners = |face: &OrientedFace| match sources.get(face.slot()).shape() {
             Shape::Mesh(mesh) => Some(mesh.corners(face.id()).map(|p| view.flat(&p))),
@@ -50,11 +50,11 @@ impl<'a> Owners<'a> {
         Self { group, corners }
     }
 
-    /// The faces at the centres of triangles, or the first face if rounding finds none.
+    /// Returns for each triangle the face at its centre, or the group's first face if rounding leaves none.
     ///
     /// # Cost
-    /// Points are halved, each half with the faces that reach into it: a face is in as many parts
-    /// as it crosses, the root of their number if it is long.
+    /// Points are halved, each half with the faces that meet its box. A long face meets about the square
+    /// root of the number of parts.
     pub fn at_centres(&self, triangles: &[[u32; 3]], view: &Projection) -> Vec<OrientedFace> {
         let centre = |triangle: &[u32; 3]| {
             let corners = triangle.map(|p| view.approx(p));
@@ -87,7 +87,8 @@ impl<'a> Owners<'a> {
         }
     }
 
-    /// Splits a search in two, or returns it if that gains little.
+    /// Halves the points of a search, each half with the faces near it; returns the search as an error if
+    /// that gains little.
     fn halved<'p>(&self, search: Search<'p>) -> Result<[Search<'p>; 2], Search<'p>> {
         let Search { points, faces } = search;
         if points.len() <= MAX_POINTS_UNHALVED || faces.len() <= MAX_POINTS_UNHALVED {
@@ -110,14 +111,13 @@ impl<'a> Owners<'a> {
         Err(Search { points, faces })
     }
 
-    /// Those of `faces` that may contain a point of a box.
+    /// Returns the faces among `faces` that may contain a point of a box.
     fn reaching(&self, faces: &[u32], bounds: &Bounds) -> Vec<u32> {
         let faces = faces.iter().copied();
         faces.filter(|face| self.reaches(*face, bounds)).collect()
     }
 
-    /// Return false only if a face misses a box; it misses a point only if that lies outside by
-    /// more than rounding.
+    /// Returns false only if a face misses a box by more than rounding.
     fn reaches(&self, face: u32, bounds: &Bounds) -> bool {
         let corners = self.corners[face as usize];
         corners.is_none_or(|corners| may_meet(&corners, bounds))
@@ -143,7 +143,7 @@ fn turn([a, b]: [[f64; 2]; 2], p: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
 }
 
-/// Return false only if the box of a triangle, or one of its sides, separates it from a box.
+/// Returns false only if a side of the box, or of the triangle, separates the two by more than rounding.
 fn may_meet(corners: &[[f64; 2]; 3], [low, high]: &Bounds) -> bool {
     let largest = corners
         .iter()

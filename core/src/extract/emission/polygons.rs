@@ -1,4 +1,4 @@
-//! Triangulated polygons of a mesh under construction: plane groups, and split whole faces.
+//! Triangulates polygons of a mesh under construction: plane groups, and whole faces with inserted points.
 
 use std::sync::Arc;
 
@@ -16,11 +16,11 @@ use crate::interrupt::{carried, poll};
 use crate::mesh::handle::OrientedFace;
 use crate::mesh::tasks::{in_pool, CHUNK};
 
-/// Triangles, and the face that each lies in.
+/// Triangles of table points, each with the source face that it lies in.
 type Triangles = Vec<([u32; 3], OrientedFace)>;
 
 impl Assembly<'_> {
-    /// Triangulates a whole face that received vertices on its edges.
+    /// Triangulates a whole face with the points inserted on its edges, and appends the triangles.
     pub(in crate::extract) fn emit_split(
         &mut self,
         face: OrientedFace,
@@ -61,7 +61,7 @@ impl Assembly<'_> {
         Ok(())
     }
 
-    /// Triangulates the groups; frees each one as soon as it is done.
+    /// Triangulates plane groups and appends the triangles; frees each group as soon as it is done.
     pub(in crate::extract) fn emit_groups(
         &mut self,
         groups: Vec<PlaneGroup>,
@@ -98,7 +98,7 @@ impl Assembly<'_> {
         Ok(())
     }
 
-    /// The triangles of a group, and the face that each lies in.
+    /// Returns the triangles of a plane group, each with the source face that it lies in.
     fn triangulated_group(
         &self,
         group: &PlaneGroup,
@@ -114,7 +114,7 @@ impl Assembly<'_> {
         Ok(triangles.into_iter().zip(faces).collect())
     }
 
-    /// The triangles of a region in a plane, made up of `faces`.
+    /// Returns the triangles of the region that `edges` bound in a plane; an error names `faces`.
     fn triangulated(
         &self,
         plane: &Plane,
@@ -135,7 +135,7 @@ impl Assembly<'_> {
     }
 }
 
-/// Edges, numbered from `first` on, divided at their inner points.
+/// Divides edges at their inner points; the first edge has the number `first` in `inner`.
 fn chain(edges: &[Edge], first: usize, inner: &InnerPoints) -> Vec<(u32, u32)> {
     let mut chain = Vec::with_capacity(edges.len());
     for (edge, i) in edges.iter().zip(first..) {
@@ -150,7 +150,7 @@ fn chain(edges: &[Edge], first: usize, inner: &InnerPoints) -> Vec<(u32, u32)> {
     chain
 }
 
-/// Return whether the triangles' area is the one the outline encloses, as far as doubles can tell.
+/// Returns true if the area of the triangles is the area inside the edges, in doubles, up to one millionth.
 fn covers_once(view: &Projection, edges: &[(u32, u32)], triangles: &[[u32; 3]]) -> bool {
     let Some(origin) = edges.first().map(|e| view.approx(e.0)) else {
         return true;

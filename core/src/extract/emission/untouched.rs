@@ -1,4 +1,4 @@
-//! The emission of whole faces: the bulk of most meshes, in linear passes.
+//! Emits the faces that are boundary as a whole, the bulk of most meshes, in linear passes.
 
 use std::ops::Range;
 
@@ -12,18 +12,18 @@ use crate::mesh::handle::{FaceId, OrientedFace, Slot, SourceFace, VertexId};
 use crate::mesh::tasks::{each_chunk, in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
 
-/// The triangles at the start of a mesh, which are untouched faces of sources.
+/// The untouched faces of sources among the triangles of a mesh; they come first.
 #[derive(Debug, Default)]
 pub struct Untouched {
-    /// The vertices that only such triangles use.
+    /// The vertices that only triangles of untouched faces use.
     pub vertices: Range<VertexId>,
-    /// The number of triangles.
+    /// The number of triangles of untouched faces.
     pub count: usize,
-    /// The triangles that also have other vertices, ascending.
+    /// The triangles of untouched faces with a vertex that other triangles may also use, ascending.
     pub special: Vec<u32>,
 }
 
-/// A chunk of faces and the places of its triangles.
+/// A chunk of a source's faces, and the output slices for their triangles.
 struct Task<'a> {
     first_face: usize,
     first_triangle: u32,
@@ -34,16 +34,16 @@ struct Task<'a> {
 
 /// A source whose whole faces are to be emitted.
 pub struct Emitted<'a> {
-    /// Its slot.
+    /// The slot of the source.
     pub slot: Slot,
-    /// Its faces.
+    /// The triangle mesh of the source.
     pub mesh: &'a TriangleMesh,
-    /// The number of each of its vertices.
+    /// The output vertex of each vertex of the source.
     pub images: &'a [VertexId],
 }
 
 impl Untouched {
-    /// Starts without triangles; `vertices` are those that only they will use.
+    /// Starts without triangles; only untouched faces will use `vertices`.
     pub fn new(vertices: Range<VertexId>) -> Self {
         Self {
             vertices,
@@ -51,12 +51,12 @@ impl Untouched {
         }
     }
 
-    /// The number of these vertices.
+    /// The number of vertices that only untouched faces use.
     pub fn own_count(&self) -> usize {
         self.vertices.end.place() - self.vertices.start.place()
     }
 
-    /// Appends the whole faces of a source.
+    /// Appends the triangles of a source's whole faces.
     pub fn emit(
         &mut self,
         source: &Emitted,
@@ -101,7 +101,7 @@ impl Untouched {
 }
 
 impl Task<'_> {
-    /// Fills in the triangles; returns the numbers of those with vertices outside `own`.
+    /// Writes the triangles of the whole faces; returns the numbers of those with a vertex outside `own`.
     fn run(self, source: &Emitted, own: &Range<VertexId>) -> Vec<u32> {
         let mut special = Vec::new();
         let out = self.triangles.iter_mut().zip(self.faces.iter_mut());

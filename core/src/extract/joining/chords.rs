@@ -1,4 +1,4 @@
-//! Division of polygons along edges of other faces in the middle of them.
+//! Divides polygons along edges of other faces that lie inside them.
 
 use std::sync::Arc;
 
@@ -14,25 +14,25 @@ use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
 use crate::mesh::handle::OrientedFace;
 
-/// An edge of a surface that lies in the middle of a face.
+/// An edge of a surface that lies inside a face of the same surface.
 #[derive(Clone, Debug)]
 pub struct EdgeContact {
-    /// The ends of the edge.
+    /// The two ends of the edge.
     pub ends: [Arc<Vertex>; 2],
-    /// The faces that meet in it.
+    /// The two faces that share the edge.
     pub beside: [OrientedFace; 2],
-    /// The face that it lies in.
+    /// The face whose interior contains the edge.
     pub face: OrientedFace,
 }
 
 impl EdgeContact {
-    /// The three faces.
+    /// The face that contains the edge, and the two faces that share it.
     pub fn faces(&self) -> [OrientedFace; 3] {
         let [first, second] = self.beside;
         [self.face, first, second]
     }
 
-    /// The edge as a chord that divides the polygon of the face it lies in.
+    /// The edge as a chord, which divides the polygon of the face that contains it.
     pub fn chord(&self, sources: &Sources) -> Chord {
         let [beside, _] = self.beside;
         Chord {
@@ -42,7 +42,7 @@ impl EdgeContact {
     }
 }
 
-/// A segment in a polygon's plane, and another plane through it.
+/// A segment in a polygon's plane, and another plane that contains the segment.
 #[derive(Clone, Debug)]
 pub struct Chord {
     ends: [Arc<Vertex>; 2],
@@ -50,27 +50,27 @@ pub struct Chord {
 }
 
 impl Chord {
-    /// Return whether an end lies on the minus side and on the plus side of a plane; neither if the
-    /// plane contains the chord.
+    /// Returns whether an end of the chord lies on the minus side of a plane, and whether one lies on the
+    /// plus side.
     fn reaches(&self, plane: &Plane) -> [bool; 2] {
         let sides = self.ends.each_ref().map(|end| end.side_of(plane));
         [Side::Minus, Side::Plus].map(|side| sides.contains(&side))
     }
 }
 
-/// A part of a group that may be divided further.
+/// A part of a plane group, and the chords that divide it further.
 struct Part {
     edges: Vec<BareEdge>,
     faces: SmallVec<[OrientedFace; 2]>,
     chords: Vec<Chord>,
 }
 
-/// Divides a group along chords, each extended to the ends of the part it lies in: a planar
-/// autopartition. Adds the lines of the chords that divided something.
+/// Divides a plane group along chords, each extended through the part that it lies in: a planar
+/// autopartition. Appends to `lines` the line of each chord that was used.
 ///
 /// # Cost
-/// Each part is traversed for each chord that divides it. The middle chord comes first: it halves
-/// the number of sorted parallel chords, and in general that of others.
+/// Each part is traversed once for each chord that divides it. The middle chord of a list comes first: of
+/// sorted parallel chords, half lie on either side of it.
 ///
 /// # Source
 /// Thibault, Naylor 1987 (autopartition).
@@ -106,7 +106,8 @@ pub fn divided(
 }
 
 impl Part {
-    /// The parts on the minus and on the plus side of a plane across the group's.
+    /// Returns the parts on the minus and on the plus side of `cut`, a plane across the group's plane
+    /// `support`.
     fn halved(self, support: &Arc<Plane>, cut: &Arc<Plane>, sources: &Sources) -> [Self; 2] {
         let mut halves = halves(self.edges, support, cut).map(|edges| Self {
             edges,
@@ -131,7 +132,8 @@ impl Part {
     }
 }
 
-/// Return whether a face reaches the minus and the plus side of a plane across it.
+/// Returns whether a face has a corner on the minus side of a plane, and whether it has one on the plus
+/// side.
 fn reaches(face: OrientedFace, plane: &Plane, sources: &Sources) -> [bool; 2] {
     let Some(mesh) = sources.get(face.slot()).mesh() else {
         // A half-space's face is everywhere.

@@ -1,4 +1,4 @@
-//! Polygons with holes in one plane, and the faces that make them up.
+//! Polygons with holes in one plane, and the source faces that make them up.
 
 use std::sync::Arc;
 
@@ -9,24 +9,24 @@ use crate::geometry::outline::{BareEdge, Outline};
 use crate::geometry::plane::Plane;
 use crate::mesh::handle::OrientedFace;
 
-/// All boundary in one oriented plane except for untouched faces.
+/// The boundary in one oriented plane, as far as its faces were cut or adjoin cut faces.
 #[derive(Debug)]
 pub struct PlaneGroup {
-    /// The plane, inside on its minus side.
+    /// The plane, with the inside of the solid on its minus side.
     pub plane: Arc<Plane>,
-    /// The faces that lie in it, ascending.
+    /// The faces that lie in the plane, ascending.
     pub faces: SmallVec<[OrientedFace; 2]>,
-    /// The outline, counterclockwise as seen from outside.
+    /// The outline of all faces together, counterclockwise as seen from outside the solid.
     pub outline: Outline,
 }
 
 impl PlaneGroup {
-    /// The edges of the outline.
+    /// The edges of the polygon's outline.
     pub fn edges(&self) -> &[BareEdge] {
         self.outline.edges()
     }
 
-    /// The keys of the lines that the edges lie on.
+    /// The keys of the lines that contain the edges, in the order of the edges.
     pub fn lines(&mut self) -> &[LineKey] {
         self.outline.lines(&PlaneResidues::of(&self.plane))
     }

@@ -1,4 +1,4 @@
-//! Cut faces joined by plane, and edges subdivided until they pair.
+//! Joins the cut faces of each plane, and subdivides edges until each has an opposite.
 
 pub mod chords;
 pub mod group;

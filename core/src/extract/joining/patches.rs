@@ -1,13 +1,13 @@
-//! Patches: the faces of one plane that may become one polygon, and where it is divided.
+//! Patches: which faces of a plane may be joined to one polygon, and where such polygons are divided.
 
 use super::chords::EdgeContact;
 use crate::mesh::handle::SourceFace;
 use crate::mesh::source::Source;
 
-/// The patch of each face, by its source's slot and its number in the input.
+/// The patch number of each face, by the slot of its source and its number in the input.
 ///
-/// Faces of different patches are never joined, so that each triangle lies in one of the faces
-/// whose data differ. Without patches all faces in a plane are joined.
+/// Faces of different patches are never joined, so that a triangle does not lie in faces whose data differ.
+/// Without patches all faces in a plane are joined.
 ///
 /// # Example
 /// ```
@@ -31,11 +31,11 @@ pub struct Patches {
     contacts: Vec<EdgeContact>,
 }
 
-/// The patch of faces of sources without patches.
+/// The patch number of all faces of sources without patches.
 const COMMON: u32 = u32::MAX;
 
 impl Patches {
-    /// The patches of the faces of each source; `None` for a source without patches.
+    /// Takes for each source the patch number of each of its faces; `None` for a source without patches.
     pub fn new(patches: Vec<Option<Vec<u32>>>) -> Self {
         Self {
             by_slot: patches,
@@ -43,7 +43,7 @@ impl Patches {
         }
     }
 
-    /// The same patches, with each polygon divided at the edges in the middle of it.
+    /// Returns the same patches, but each polygon will also be divided at the edges of `contacts` inside it.
     #[must_use]
     pub fn divided(&self, contacts: &[EdgeContact]) -> Self {
         Self {
@@ -52,12 +52,12 @@ impl Patches {
         }
     }
 
-    /// The edges in the middle of polygons, which are divided there.
+    /// The edges inside polygons at which these polygons are divided.
     pub fn contacts(&self) -> &[EdgeContact] {
         &self.contacts
     }
 
-    /// Return the patch of a face.
+    /// Returns the patch number of a face.
     pub fn of(&self, face: SourceFace, source: &Source) -> u32 {
         let own = self.by_slot.get(face.slot.place()).and_then(Option::as_ref);
         let found = own.and_then(|own| own.get(source.number(face.id) as usize));

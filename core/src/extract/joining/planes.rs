@@ -1,4 +1,4 @@
-//! Cut faces and their coplanar neighbours joined into polygons with holes.
+//! Joins cut faces and the faces that continue them in their plane to polygons with holes.
 
 use std::sync::Arc;
 
@@ -20,16 +20,16 @@ use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
 use crate::mesh::handle::{OrientedFace, SourceFace};
 
-/// A group under construction.
+/// A plane group whose faces are still being gathered.
 struct Gathered {
     plane: Arc<Plane>,
     patch: u32,
     faces: SmallVec<[OrientedFace; 2]>,
-    /// The outlines of cut faces.
+    /// The outlines of the cut faces in the group.
     cut: SmallVec<[Outline; 1]>,
-    /// The edges of whole faces.
+    /// The edges of whole faces that joined the group.
     whole: Vec<OutlineEdge>,
-    /// The chords that divide the group afterwards.
+    /// The chords that divide the polygon of the group.
     chords: Vec<Chord>,
 }
 
@@ -51,7 +51,7 @@ impl Gathered {
     }
 }
 
-/// Groups under construction.
+/// All plane groups while their faces are being gathered.
 struct Grouping<'a> {
     sources: &'a Sources,
     patches: &'a Patches,
@@ -63,22 +63,22 @@ struct Grouping<'a> {
     rims: Rims,
 }
 
-/// Boundary whose cut faces are joined by plane.
+/// The boundary of a solid, with its cut faces joined to polygons by plane.
 pub struct Joined {
-    /// The fates that remain.
+    /// The fates of all faces; faces that joined a polygon are `Cut`.
     pub fates: Fates,
-    /// The groups.
+    /// The polygons, with the faces that make them up.
     pub groups: Vec<PlaneGroup>,
-    /// The rims of the whole faces.
+    /// For each source, where its whole faces end.
     pub rims: Rims,
-    /// The lines along which groups were divided.
+    /// The lines of chords along which groups were divided.
     pub chords: Vec<LineKey>,
 }
 
-/// Joins cut faces by plane.
+/// Joins cut faces, and whole faces that continue them in their plane, to polygons.
 ///
-/// Faces of different patches are not joined. Without `join` each cut face stays on its own, as is
-/// necessary where faces of one plane may overlap.
+/// Faces of different patches are not joined. Without `join` each cut face stays alone, as is necessary if
+/// faces of one plane may overlap.
 pub fn group(boundary: Boundary, sources: &Sources, patches: &Patches, join: bool) -> Joined {
     let count = boundary.cut.len();
     let mut grouping = Grouping {
@@ -108,7 +108,7 @@ pub fn group(boundary: Boundary, sources: &Sources, patches: &Patches, join: boo
 }
 
 impl Grouping<'_> {
-    /// The finished groups.
+    /// Turns the gathered groups into polygons, and divides those that have chords.
     fn joined(self) -> Joined {
         let (mut groups, mut chords) = (Vec::with_capacity(self.groups.len()), Vec::new());
         for mut gathered in self.groups {
@@ -135,7 +135,8 @@ impl Grouping<'_> {
         }
     }
 
-    /// Puts the faces at a contact into groups, and divides the one that contains the edge.
+    /// Puts the three faces at an edge contact into groups, and divides the group whose face contains the
+    /// edge.
     fn add_contact(&mut self, contact: &EdgeContact) {
         for face in contact.faces() {
             if self.fates[face.face] == Fate::Whole(face.orientation) {
@@ -147,7 +148,7 @@ impl Grouping<'_> {
         self.groups[group].chords.push(contact.chord(self.sources));
     }
 
-    /// The group of a face's plane and patch.
+    /// Returns the index of the group of a face's plane and patch; adds the group if there is none.
     fn group_of(&mut self, face: OrientedFace) -> usize {
         let plane = self.oriented_plane(face);
         let patch = self.patch(face);
@@ -196,7 +197,8 @@ impl Grouping<'_> {
         self.patches.of(face.face, self.sources.get(face.slot()))
     }
 
-    /// Return whether a face lies in the plane of a group, with its orientation and its patch.
+    /// Returns true if a face lies in the plane of a group, with the plane's orientation and the group's
+    /// patch.
     fn lies_in(&self, face: OrientedFace, group: usize) -> bool {
         let Some(mesh) = self.sources.get(face.slot()).mesh() else {
             return false;
@@ -216,7 +218,7 @@ impl Grouping<'_> {
         Orientation::turned_around(opposite) == face.orientation
     }
 
-    /// Moves a whole face into the group of its plane.
+    /// Moves a whole face into a group; from then on its fate is `Cut`.
     fn absorb(&mut self, face: OrientedFace, group: usize) {
         let source = self.sources.get(face.slot());
         let Some(mesh) = source.mesh() else {
@@ -236,7 +238,8 @@ impl Grouping<'_> {
         self.open.push((face, group));
     }
 
-    /// Absorbs the whole faces that continue a group's faces in its plane across an edge.
+    /// Moves whole faces into groups if they share an edge and the plane with a face of the group; repeats
+    /// this.
     fn spread(&mut self) {
         while let Some((face, group)) = self.open.pop() {
             poll();
@@ -254,10 +257,10 @@ impl Grouping<'_> {
         self.rims.renew(&self.fates, self.sources);
     }
 
-    /// Absorbs whole faces that share a line and a plane with faces of another source or part.
+    /// Moves whole faces into groups if they have an edge on a line of another face of the same plane.
     fn absorb_seams(&mut self) {
         let candidates = self.candidates();
-        // Faces that are alone in their plane share no line there.
+        // A face that is alone in its plane shares no line there.
         let mut alone: Vec<bool> = self.groups.iter().map(|g| g.faces.is_empty()).collect();
         for pair in candidates.windows(2).filter(|p| p[0].group == p[1].group) {
             let [p, q] = [&pair[0], &pair[1]].map(|c| c.face.face);
@@ -298,7 +301,7 @@ impl Grouping<'_> {
         }
     }
 
-    /// The edges where whole faces end, with the groups of their planes, sorted by group.
+    /// Returns the edges where whole faces end, each with the group of its plane, sorted by group.
     fn candidates(&mut self) -> Vec<Candidate> {
         let frontier = self.rims.frontier(&self.fates, self.sources);
         let mut candidates: Vec<Candidate> = Vec::with_capacity(frontier.len());
@@ -326,11 +329,11 @@ impl Grouping<'_> {
     }
 }
 
-/// An edge of a whole face that may belong to a group.
+/// An edge where a whole face ends; the face may belong to the group of its plane.
 #[derive(Clone, Copy)]
 struct Candidate {
     group: usize,
-    /// The place in the frontier.
+    /// The index of the edge among all edges where whole faces end.
     number: u32,
     edge: FrontierEdge,
     face: OrientedFace,
@@ -344,7 +347,7 @@ mod tests {
     use crate::merge::scenes::{cuboid, made_of, tetrahedra};
     use crate::tree::solid::Solid;
 
-    /// The groups of a union: the numbers of faces of each.
+    /// The number of faces in each plane group of a union.
     fn sizes(solids: &[Solid; 2], join: bool) -> Vec<usize> {
         let solid = made_of(solids, Term::Or);
         let sources = Sources::new(solid.sources().clone());
@@ -360,7 +363,7 @@ mod tests {
 
     #[test]
     fn cut_faces_of_one_plane_are_joined() {
-        // Side by side with common floors and ceilings, one extending into the other.
+        // The boxes lie side by side, with common floors and ceilings, and one extends into the other.
         let boxes = [cuboid([0; 3], [6, 4, 4]), cuboid([3, 0, 0], [9, 4, 4])];
         let joined = sizes(&boxes, true);
         assert!(joined.len() < sizes(&boxes, false).len());

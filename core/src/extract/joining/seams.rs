@@ -1,4 +1,4 @@
-//! Removal of T-junctions: edges that do not pair are subdivided along their lines until they do.
+//! Removes T-junctions: subdivides edges without an opposite along their lines until they have one.
 
 use std::sync::Arc;
 
@@ -11,26 +11,26 @@ use crate::geometry::line::LineKey;
 use crate::geometry::vertices::VertexTable;
 use crate::interrupt::poll;
 
-/// Numbered points by the line they lie on.
+/// Numbers of points, by the line that contains them.
 pub type LinePoints = HashMap<LineKey, Vec<u32>>;
 
-/// Points inside edges, from start to end, by the edges' numbers.
+/// Numbers of the points inside edges, in order from start to end, by the number of the edge.
 pub type InnerPoints = HashMap<usize, Vec<u32>>;
 
 /// A directed edge between numbered points.
 #[derive(Clone, Copy, Debug)]
 pub struct Edge {
-    /// Start.
+    /// The number of the point at which the edge starts.
     pub from: u32,
-    /// End.
+    /// The number of the point at which the edge ends.
     pub to: u32,
 }
 
-/// The points at which edges must be subdivided, for each edge that has any.
+/// Returns the points at which edges must be subdivided, for each edge that has such points.
 ///
-/// Opposite edges with equal ends match and stay. The other edges of a line still cover it equally
-/// often in both directions, because a boundary has no boundary. Divided at each other's ends, they
-/// match too.
+/// Opposite edges with equal ends pair and stay. All other edges of a line still cover the line equally
+/// often in both directions, because a boundary has no boundary. Divided at each other's ends, they pair,
+/// too.
 pub fn subdivisions(
     edges: &[Edge],
     mut line: impl FnMut(usize) -> LineKey,
@@ -48,20 +48,20 @@ pub fn subdivisions(
     inner
 }
 
-/// An edge with its box in a projection.
+/// An edge of a polygon with its bounding box in a projection.
 struct Boxed<'a> {
     edge: &'a Edge,
-    /// Its number in the outline.
+    /// The number of the edge in the outline.
     number: usize,
     low: [f64; 2],
     high: [f64; 2],
 }
 
-/// Adds the points at which a polygon touches or crosses itself inside edges, by line.
+/// Finds the points at which a polygon touches or crosses itself inside edges, and adds them to `touching`.
 ///
-/// Such an edge must have the point as a vertex on both its sides, or the polygon cannot be
-/// triangulated. Edges of one polygon cross where three or more lines meet and the wedges between
-/// them are alternately in and out.
+/// An edge with such a point inside must have it as a vertex, or the polygon cannot be triangulated. Edges
+/// of one polygon cross where three or more lines meet and the wedges between them are alternately in and
+/// out.
 pub fn find_touching(
     edges: &[Edge],
     group: &mut PlaneGroup,
@@ -111,7 +111,7 @@ pub fn find_touching(
 }
 
 impl<'a> Boxed<'a> {
-    /// The box is widened by the rounding of its ends.
+    /// Makes the box of an edge, widened by the rounding of the edge's ends.
     fn new(edge: &'a Edge, number: usize, view: &Projection) -> Self {
         let (a, b) = (view.approx(edge.from), view.approx(edge.to));
         let slack = [0, 1].map(|i| (a[i].abs() + b[i].abs()) * 8.0 * f64::EPSILON);
@@ -123,14 +123,14 @@ impl<'a> Boxed<'a> {
         }
     }
 
-    /// Return whether a point may lie on the edge; a rounded one that does lies in the box.
+    /// Returns false only if a rounded point lies outside the box, so that the exact point is not on the
+    /// edge.
     fn may_hold(&self, p: [f64; 2]) -> bool {
         (0..2).all(|i| self.low[i] <= p[i] && p[i] <= self.high[i])
     }
 }
 
-/// The edges left after opposites with equal ends cancel, and all edges on lines with touching
-/// points.
+/// Returns the edges without an opposite, and all edges on lines with touching points, each with its line.
 fn unpaired(
     edges: &[Edge],
     line: &mut impl FnMut(usize) -> LineKey,
@@ -148,7 +148,7 @@ fn unpaired(
     keyed.collect()
 }
 
-/// Mark the edges that each have an opposite of their own with equal ends.
+/// Returns for each edge whether it is paired with an opposite edge of equal ends.
 fn paired(edges: &[Edge], points: usize) -> Vec<bool> {
     let mut paired = vec![false; edges.len()];
     let mut waiting: Vec<u32> = Vec::new();
@@ -174,7 +174,7 @@ fn paired(edges: &[Edge], points: usize) -> Vec<bool> {
     paired
 }
 
-/// The edges sorted by the lower number of their ends, and where the run of each number starts.
+/// Sorts edges by the lower point number of their ends; returns where each number starts, and the order.
 fn by_lower_end(edges: &[Edge], points: usize) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0u32; points + 1];
     for edge in edges {

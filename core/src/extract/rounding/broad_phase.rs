@@ -1,4 +1,4 @@
-//! The triangles of a mesh near enough to others to meet them, by a coarse grid.
+//! Finds the triangles of a mesh near enough to others to meet them, with a coarse grid.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -9,16 +9,16 @@ use crate::mesh::faces::Faces;
 use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::{each_chunk, fill_chunks};
 
-/// The most cells along an axis: the grid then fits into a cache, and the number of a cell into
-/// sixteen bits.
+/// The largest number of cells along an axis: the grid then fits into a cache, and a cell's number into 16
+/// bits.
 const MAX_CELLS_PER_AXIS: usize = 32;
 
-/// The most cells that a triangle reaches into, on average: comparing it with its neighbours costs as
-/// much. A grid of four cells along an axis has no more.
+/// The largest average number of cells per triangle: beyond it, comparing a triangle with its neighbours
+/// costs no more than marking its cells. A grid of four cells along each axis has no more cells.
 const MAX_CELLS_PER_TRIANGLE: usize = 64;
 
-/// The triangles outside `some`, which is ascending, that may meet one of these or a triangle of
-/// another party; with their parties, ascending.
+/// Returns the triangles outside the ascending list `some` that may meet a triangle of `some` or a triangle
+/// with another party number; each with its own party number, ascending.
 ///
 /// # Cost
 /// Two passes over vertices and triangles.
@@ -48,25 +48,25 @@ pub fn triangles_near(
     near
 }
 
-/// The number of a cell of the grid: its place along each axis in equally many bits.
+/// The number of a cell of the grid: its indices along the three axes, in equally many bits each.
 type Cell = u16;
 
-/// The cells of a grid in which the corners of triangles lie.
+/// A grid around a mesh, and the cell of each vertex.
 struct Cells<'a> {
     triangles: &'a [[VertexId; 3]],
     of_vertices: Vec<Cell>,
-    /// Bits of the number of cells along an axis.
+    /// The binary logarithm of the number of cells along an axis.
     bits: u32,
 }
 
-/// The mark of cells with triangles of several parties, or with one of `some`.
+/// The mark of a cell that triangles with different party numbers, or a triangle of `some`, reach into.
 const SHARED: u32 = u32::MAX;
 
-/// For each cell the party whose triangles reach into it, from 1 on; 0 if none do.
+/// For each cell one plus the party number of the triangles that reach into it; 0 if none do.
 type CellParties = Vec<AtomicU32>;
 
 impl<'a> Cells<'a> {
-    /// The cells of a grid around a mesh.
+    /// Makes a grid around a mesh and finds the cell of each vertex.
     fn of(faces: &Faces<'a>) -> Self {
         let first = faces.vertices.first().copied().unwrap_or_default();
         let end = |extreme: fn(f64, f64) -> f64| {
@@ -94,7 +94,7 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// Merges cells in pairs along each axis.
+    /// Doubles the edge of all cells: merges them in pairs along each axis.
     fn double(&mut self) {
         let bits = self.bits - 1;
         let doubled = |cell| number(self.place(cell).map(|k| k >> 1), bits);
@@ -102,13 +102,13 @@ impl<'a> Cells<'a> {
         self.bits = bits;
     }
 
-    /// The place of a cell along each axis.
+    /// The index of a cell along each axis.
     #[inline]
     fn place(&self, cell: Cell) -> [Cell; 3] {
         [2, 1, 0].map(|above| cell >> (above * self.bits) & ((1 << self.bits) - 1))
     }
 
-    /// Return whether two cells are neighbours along an axis.
+    /// Returns true if two cells, of which `low` has the lower number, share a side.
     #[inline]
     fn are_beside(&self, low: Cell, high: Cell) -> bool {
         let along = |above: u32| {
@@ -118,7 +118,7 @@ impl<'a> Cells<'a> {
         along(0) || along(1) || along(2)
     }
 
-    /// The marks of all triangles; `None` if they reach into more cells than are worth marking.
+    /// Marks the cells of all triangles; `None` if they reach into too many cells.
     fn marks(&self, some: &[u32], party: impl Fn(u32) -> u32 + Sync) -> Option<CellParties> {
         let mut marks = Vec::new();
         marks.resize_with(1 << (3 * self.bits), AtomicU32::default);
@@ -132,7 +132,7 @@ impl<'a> Cells<'a> {
         (all && self.mark(&marks, shared, some.len())).then_some(marks)
     }
 
-    /// Marks the cells of `count` triangles; returns whether they reach into few enough.
+    /// Marks the cells of `count` triangles; returns false if they reach into too many cells.
     fn mark(
         &self,
         marks: &CellParties,
@@ -157,7 +157,7 @@ impl<'a> Cells<'a> {
         true
     }
 
-    /// The triangles that reach into a shared cell, ascending.
+    /// Returns the triangles that reach into a cell marked `SHARED`, ascending.
     fn shared(&self, marks: &CellParties) -> Vec<u32> {
         let is_shared = |mark: &AtomicU32| mark.load(Ordering::Relaxed) == SHARED;
         let near = each_chunk(self.triangles, |first, triangles| {
@@ -170,7 +170,7 @@ impl<'a> Cells<'a> {
         near.concat()
     }
 
-    /// Return whether `holds` is true for one of the rows of cells that a triangle may reach into.
+    /// Returns true if `holds` is true for one of the rows of cells that a triangle may reach into.
     #[inline]
     fn any_row(
         &self,
@@ -208,7 +208,7 @@ fn number([x, y, z]: [Cell; 3], bits: u32) -> Cell {
     (x << bits | y) << bits | z
 }
 
-/// The cell at a place along an axis.
+/// The index of the cell at a position along an axis, which is given in cells.
 #[allow(
     clippy::cast_sign_loss,
     clippy::cast_possible_truncation,
@@ -218,7 +218,7 @@ fn along_axis(place: f64, bits: u32) -> Cell {
     (place as Cell).min((1 << bits) - 1)
 }
 
-/// Marks a cell with a party. The mark does not depend on the order of calls.
+/// Marks a cell with a party number, or as `SHARED` if it has another. The order of calls does not matter.
 #[inline]
 fn join(mark: &AtomicU32, party: u32) {
     let mut old = mark.load(Ordering::Relaxed);
@@ -236,7 +236,7 @@ mod tests {
     use super::*;
     use crate::geometry::doubles::extent::Extent;
 
-    /// Small triangles at pseudorandom places in a cube.
+    /// Small triangles at pseudorandom positions in a cube.
     fn scattered(count: u32) -> (Vec<Point>, Vec<[VertexId; 3]>) {
         let next = |x: &u32| Some(x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
         let mut numbers = std::iter::successors(Some(7), next).map(|x| f64::from(x >> 8) / 2e7);
@@ -252,7 +252,7 @@ mod tests {
         (vertices, VertexId::rows(triangles))
     }
 
-    /// Needles across a cube, side by side.
+    /// Needles, side by side, along a diagonal of a cube's side.
     fn needles(count: u32) -> (Vec<Point>, Vec<[VertexId; 3]>) {
         let needle = |k: u32| {
             let [low, high] = [k, k + 1].map(|k| f64::from(k) / f64::from(count));

@@ -1,7 +1,7 @@
-//! Crossings and overlaps of the triangles of a mesh in doubles, exactly.
+//! Finds the triangles of a mesh in doubles that cross or overlap, exactly.
 //!
-//! Surfaces may touch: points and edges that two parts of a mesh share are no crossings, whether or
-//! not they are vertices and edges of both.
+//! Surfaces may touch: points and edges that two parts of a mesh have in common are no crossings, whether or
+//! not both parts have a vertex or an edge there.
 
 use super::broad_phase::triangles_near;
 use super::edges::crossing;
@@ -19,17 +19,17 @@ use crate::mesh::tasks::{both, each, each_chunk, Worth, CHUNK};
 use crate::mesh::terrains::terrains;
 use crate::mesh::topology::NONE;
 
-/// The faults that keep a mesh from being embedded.
+/// The faults that keep a mesh from being embedded: triangles that cross, overlap or have no area.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Faults {
-    /// Pairs of triangles that cross or overlap, the lower first, in ascending order.
+    /// Pairs of triangles that cross or overlap, the lower number first, in ascending order.
     pub crossings: Vec<[u32; 2]>,
     /// Triangles without area, ascending. They lie in their neighbours' edges and cross nothing.
     pub flat: Vec<u32>,
 }
 
 impl Faults {
-    /// Return whether there are none.
+    /// Returns true if there are no faults.
     pub fn is_empty(&self) -> bool {
         self.crossings.is_empty() && self.flat.is_empty()
     }
@@ -40,10 +40,10 @@ impl Faults {
     }
 }
 
-/// The faults of `some` triangles, ascending, among themselves and with all others, and those
-/// between other triangles of different parties.
+/// Returns the faults of the triangles `some`, ascending, among themselves and with all other triangles, and
+/// the crossings between other triangles with different party numbers.
 ///
-/// Others of one party, such as the untouched faces of one input, are not compared with each other.
+/// Other triangles with one party number, such as the untouched faces of one input, are not compared.
 pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32 + Sync + Send) -> Faults {
     let candidate = |e: &(u32, u32)| Candidate::of(faces, *e);
     let (mut candidates, (own, flat)) = both(
@@ -64,8 +64,8 @@ pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32 + Sync + S
     Faults { crossings, flat }
 }
 
-/// The triangles of `some` with area, by party, and those without. Each is a party of its own, but
-/// a terrain is one: its triangles do not cross each other.
+/// Divides the triangles of `some` into those with area, each with a party number, and those without. The
+/// triangles of a terrain have one number, because they do not cross each other; any other has its own.
 fn parties(faces: &Faces, some: &[u32]) -> (Vec<(u32, u32)>, Vec<u32>) {
     let pieces = terrains(faces, some);
     let alone = as_number(some.len());
@@ -77,7 +77,7 @@ fn parties(faces: &Faces, some: &[u32]) -> (Vec<(u32, u32)>, Vec<u32>) {
     (own, flat.into_iter().map(|e| e.1).collect())
 }
 
-/// The faults of a mesh.
+/// Returns all faults of a mesh.
 pub fn all_faults(faces: &Faces) -> Faults {
     if is_star_shaped(faces) {
         return Faults::default();
@@ -86,8 +86,8 @@ pub fn all_faults(faces: &Faces) -> Faults {
     faults(faces, &all, |_| 0)
 }
 
-/// The pairs of triangles that are neither mates at an edge nor clearly apart up to a common
-/// corner; the lower first, in ascending order.
+/// Returns the pairs of triangles that share no edge and that the filter cannot prove to be apart, except
+/// for a common corner; the lower number first, in ascending order.
 ///
 /// # Cost
 /// That of `all_faults`.
@@ -102,7 +102,7 @@ pub fn close_pairs(faces: &Faces) -> Vec<[u32; 2]> {
     ascending(Search::among::<ClosePairs>(&candidates).0)
 }
 
-/// Those of `pairs` of triangles that cross or overlap, in ascending order.
+/// Returns the pairs of triangles among `pairs` that cross or overlap, in ascending order.
 ///
 /// # Cost
 /// One comparison per pair, and a pass over the triangles if some meet along edges.
@@ -124,13 +124,13 @@ fn ascending(mut pairs: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
     pairs
 }
 
-/// Triangles that one thread compares: half a millisecond of work or more.
+/// The least number of triangles for which a thread gets a task: half a millisecond of work or more.
 const TRIANGLES_PER_TASK: usize = 512;
 
-/// Pairs that are compared together, by several threads if there are any.
+/// The number of pairs that are compared together, on several threads if there are any.
 const PAIRS_PER_BATCH: usize = 8 * CHUNK;
 
-/// A triangle that is compared with others.
+/// A triangle that is compared with triangles of other party numbers.
 struct Candidate {
     party: u32,
     triangle: u32,
@@ -148,13 +148,14 @@ impl Candidate {
         }
     }
 
-    /// The same with the number of its party raised by `first`.
+    /// Raises the party number of the candidate by `first`.
     fn after(self, first: u32) -> Self {
         let party = first + self.party;
         Self { party, ..self }
     }
 
-    /// The edge of another triangle at which the two are mates, by its number.
+    /// Returns the edge, by its index in `other`, that the two triangles share in opposite directions;
+    /// `None` if they share none.
     #[inline]
     fn common_edge(&self, other: &Self) -> Option<usize> {
         let ([a, b, c], [d, e, f]) = (self.vertices, other.vertices);
@@ -171,20 +172,20 @@ impl Candidate {
     }
 }
 
-/// The findings of a search about pairs of triangles that may meet.
+/// The result of a search over pairs of triangles that may meet.
 trait PairFindings: Default + Send {
-    /// Looks at a pair.
+    /// Compares a pair, and records the result.
     fn compare(&mut self, p: &Candidate, q: &Candidate);
 
-    /// Merges these findings with others.
+    /// Merges these results with others.
     fn with(self, others: Self) -> Self;
 }
 
-/// The meetings found between pairs of triangles.
+/// Pairs of triangles that cross, and pairs that meet along edges and may cross.
 #[derive(Default)]
 struct Meetings {
     crossings: Vec<[u32; 2]>,
-    /// Pairs that meet along edges: the neighbours there decide whether surfaces cross.
+    /// Pairs that meet along edges: whether surfaces cross depends on the neighbours there.
     doubtful: Vec<([u32; 2], Meeting)>,
 }
 
@@ -212,7 +213,7 @@ impl PairFindings for Meetings {
     }
 }
 
-/// Pairs of triangles that are close to each other.
+/// Pairs of triangles that may have more than a corner or an edge in common.
 #[derive(Default)]
 struct ClosePairs(Vec<[u32; 2]>);
 
@@ -230,7 +231,7 @@ impl PairFindings for ClosePairs {
     }
 }
 
-/// Two candidates, the lower triangle first.
+/// Two candidates, the triangle with the lower number first.
 fn ordered<'a>(p: &'a Candidate, q: &'a Candidate) -> [&'a Candidate; 2] {
     if p.triangle < q.triangle {
         [p, q]
@@ -240,23 +241,23 @@ fn ordered<'a>(p: &'a Candidate, q: &'a Candidate) -> [&'a Candidate; 2] {
 }
 
 impl Meetings {
-    /// The crossings in ascending order, including the doubtful pairs that cross.
+    /// Returns all crossings in ascending order, with the doubtful pairs that turn out to cross.
     fn settled(mut self, faces: &Faces) -> Vec<[u32; 2]> {
         self.crossings.extend(crossing(faces, self.doubtful));
         ascending(self.crossings)
     }
 }
 
-/// A search for crossings.
+/// A search for pairs of candidate triangles that may meet.
 struct Search<'a> {
-    /// By party.
+    /// The triangles, sorted by party number.
     candidates: &'a [Candidate],
     image: Image,
     slabs: Vec<Slabs>,
 }
 
 impl<'a> Search<'a> {
-    /// Compare the pairs of candidates of different parties that may meet.
+    /// Compares the pairs of candidates with different party numbers that may meet.
     fn among<K: PairFindings>(candidates: &'a [Candidate]) -> K {
         let corners = |k: u32| *candidates[k as usize].facing.triangle();
         let Some(image) = Image::of(candidates.len(), corners) else {
@@ -292,7 +293,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The findings about the pairs that belong to a part of space.
+    /// Compares the pairs of candidates that belong to one part of space.
     fn findings_in<K: PairFindings>(&self, part: Part) -> K {
         let mut found = K::default();
         let mut waiting = Vec::new();
@@ -315,7 +316,7 @@ impl<'a> Search<'a> {
         found
     }
 
-    /// Compare pairs that may meet.
+    /// Compares pairs of candidates that may meet, and adds the results to `found`.
     fn compare_all<K: PairFindings>(&self, pairs: &[[u32; 2]], found: &mut K) {
         let looked = each_chunk(pairs, |_, pairs| {
             spend(pairs.len());
@@ -338,7 +339,7 @@ mod tests {
 
     const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 
-    /// The faults of two tetrahedra, the second moved up.
+    /// The faults of two tetrahedra, the second of which is moved up by `up`.
     fn faults_of_two(up: f64) -> Faults {
         let places = [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, 4.0]];
         let above = places.map(|[x, y, z]| [x + 0.25, y + 0.25, z + up]);
@@ -358,7 +359,7 @@ mod tests {
         assert!(faults_of_two(9.0).is_empty());
     }
 
-    /// Triangles on a grid of few steps, which meet in all ways, turned by an angle.
+    /// Triangles over a coarse grid, which meet in all possible ways, rotated by an angle.
     fn soup(count: u32, steps: u32, angle: f64) -> (Vec<Point>, Vec<[VertexId; 3]>) {
         let next = |x: &u32| Some(x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
         let mut numbers = std::iter::successors(Some(7), next).map(|x| x >> 8);
@@ -376,7 +377,7 @@ mod tests {
         (vertices, VertexId::rows(triangles))
     }
 
-    /// The crossings of all pairs of triangles.
+    /// The crossings found by comparing all pairs of triangles.
     fn among_all_pairs(faces: &Faces) -> Vec<[u32; 2]> {
         let count = as_number(faces.triangles.len());
         let pairs = (0..count).flat_map(|t| (t + 1..count).map(move |u| [t, u]));

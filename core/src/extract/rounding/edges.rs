@@ -1,4 +1,4 @@
-//! Crossings of surfaces at edges along which triangles meet.
+//! Decides whether surfaces cross at edges along which triangles meet.
 
 use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;
@@ -9,8 +9,9 @@ use crate::geometry::doubles::Triangle;
 use crate::mesh::faces::{edges, Faces};
 use crate::mesh::handle::VertexId;
 
-/// Return whether surfaces cross where two triangles meet; `sheets` gives the sheets at an edge of
-/// the first or the second. A triangle without a neighbour at an edge crosses what that lies in.
+/// Returns true if surfaces cross where two triangles meet; `sheets(i, k)` gives the sheets at edge k of the
+/// first (0) or second (1) triangle. A sheet that ends at its edge crosses the triangle that contains the
+/// edge.
 pub fn crosses_at(
     meeting: Meeting,
     [p, q]: &[Triangle; 2],
@@ -25,10 +26,11 @@ pub fn crosses_at(
     }
 }
 
-/// Return those of `pairs` that meet along edges at which surfaces cross.
+/// Returns the pairs of triangles that meet along edges at which surfaces cross.
 ///
 /// # Cost
-/// A pass over the triangles; the sheets at each edge and what it meets are sorted once.
+/// A pass over the triangles; the sheets are sorted once for each edge and the triangle or edge that it
+/// meets.
 pub fn crossing(faces: &Faces, mut pairs: Vec<([u32; 2], Meeting)>) -> Vec<[u32; 2]> {
     let there = AtEdges::of(faces, &pairs);
     let mut known = HashMap::default();
@@ -41,7 +43,7 @@ pub fn crossing(faces: &Faces, mut pairs: Vec<([u32; 2], Meeting)>) -> Vec<[u32;
     pairs.into_iter().map(|(pair, _)| pair).collect()
 }
 
-/// An edge by its vertices, the lower first.
+/// An edge by its two vertices, the lower number first.
 type Edge = [VertexId; 2];
 
 fn edge_of(faces: &Faces, triangle: u32, edge: usize) -> Edge {
@@ -52,7 +54,7 @@ fn sorted([a, b]: Edge) -> Edge {
     [a.min(b), a.max(b)]
 }
 
-/// The edges at which two triangles meet.
+/// Returns the edges at which two triangles meet, none if they do not meet at an edge.
 fn edges_at(faces: &Faces, [t, u]: [u32; 2], meeting: Meeting) -> SmallVec<[Edge; 2]> {
     let of = |triangle, edge| edge_of(faces, triangle, edge);
     match meeting {
@@ -63,7 +65,7 @@ fn edges_at(faces: &Faces, [t, u]: [u32; 2], meeting: Meeting) -> SmallVec<[Edge
     }
 }
 
-/// A place where surfaces meet: the same for all pairs of triangles that meet there.
+/// The edges, or the edge and the triangle, that meet; the same for all pairs of triangles that meet there.
 #[derive(PartialEq, Eq, Hash)]
 struct Place {
     edges: SmallVec<[Edge; 2]>,
@@ -83,7 +85,7 @@ impl Place {
     }
 }
 
-/// The sheets at edges where triangles meet.
+/// The sheets (triangles at an edge, by their apexes) at each edge where triangles meet.
 struct AtEdges<'a> {
     faces: &'a Faces<'a>,
     sheets: HashMap<Edge, Sheets>,
@@ -102,7 +104,7 @@ impl<'a> AtEdges<'a> {
         there
     }
 
-    /// Collect the sheets.
+    /// Finds all triangles at these edges, and records them as sheets.
     fn collect(&mut self) {
         let mut is_end = vec![false; self.faces.vertices.len()];
         for v in self.sheets.keys().flatten() {
@@ -139,8 +141,8 @@ mod tests {
 
     const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 
-    /// The places of a tetrahedron with a face in the plane z = 0, of an edge in that face, and of
-    /// apexes above and below it.
+    /// The vertices of a tetrahedron with a face in the plane z = 0, of an edge in that face, and apexes
+    /// above and below the face.
     const PLACES: [Point; 12] = [
         [-9.0, -9.0, 0.0],
         [0.0, 18.0, 0.0],
@@ -156,8 +158,8 @@ mod tests {
         [0.0, -3.0, -1.0],
     ];
 
-    /// The number of crossings of the tetrahedron with wedges at the edge from vertex 4 to 5, given
-    /// by their other vertices, in any order of their triangles.
+    /// The number of crossings of a tetrahedron with wedges at the edge from vertex 4 to 5, each given by
+    /// its two other vertices; the same for any order of the triangles.
     fn crossings_with(wedges: &[[u32; 2]]) -> usize {
         let tetrahedron = |v: [u32; 4]| TETRAHEDRON.map(|t| t.map(|k| v[k as usize]));
         let wedge = |[a, b]: &[u32; 2]| tetrahedron([4, 5, *a, *b]);

@@ -1,4 +1,4 @@
-//! The image of triangles in integers, rotated so that many of them are flat along an axis.
+//! An integer image of triangles, rotated so that many of them are flat along an axis.
 //!
 //! Boxes around triangles that are flat along an axis overlap little; boxes around oblique ones
 //! overlap everything near. A body with walls at right angles is mostly oblique as a whole, and so
@@ -15,34 +15,35 @@ use crate::mesh::terrains::is_needle;
 /// The number of triangles sampled to find the axes.
 const TRIANGLES_SAMPLED: usize = 64;
 
-/// Axes are rotated if they suit at least one in this many triangles.
+/// Axes are rotated if they suit at least one in this many sampled triangles.
 const SUITED_IF_ONE_IN: usize = 4;
 
-/// Directions this close, as a cosine or its complement, count as perpendicular or as one: a
-/// triangle off by this share of its length is as good as flat in a sweep.
+/// Directions are parallel or perpendicular if their cosine is this close to one or to zero: a triangle that
+/// deviates by this share of its length counts as flat.
 const DIRECTION_TOLERANCE: f64 = 1e-6;
 
-/// Lines whose directions have a larger cosine count as one: seen across both, lengths shrink to
-/// less than a twentieth, and the rounding of a rotation must stay far below a step.
+/// Lines whose directions have a larger cosine count as parallel: seen across both, lengths shrink to less
+/// than a twentieth, and the rounding of a rotation must stay far below a step.
 const MAX_COSINE_OF_AXES: f64 = 0.99;
 
-/// A linear image of triangles.
+/// A linear map of triangles to integer coordinates, with the box of each triangle's image.
 ///
-/// Boxes that overlap also do in it: if it is rotated, they are widened by more than its rounding.
+/// If boxes of triangles overlap, so do their images: after a rotation they are widened by more than its
+/// rounding.
 pub struct Image {
-    /// A point near the triangles, and the directions that become axes; `None` if they are axes.
+    /// A point near the triangles, and the three directions that become axes; `None` if nothing is rotated.
     frame: Option<(Point, [Point; 3])>,
-    /// The triangles' extents along the axes.
+    /// The boxes of the rotated triangles.
     extents: Vec<Extent>,
     low: Point,
     factor: f64,
 }
 
 impl Image {
-    /// The bits of coordinates.
+    /// The number of bits of an integer coordinate.
     pub const BITS: u32 = 40;
 
-    /// The image of some triangles; `None` if there are none.
+    /// Makes the image of `count` triangles; `None` if there are none.
     pub fn of(count: usize, corners: impl Fn(u32) -> Triangle) -> Option<Self> {
         let numbers = 0..as_number(count);
         let step = count.div_ceil(TRIANGLES_SAMPLED).max(1);
@@ -59,24 +60,25 @@ impl Image {
             frame,
             extents,
             low: whole.low,
-            // A mesh in one place, or too small to resolve, has one point as its image.
+            // A mesh whose vertices coincide, or whose extent is too small to resolve, has one point as its
+            // image.
             factor: if factor.is_finite() { factor } else { 0.0 },
         })
     }
 
-    /// The image of a point.
+    /// Maps a point to the image; coordinates are not rounded to integers.
     pub fn place(&self, p: &Point) -> Point {
         self.scaled(&turned(self.frame.as_ref(), p))
     }
 
-    /// The ends of the box around a triangle.
+    /// The least and the largest corner of the box around a triangle's image.
     pub fn ends(&self, triangle: u32) -> (Lattice, Lattice) {
         let whole = |p: &Point, wider: i64| {
             let image = self.scaled(p);
             each_axis(|i| as_whole(image[i]) + wider)
         };
         let extent = &self.extents[triangle as usize];
-        // Rotation is off by some units in the last place of the size, far below a step.
+        // Rotation is wrong by a few units in the last place, far below a step.
         let wider = i64::from(self.frame.is_some());
         (whole(&extent.low, -wider), whole(&extent.high, wider))
     }
@@ -98,8 +100,8 @@ fn unit(v: Point) -> Option<Point> {
     (size > 0.0 && size.is_finite()).then(|| v.map(|x| x / size))
 }
 
-/// Three directions at right angles, the first two of which are the most common normals; `None` if
-/// they suit few normals, or are axes.
+/// Returns three perpendicular directions, the first two of which are the most common normals; `None` if
+/// they suit few normals, or are the axes themselves.
 fn axes(normals: &[Point]) -> Option<[Point; 3]> {
     if normals.iter().all(is_axis) {
         return None;
@@ -113,11 +115,11 @@ fn axes(normals: &[Point]) -> Option<[Point; 3]> {
     Some([first, second, cross(&first, &second)])
 }
 
-/// Three directions across the needles among triangles; `None` if needles along two lines are few,
-/// or all needles lie along axes.
+/// Returns three directions across the needles (long thin triangles) of a sample; `None` if needles along
+/// one or two lines are few, or all needles lie along axes.
 ///
-/// A needle along one of the lines is thin seen across both, and seen in their plane across its
-/// own.
+/// The first is perpendicular to both lines, each other one lies in their plane across one line: so a needle
+/// along either line is thin in two directions.
 fn axes_across_needles(sample: &[Triangle]) -> Option<[Point; 3]> {
     let needles: Vec<Point> = sample.iter().filter_map(second_edge_direction).collect();
     if SUITED_IF_ONE_IN * needles.len() < sample.len() || needles.iter().all(is_axis) {
@@ -135,7 +137,7 @@ fn axes_across_needles(sample: &[Triangle]) -> Option<[Point; 3]> {
     Some([across, in_plane(&first), third])
 }
 
-/// The direction of the second longest edge of a needle; `None` for other triangles. The longest
+/// Returns the direction of the second longest edge of a needle; `None` for any other triangle. The longest
 /// edge is the diagonal between neighbours.
 fn second_edge_direction(triangle: &Triangle) -> Option<Point> {
     let [a, b, c] = triangle;
@@ -144,7 +146,7 @@ fn second_edge_direction(triangle: &Triangle) -> Option<Point> {
     is_needle(triangle).then_some(edges[1]).and_then(unit)
 }
 
-/// An axis that is not along a direction.
+/// Returns an axis that is not parallel to a direction.
 fn beside([x, y, _]: &Point) -> Point {
     if x.abs() < y.abs() {
         [1.0, 0.0, 0.0]
@@ -153,7 +155,7 @@ fn beside([x, y, _]: &Point) -> Point {
     }
 }
 
-/// The fit direction along which most of the directions lie; of equally good ones the first.
+/// Returns the direction, among those that fit, to which most directions are parallel; the first of several.
 fn most_common(directions: &[Point], is_fit: impl Fn(&Point) -> bool) -> Option<Point> {
     let fit = directions.iter().rev().filter(|a| is_fit(a));
     fit.max_by_key(|a| count_along(a, directions)).copied()
@@ -176,7 +178,7 @@ mod tests {
     use super::*;
     use crate::geometry::plane::Lattice;
 
-    /// The sides of boxes beside each other, turned about an axis.
+    /// The sides of boxes beside each other, rotated about the z axis.
     fn boxes(count: u32, angle: f64) -> Vec<Triangle> {
         let (sin, cos) = angle.sin_cos();
         let turn = |[x, y, z]: Point| [cos * x - sin * y, sin * x + cos * y, z];
@@ -208,7 +210,7 @@ mod tests {
         assert_eq!(overlaps(&boxes(30, 0.5)), straight);
     }
 
-    /// Needles around a line, as on the side of a cylinder, turned about an axis.
+    /// Needles around a line, as on the side of a cylinder, rotated about the y axis.
     fn cylinder(count: u32, angle: f64) -> Vec<Triangle> {
         let (sin, cos) = angle.sin_cos();
         let turn = |[x, y, z]: Point| [cos * x - sin * z, y, sin * x + cos * z];

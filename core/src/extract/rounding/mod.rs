@@ -1,4 +1,4 @@
-//! From exact vertices to doubles or singles, without crossings.
+//! Rounds exact vertices to doubles or singles, without making surfaces cross.
 
 pub mod broad_phase;
 pub mod crossings;

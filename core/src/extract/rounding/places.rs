@@ -1,4 +1,4 @@
-//! Approximate places where triangles cross.
+//! Approximate points at which triangles cross.
 
 use std::cmp::Ordering;
 
@@ -8,16 +8,16 @@ use crate::geometry::doubles::vector::{dot, less, normal};
 use crate::geometry::doubles::{Point, Triangle};
 use crate::mesh::faces::Faces;
 
-/// For each pair of triangles that cross, a point near the middle of their intersection.
+/// Returns, for each pair of triangles that cross, a point near the middle of their intersection.
 pub fn places(faces: &Faces, found: &Faults) -> Vec<Point> {
     let place = |[t, u]: &[u32; 2]| middle(&faces.corners(*t), &faces.corners(*u));
     found.crossings.iter().map(place).collect()
 }
 
-/// The rounded middle of the segment that two triangles share; some corner if they share none.
+/// The rounded middle of the segment that two triangles share; the first corner of `p` if they share none.
 fn middle(p: &Triangle, q: &Triangle) -> Point {
     let mut ends: Vec<Point> = through(p, q).chain(through(q, p)).collect();
-    // All lie on one line, so lexicographic order is their order on it, and the common stretch lies
+    // All ends lie on one line, so lexicographic order is their order on it, and the common segment lies
     // between the inner two.
     ends.sort_by(in_order);
     match ends.len() {
@@ -26,13 +26,13 @@ fn middle(p: &Triangle, q: &Triangle) -> Point {
     }
 }
 
-/// The lexicographic order.
+/// Compares two points lexicographically.
 fn in_order(a: &Point, b: &Point) -> Ordering {
     let ordered = |i: usize| a[i].total_cmp(&b[i]);
     ordered(0).then_with(|| ordered(1)).then_with(|| ordered(2))
 }
 
-/// The points in which the edges of a triangle pass through the plane of another.
+/// Yields the points in which the edges of a triangle pass through the plane of another triangle.
 fn through<'a>(t: &'a Triangle, plane: &Triangle) -> impl Iterator<Item = Point> + 'a {
     let across = normal(plane);
     let heights = t.map(|c| dot(&less(&c, &plane[0]), &across));

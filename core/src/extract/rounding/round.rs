@@ -1,4 +1,4 @@
-//! From exact vertices to doubles: the only rounding, and its effects.
+//! Rounds exact vertices to doubles, and repairs or reports what this changes.
 
 use rustc_hash::FxHashMap as HashMap;
 
@@ -29,7 +29,7 @@ use crate::mesh::tasks::{both, Worth, CHUNK};
 use crate::mesh::topology::NONE;
 use crate::tree::solid::Solid;
 
-/// The mesh of a bounded solid, each vertex at the nearest double.
+/// Returns the mesh of a bounded solid, with each constructed vertex rounded to the nearest doubles.
 ///
 /// A vertex of an input mesh returns with its original doubles.
 ///
@@ -56,7 +56,7 @@ pub fn mesh(solid: &Solid) -> Result<Mesh> {
     mesh_of_patches(solid, &Patches::default())
 }
 
-/// The mesh of a bounded solid, as [`mesh`], in which faces of different patches are not joined.
+/// Returns the rounded mesh of a bounded solid, in which faces of different patches are not joined.
 ///
 /// # Errors
 /// `Unbounded`.
@@ -98,7 +98,7 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
     Ok(mesh)
 }
 
-/// For each face the slot of its source and its number in the input, and whether it is turned.
+/// Returns for each face its source's slot and its number in the input, and whether it is turned around.
 fn names(faces: &[OrientedFace], sources: &Sources) -> (Vec<[u32; 2]>, Vec<bool>) {
     let mut origins = Vec::with_capacity(faces.len());
     for run in faces.chunk_by(|a, b| a.slot() == b.slot()) {
@@ -110,11 +110,11 @@ fn names(faces: &[OrientedFace], sources: &Sources) -> (Vec<[u32; 2]>, Vec<bool>
     (origins, flips.collect())
 }
 
-/// Mends the crossings that rounding made.
+/// Finds and mends the crossings that rounding made.
 ///
-/// Compares triangles that are not untouched faces with all near them, and faces of different
-/// parties with each other: on the lattice they do not cross, but their given doubles may. If they
-/// do cross there, because an input overlaps itself, the mesh stays as it is, which is reported.
+/// Compares triangles that are not untouched faces with all triangles near them, and untouched faces with
+/// those of other inputs or pieces: on the lattice they do not cross, but their given doubles may. If they
+/// cross there, too, because an input overlaps itself, the mesh stays as it is, and the faults are `own`.
 fn settle_mesh(
     mesh: &mut Mesh,
     solid: &Solid,
@@ -175,9 +175,9 @@ fn settle_mesh(
     Ok(settled)
 }
 
-/// The party of each triangle: the faces of one input in one piece of the mesh.
+/// Numbers the triangles by party: those in faces of one input and in one piece of the mesh have one number.
 ///
-/// Pieces of an input may touch where one has no vertex, and a transform rounds each by itself.
+/// Pieces of an input may touch at a point where one has no vertex, and a transform rounds each by itself.
 fn parties(mesh: &Mesh, exact: &ExactMesh) -> Vec<u32> {
     let mut pieces = DisjointSets::of_triangles(mesh.vertices.len(), &mesh.triangles);
     let mut numbers: HashMap<(u32, u32), u32> = HashMap::default();
@@ -197,8 +197,7 @@ fn parties(mesh: &Mesh, exact: &ExactMesh) -> Vec<u32> {
         .collect()
 }
 
-/// The triangles that are untouched faces with a corner that was welded with one of other doubles,
-/// ascending.
+/// Returns the untouched faces with a corner that import welded with a vertex of other doubles, ascending.
 fn at_blurred(solid: &Solid, exact: &ExactMesh) -> Vec<u32> {
     let mut found = Vec::new();
     let mut first = 0;
@@ -219,7 +218,7 @@ fn at_blurred(solid: &Solid, exact: &ExactMesh) -> Vec<u32> {
     found
 }
 
-/// The triangles that are untouched faces, but cross others after a motion; ascending.
+/// Returns the untouched faces that cross others because a motion of the lattice rounded them, ascending.
 fn where_moving_crosses(sources: &Sources, exact: &ExactMesh) -> Vec<u32> {
     let mut found = Vec::new();
     let mut first = 0;
@@ -237,8 +236,8 @@ fn where_moving_crosses(sources: &Sources, exact: &ExactMesh) -> Vec<u32> {
     found
 }
 
-/// The triangles that are untouched faces, but have a corner with the doubles of another vertex at
-/// its lattice point; ascending.
+/// Returns the untouched faces with a corner that has the doubles of another vertex at its lattice point,
+/// ascending.
 fn with_others_corners(mesh: &Mesh, sources: &Sources, exact: &ExactMesh) -> Vec<u32> {
     let bits = |p: &[f64; 3]| p.map(f64::to_bits);
     let has_others = |t: &u32| {
@@ -253,8 +252,7 @@ fn with_others_corners(mesh: &Mesh, sources: &Sources, exact: &ExactMesh) -> Vec
     exact.special.iter().copied().filter(has_others).collect()
 }
 
-/// Drops the triangles that mending removed, and unused vertices; returns the new numbers of
-/// triangles.
+/// Drops the triangles that mending removed, and unused vertices; returns the new number of each triangle.
 fn drop_removed(mesh: &mut Mesh) -> Vec<u64> {
     let next = |next: &mut u64, t: &[VertexId; 3]| {
         *next += u64::from(is_left(t));
@@ -276,7 +274,7 @@ fn drop_unused(mesh: &mut Mesh) {
     for v in mesh.triangles.iter_mut().flatten() {
         *v = numbers[v.place()];
     }
-    // So far findings name vertices only: where the solid touches itself, and corners that were moved.
+    // At this stage findings name vertices only: contacts, and corners that were moved.
     for finding in &mut mesh.findings {
         finding.place.retain(|v| used[as_place(*v)]);
         for v in &mut finding.place {
@@ -288,7 +286,7 @@ fn drop_unused(mesh: &mut Mesh) {
         .retain(|_| kept.next().copied().unwrap_or(false));
 }
 
-/// For each vertex whether a remaining triangle uses it.
+/// Returns for each vertex whether a triangle that was not removed uses it.
 fn used(mesh: &Mesh) -> Vec<bool> {
     let mut used = vec![false; mesh.vertices.len()];
     for v in mesh.triangles.iter().filter(|t| is_left(t)).flatten() {
@@ -301,7 +299,7 @@ fn is_left(triangle: &[VertexId; 3]) -> bool {
     triangle[0] != triangle[1]
 }
 
-/// Reports the corners that were put on the lattice.
+/// Adds a finding about the corners that were moved to the lattice.
 fn tell_moved(mesh: &mut Mesh, moved: &[VertexId]) {
     if !moved.is_empty() {
         let places: Vec<u64> = moved.iter().map(|v| u64::from(*v)).collect();
@@ -310,7 +308,7 @@ fn tell_moved(mesh: &mut Mesh, moved: &[VertexId]) {
     }
 }
 
-/// Reports the vertices that share a place.
+/// Adds findings about vertices with equal positions, at which the mesh touches itself.
 fn tell_touching(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources, is_mended: bool) {
     let used = if is_mended { used(mesh) } else { Vec::new() };
     let is_used = |v: u32| !is_mended || used[v as usize];
@@ -332,8 +330,8 @@ fn tell_touching(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources, is_mende
     }
 }
 
-/// Reports the triangles that rounding changed, by outcome; `numbers` are their new numbers, if
-/// some were removed.
+/// Adds findings about the triangles that rounding changed; `numbers` are the new numbers of triangles,
+/// empty if none was removed.
 fn report(mesh: &mut Mesh, swapped: &[u64], turned: &[u64], settled: &Settled, numbers: &[u64]) {
     let number = |t: &u64| numbers.get(as_place(*t)).copied().unwrap_or(*t);
     let numbered = |ids: &[u64]| ids.iter().map(number).collect::<Vec<u64>>();
@@ -384,7 +382,7 @@ const CROSSING: &str = "rounding to doubles makes these triangles cross or overl
 const OWN: &str = "an operand crosses itself, so these triangles cross or overlap others; \
     `normalized()` resolves the overlaps";
 
-/// Return whether two corners of a triangle were rounded to the same place.
+/// Returns true if two corners of a triangle have equal doubles.
 #[allow(clippy::float_cmp)]
 fn is_collapsed(mesh: &Mesh, triangle: u64) -> bool {
     let [a, b, c] = mesh.triangles[as_place(triangle)].map(|v| mesh.vertices[v.place()]);
@@ -404,7 +402,7 @@ mod tests {
         let mesh = mesh(&made_of(&solids, Term::Or)).expect("bounded");
         for solid in &solids {
             let given = solid.sources().get(Slot(0)).mesh().expect("a mesh");
-            // The corner inside the other one is gone.
+            // The corner inside the other solid is gone.
             let kept = given.doubles.iter().filter(|p| mesh.vertices.contains(p));
             assert!(kept.count() >= 3);
         }

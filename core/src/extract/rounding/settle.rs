@@ -16,42 +16,43 @@ use crate::mesh::handle::VertexId;
 use crate::mesh::snap::snap_all;
 use crate::mesh::triangles::firsts;
 
-/// Rounds of finding and mending: each mends what it found, the next checks what that moved.
+/// The largest number of rounds: each mends the faults found, and the next one compares the triangles it
+/// changed.
 const MAX_ROUNDS: usize = 4;
 
-/// The most crossing pairs, per triangle, for which a moved mesh is mended. Surfaces that touched
-/// cross along curves, in fewer pairs than there are triangles. With more, they lie on each other
-/// as a whole, and no change as small as the rounding separates them.
+/// The largest number of crossing pairs per triangle for which a moved mesh is mended. Surfaces that touched
+/// cross along curves, in fewer pairs than there are triangles. If more pairs cross, whole surfaces
+/// coincide, and no change as small as the rounding separates them.
 const MAX_CROSSINGS_PER_TRIANGLE: usize = 1;
 
-/// A mesh whose vertices were rounded, closed by index.
+/// A triangle mesh, closed by index, whose vertices were rounded.
 #[derive(Clone, Debug)]
 pub struct Rounded {
     /// The vertices.
     pub vertices: Vec<Point>,
-    /// The triangles; those removed have one corner three times.
+    /// The triangles; a removed one has one corner three times.
     pub triangles: Vec<[VertexId; 3]>,
 }
 
-/// The outcome of settling a mesh.
+/// The result of removing the crossings that rounding made.
 #[derive(Clone, Debug, Default)]
 pub struct Settled {
-    /// The number of triangles that were compared with all near them.
+    /// The number of triangles that were compared with all triangles near them.
     pub compared: usize,
     /// The triangles that were changed, ascending, including removed ones.
     pub mended: Vec<u32>,
-    /// Vertices moved to their exact places, ascending.
+    /// Vertices moved to their exact lattice points, ascending.
     pub moved: Vec<VertexId>,
-    /// The faults that could not be mended.
+    /// The crossings and flat triangles that could not be mended.
     pub left: Faults,
-    /// The faults that exist on the lattice too, and stay.
+    /// Faults that surfaces have on the lattice, too; these are not mended.
     pub own: Faults,
 }
 
-/// Mends the faults found of changed triangles, ascending, as far as possible.
+/// Mends the faults `found` of the ascending triangles `changed`, as far as possible.
 ///
-/// `exact` gives the place of a vertex on the lattice, if its input had it elsewhere: there the
-/// surfaces do not cross. `given` marks vertices of inputs.
+/// `exact` gives the lattice point of a vertex, if its input had it elsewhere: at the lattice points
+/// surfaces do not cross. `given` is true for vertices of inputs, and `party` numbers the triangles.
 pub fn settle(
     mesh: &mut Rounded,
     mut changed: Vec<u32>,
@@ -90,7 +91,7 @@ pub fn settle(
     settled
 }
 
-/// Rounds a mesh, closed by index, to single precision and mends what that makes cross.
+/// Rounds a mesh, closed by index, to single precision, and mends the crossings that this makes.
 pub fn settle_in_single(mesh: &mut Rounded) -> Settled {
     let single = Precision::Single;
     let mut moved = vec![false; mesh.vertices.len()];
@@ -107,12 +108,12 @@ pub fn settle_in_single(mesh: &mut Rounded) -> Settled {
     settle(mesh, changed, found, single, |_| None, |_| false, |_| 0)
 }
 
-/// Mends crossings made by moving the vertices of a mesh; `before` has their old places. If this
-/// leaves crossings, tries again from the lattice.
+/// Mends crossings made by moving the vertices of a mesh, whose old positions are `before`. If crossings are
+/// left, tries again from the lattice.
 ///
-/// A mesh that crossed itself there before stays as it is (`own`), and so does one whose surfaces
-/// the map laid on each other (`left`). A mesh that is not closed by index is first welded, as on
-/// import; it stays as it is if that does not close it.
+/// A mesh that crossed itself in its old position stays as it is (`own`), and so does a mesh of which the
+/// map laid whole surfaces on each other (`left`). A mesh that is not closed by index is welded first, as on
+/// import; it stays as it is if welding does not close it.
 pub fn settle_moved(mesh: &mut Rounded, before: &[Point], pitch: Pitch) -> Settled {
     if !is_closed(&mesh.triangles) && !mesh.weld(pitch) {
         return Settled::default();
@@ -155,8 +156,8 @@ pub fn settle_moved(mesh: &mut Rounded, before: &[Point], pitch: Pitch) -> Settl
 }
 
 impl Rounded {
-    /// Welds the vertices at each lattice point, and removes triangles with a repeated corner;
-    /// returns whether the others are closed by index.
+    /// Welds the vertices at each lattice point, and removes triangles with a repeated corner; returns
+    /// whether the remaining triangles are closed by index.
     fn weld(&mut self, pitch: Pitch) -> bool {
         let Ok(places) = snap_all(&self.vertices, pitch) else {
             return false;
@@ -171,14 +172,14 @@ impl Rounded {
         is_closed(&left.copied().collect::<Vec<[VertexId; 3]>>())
     }
 
-    /// Mends faults of all triangles.
+    /// Mends the faults `found` among all triangles.
     fn settle_all(&mut self, found: Faults, exact: impl Fn(VertexId) -> Option<Point>) -> Settled {
         let all = (0..as_number(self.triangles.len())).collect();
         let double = Precision::Double;
         settle(self, all, found, double, exact, |_| false, |_| 0)
     }
 
-    /// Puts the corners of faulty triangles on the lattice, then mends faults of all triangles.
+    /// Moves the corners of faulty triangles to lattice points, then mends the faults among all triangles.
     fn settle_from_lattice(&mut self, found: Faults, pitch: Pitch) -> Settled {
         let given = self.vertices.clone();
         let on_lattice = |v: VertexId| {
@@ -188,7 +189,7 @@ impl Rounded {
         self.settle_all(found, on_lattice)
     }
 
-    /// The triangles.
+    /// The mesh with all its triangles.
     pub fn faces(&self) -> Faces<'_> {
         Faces {
             vertices: &self.vertices,
@@ -196,7 +197,8 @@ impl Rounded {
         }
     }
 
-    /// Return the faults of changed triangles, ascending, and those between parties.
+    /// Returns the faults of the triangles `changed`, ascending, and crossings between triangles of
+    /// different parties.
     pub fn faults(&self, changed: &[u32], party: impl Fn(u32) -> u32 + Sync + Send) -> Faults {
         if changed.is_empty() && self.is_of_one(&party) {
             return Faults::default();
@@ -204,8 +206,8 @@ impl Rounded {
         faults(&self.faces(), changed, &party)
     }
 
-    /// Return what `faults` would, given the faults found before some triangles were touched:
-    /// compares only these and their mates anew.
+    /// Returns the same as `faults`, given the faults `found` before some triangles were touched: compares
+    /// only the touched triangles and their neighbours.
     fn faults_after(
         &self,
         found: &Faults,
@@ -213,7 +215,7 @@ impl Rounded {
         touched: &[u32],
         party: impl Fn(u32) -> u32,
     ) -> Faults {
-        // Whether surfaces cross in an edge depends on the mate there.
+        // Whether surfaces cross at an edge depends on the neighbour there.
         let anew = merged(touched, &self.mates(touched));
         let is_anew = |t: &u32| anew.binary_search(t).is_ok();
         let is_changed = |t: &u32| changed.binary_search(t).is_ok();
@@ -233,7 +235,7 @@ impl Rounded {
         }
     }
 
-    /// The triangles across the edges of some.
+    /// Returns the triangles that share an edge with one of the triangles `some`.
     fn mates(&self, some: &[u32]) -> Vec<u32> {
         let corners = some.iter().map(|t| self.triangles[*t as usize]);
         let wanted: HashSet<[VertexId; 2]> = corners.flat_map(edges).map(|[a, b]| [b, a]).collect();
@@ -251,18 +253,18 @@ impl Rounded {
             .collect()
     }
 
-    /// Return whether all triangles are of one party.
+    /// Returns true if all triangles have the same party number.
     fn is_of_one(&self, party: impl Fn(u32) -> u32) -> bool {
         (1..as_number(self.triangles.len())).all(|t| party(t) == party(0))
     }
 
-    /// Return whether a triangle was removed.
+    /// Returns true if a triangle was removed.
     pub fn is_removed(&self, triangle: u32) -> bool {
         let [a, b, _] = self.triangles[triangle as usize];
         a == b
     }
 
-    /// Moves the corners of faulty triangles to their exact places; returns the moved ones.
+    /// Moves the corners of faulty triangles to their exact positions; returns the vertices that moved.
     fn move_corners(
         &mut self,
         found: &Faults,
@@ -283,7 +285,7 @@ impl Rounded {
         corners
     }
 
-    /// The triangles at some vertices, ascending.
+    /// Returns the triangles around the given vertices, ascending.
     fn stars(&self, vertices: &[VertexId]) -> Vec<u32> {
         let wanted: HashSet<VertexId> = vertices.iter().copied().collect();
         let has = |t: &u32| {
@@ -295,7 +297,7 @@ impl Rounded {
         all.filter(has).filter(|t| !self.is_removed(*t)).collect()
     }
 
-    /// Mends the part of the mesh around faults; returns the triangles changed, ascending.
+    /// Mends the part of the mesh around faults; returns the changed triangles, ascending.
     fn mend(
         &mut self,
         found: &Faults,
@@ -327,7 +329,7 @@ impl Rounded {
         self.take_back(&mending, &part, &some)
     }
 
-    /// Copies a mended part back into the mesh; returns the triangles changed.
+    /// Copies a mended part back into the mesh; returns the changed triangles.
     fn take_back(&mut self, mending: &Mending, part: &SubMesh, some: &[u32]) -> Vec<u32> {
         let mut globals = part.globals.clone();
         let first = self.vertices.len() - globals.len();
@@ -354,9 +356,9 @@ impl Rounded {
     }
 }
 
-/// Some triangles with vertices of their own.
+/// A part of a mesh, with its own numbering of vertices.
 struct SubMesh {
-    /// The vertices by their numbers in the whole mesh.
+    /// For each vertex of the part its number in the whole mesh.
     globals: Vec<VertexId>,
     triangles: Vec<[VertexId; 3]>,
 }
@@ -377,7 +379,7 @@ impl SubMesh {
         Self { globals, triangles }
     }
 
-    /// For each vertex whether some of its triangles lie outside.
+    /// Returns for each vertex whether a triangle around it is outside the part.
     fn is_cut_off(&self, mesh: &Rounded) -> Vec<bool> {
         let mut missing: HashMap<VertexId, usize> = HashMap::default();
         for v in self.triangles.iter().flatten() {
@@ -413,7 +415,7 @@ fn members(found: &Faults) -> impl Iterator<Item = u32> + '_ {
     pairs.chain(&found.flat).copied()
 }
 
-/// Merges two ascending lists.
+/// Merges two ascending lists, without repetitions.
 fn merged<T: Copy + Ord>(a: &[T], b: &[T]) -> Vec<T> {
     let mut all = [a, b].concat();
     all.sort_unstable();
@@ -425,7 +427,7 @@ fn merged<T: Copy + Ord>(a: &[T], b: &[T]) -> Vec<T> {
 mod tests {
     use super::*;
 
-    /// Tetrahedra in a row, each a little into the next.
+    /// Tetrahedra in a row, each of which overlaps the next.
     fn row(count: u32) -> Rounded {
         let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
         let places = [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]];
@@ -456,7 +458,7 @@ mod tests {
         }
     }
 
-    /// A tip that rounding put a little below a face, although it lies above.
+    /// A tip that lies above a face, but that rounding put a little below it.
     #[test]
     fn a_corner_goes_to_its_exact_place_if_rounding_makes_surfaces_cross() {
         let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
@@ -483,7 +485,7 @@ mod tests {
         assert!(mesh.vertices[4][2] > 0.0);
     }
 
-    /// A tip that touches a face, both of them far from the origin.
+    /// A tip that touches a face of another tetrahedron if its height is 1.
     fn touching(tip: Point) -> Rounded {
         let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
         let floor = [[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0], [0.0; 3]];
@@ -506,7 +508,7 @@ mod tests {
         assert_eq!(moved.triangles, before.triangles);
     }
 
-    /// Gives each triangle corners of its own.
+    /// The same mesh, in which triangles share no vertices.
     fn unwelded(mesh: &Rounded) -> Rounded {
         let corners = mesh.triangles.iter().flatten();
         let rows = (0..as_number(mesh.triangles.len())).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);

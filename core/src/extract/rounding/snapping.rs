@@ -1,9 +1,9 @@
-//! Meshes that cross themselves once the lattice's doubles replace their own.
+//! Finds meshes that cross themselves if the doubles of the lattice replace their own.
 //!
-//! A motion of the lattice keeps the doubles on axes along which it shifts nothing. On the others
-//! it snaps each vertex by itself, so that surfaces that touched may cross. Places of the lattice
-//! are rounded to doubles in turn, differently for each shift: faces that touch on the lattice are
-//! compared whenever they are made into a mesh.
+//! On axes along which it shifts nothing, a motion of the lattice keeps the doubles of vertices. On all
+//! other axes it snaps each vertex separately, so that surfaces that touched may cross. Lattice points are
+//! rounded to doubles, differently for each shift: so faces that touch on the lattice are compared whenever
+//! a mesh is made of them.
 
 use super::crossings::{all_faults, close_pairs, crossings_among, faults, Faults};
 use crate::arith::convert::as_double;
@@ -16,7 +16,7 @@ use crate::mesh::source::Source;
 use crate::mesh::triangles::TriangleMesh;
 use crate::tree::solid::Solid;
 
-/// Find the faces of a solid's meshes that touch, before a motion moves them.
+/// Finds the pairs of faces that touch on the lattice, in each mesh of a solid, before a motion moves them.
 pub fn look_at_contacts(solid: &Solid, motion: &Motion) {
     if motion.shifted() != [false; 3] {
         for source in solid.sources().iter() {
@@ -27,9 +27,9 @@ pub fn look_at_contacts(solid: &Solid, motion: &Motion) {
     }
 }
 
-/// The faces among close pairs that cross others in the doubles of a mesh; ascending.
+/// Returns the faces among close pairs that cross others in the doubles of a mesh, ascending.
 ///
-/// A motion to places that were rounded anew may cause them.
+/// A motion that rounded positions again may have made them cross.
 pub fn crossing_faces(mesh: &TriangleMesh, pairs: &[[u32; 2]]) -> Vec<u32> {
     let faces = Faces {
         vertices: &mesh.doubles,
@@ -41,7 +41,7 @@ pub fn crossing_faces(mesh: &TriangleMesh, pairs: &[[u32; 2]]) -> Vec<u32> {
     found
 }
 
-/// The doubles of a vertex after a motion: those it had, unless it was shifted along an axis.
+/// The doubles of a vertex after a motion: its old ones, except on axes along which it was shifted.
 pub fn moved_doubles(motion: &Motion, pitch: Pitch, p: &Point, image: &Lattice) -> Point {
     [0, 1, 2].map(|i| {
         let (axis, sign) = motion.axes[i];
@@ -53,7 +53,7 @@ pub fn moved_doubles(motion: &Motion, pitch: Pitch, p: &Point, image: &Lattice) 
     })
 }
 
-/// The pairs of faces that touch on the lattice, but cross neither there nor in their doubles.
+/// Returns the pairs of faces that touch on the lattice, but cross neither there nor in their doubles.
 fn close_on_lattice(mesh: &TriangleMesh) -> Vec<[u32; 2]> {
     let steps: Vec<Point> = mesh.vertices.iter().map(|p| p.map(as_double)).collect();
     let faces = |vertices| Faces {
@@ -68,15 +68,16 @@ fn close_on_lattice(mesh: &TriangleMesh) -> Vec<[u32; 2]> {
     pairs
 }
 
-/// Return whether a mesh of a solid newly crosses itself once its doubles along some axes are those
-/// of the lattice.
+/// Returns true if a mesh of a solid crosses itself with the doubles of the lattice on some axes, and did
+/// not before.
 pub fn crosses_once_snapped(solid: &Solid, axes: [bool; 3]) -> bool {
     // A reduced solid does not cross itself on the lattice.
     let is_known = axes == [true; 3] && solid.is_reduced();
     !is_known && solid.sources().iter().any(|s| source_crosses(s, axes))
 }
 
-/// Computed once for each source and choice of axes.
+/// Returns whether one source crosses itself with the doubles of the lattice on some axes; computes it only
+/// once.
 fn source_crosses(source: &Source, axes: [bool; 3]) -> bool {
     let crosses = |mesh| {
         let known = source.crosses_once_snapped(axes);
@@ -107,7 +108,8 @@ fn mesh_crosses(mesh: &TriangleMesh, source: &Source, axes: [bool; 3]) -> bool {
     };
     let mut found = all_faults(&faces);
     let any = !found.crossings.is_empty();
-    // Faces at welded vertices are not as they were given.
+    // Import changed the doubles of welded vertices, so crossings of faces there are not compared with the
+    // input.
     let is_blurred = |t: &u32| {
         let corners = mesh.faces[*t as usize];
         corners.iter().any(|v| blurred.binary_search(v).is_ok())
@@ -120,7 +122,7 @@ fn mesh_crosses(mesh: &TriangleMesh, source: &Source, axes: [bool; 3]) -> bool {
     any && !crossed(&before, &found)
 }
 
-/// Return whether triangles found to cross others also cross some in these places.
+/// Returns true if triangles that cross others in `found` also cross others in the mesh `before`.
 pub fn crossed(before: &Faces, found: &Faults) -> bool {
     let mut some: Vec<u32> = found.crossings.iter().flatten().copied().collect();
     some.sort_unstable();
@@ -139,12 +141,12 @@ mod tests {
     use crate::mesh::import::import;
     use crate::tree::solid::Solid;
 
-    /// A floor that slants by rounding, and a tip above it, on a lattice of whole steps.
+    /// A floor that slants by rounding, and a tip above it, on the lattice of integers.
     fn above(tip: Point, trusted: bool) -> Solid {
         spike_over([1.4, 1.6], tip, 0, trusted)
     }
 
-    /// A floor that rises from one height to another, and a spike over it.
+    /// A floor that rises from height `low` to `high`, and a spike above it.
     fn spike_over([low, high]: [f64; 2], tip: Point, pitch: i64, trusted: bool) -> Solid {
         let floor = [[0.0, 0.0, low], [8.0, 0.0, low], [0.0, 8.0, high], [0.0; 3]];
         let spike = [tip, [3.0, 1.0, 9.0], [1.0, 3.0, 9.0], [-1.0, -1.0, 9.0]];
@@ -165,7 +167,7 @@ mod tests {
         assert!(crosses(1.49, ALL) && crosses(1.49, [false, false, true]));
         assert!(!crosses(1.49, [true, true, false]));
         assert!(!crosses(1.51, ALL));
-        // It crossed before.
+        // The surfaces crossed before.
         assert!(!crosses(0.4, ALL));
     }
 

@@ -1,6 +1,6 @@
-//! The test of whether a mesh in doubles is star-shaped, by the same argument as for meshes on the
-//! lattice (`merge::arrangement::star`): if a point lies behind the planes of all faces, and a ray
-//! from it leaves through exactly one, no two cross.
+//! Tests whether a mesh in doubles is star-shaped, by the argument for meshes on the lattice
+//! (`merge::arrangement::star`): if a point lies behind the planes of all faces, and a ray from it leaves
+//! through exactly one face, no two faces cross.
 
 use crate::arith::convert::{as_double, as_number};
 use crate::arith::{Filtered, Sign};
@@ -10,11 +10,11 @@ use crate::geometry::side::Side;
 use crate::mesh::chain::is_closed;
 use crate::mesh::faces::Faces;
 
-/// Return whether a mesh is closed by index and star-shaped about the mean of its vertices; may return false
-/// negatives.
+/// Returns whether a mesh is closed by index and star-shaped about the mean of its vertices; may return
+/// false negatives.
 ///
 /// # Cost
-/// One test per triangle, up to the first that the mean is not clearly behind.
+/// One test per triangle, up to the first whose plane is not certainly in front of the mean.
 pub fn is_star_shaped(faces: &Faces) -> bool {
     let eye = mean(faces.vertices);
     let mut left = 0;
@@ -34,10 +34,10 @@ fn mean(points: &[Point]) -> Point {
     sum.map(|s| s / as_double(points.len()))
 }
 
-/// Return whether the ray along the first axis from a point behind a triangle leaves through it:
-/// along this axis its corners are then seen to wind to the left around the point.
+/// Returns true if a ray along the first axis, from a point behind a triangle, leaves through the triangle:
+/// projected along this axis, its corners then wind counterclockwise around the point.
 ///
-/// Of triangles that share an edge or a corner on the ray, it leaves through one.
+/// If triangles share an edge or a corner on the ray, it leaves through exactly one of them.
 fn is_left_by(triangle: &Triangle, eye: &Point) -> bool {
     let [a, b, c] = seen_along(triangle, 0);
     let place = [eye[1], eye[2]];
@@ -62,7 +62,7 @@ mod tests {
         })
     }
 
-    /// Double cones over a ring: an edge of the ring ends `step` corners on.
+    /// Double cones over a ring of corners, in which each edge leads `step` corners on.
     fn cones(ring: u32, step: u32) -> (Vec<Point>, Vec<[u32; 3]>) {
         let turn = |i: u32| f64::from(i) * std::f64::consts::TAU / f64::from(ring);
         let corner = |i: u32| [turn(i).cos(), turn(i).sin(), 0.0];
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn rays_that_meet_edges_and_corners_leave_through_one_face() {
-        // The mean is the origin; the first axis goes through a corner, or through an edge.
+        // The mean is the origin; the first axis passes through a corner, or through an edge.
         for ring in [4, 8] {
             let (vertices, triangles) = cones(ring, 1);
             assert!(star(&vertices, &triangles));

@@ -1,4 +1,4 @@
-//! Vertices of a rounded mesh that lie in one place, where surfaces touch.
+//! Finds vertices of a rounded mesh with equal doubles, at which surfaces touch.
 
 use std::hash::BuildHasher;
 
@@ -10,22 +10,23 @@ use crate::geometry::doubles::{digits, Point};
 use crate::interrupt::spend;
 use crate::mesh::tasks::{each_chunk, CHUNK};
 
-/// The digits of a place.
+/// The bits of the three coordinates of a point, for comparing.
 type Digits = [u64; 3];
 
-/// Vertices that share a place, by cause; each list ascends.
+/// Vertices with the same doubles as another vertex, by cause; each list ascends.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Touching {
-    /// Those at places where rounding, or mending it, has put at least one.
+    /// Vertices at points where at least one vertex was put by rounding, or by mending.
     pub rounded: Vec<u64>,
-    /// Those at places where every vertex is given.
+    /// Vertices at points where every vertex is given by an input.
     pub given: Vec<u64>,
 }
 
-/// The used vertices that share a place, except for copies made by splitting a contact.
+/// Returns the used vertices with the same doubles as another one, except copies made by splitting a
+/// contact.
 ///
-/// Vertices without a corner are copies that mending made. `is_given` marks vertices that are where
-/// their input has them.
+/// Vertices without an entry in `corners` are copies that mending made. `is_given` is true for a vertex that
+/// has the doubles of its input.
 ///
 /// # Cost
 /// Two passes over the vertices.
@@ -57,7 +58,8 @@ pub fn touching(
     found
 }
 
-/// The used vertices that share a place, and few others, with their places.
+/// Returns the used vertices that share their doubles with another vertex, and a few others, with their
+/// bits.
 fn candidates(vertices: &[Point], is_used: impl Fn(u32) -> bool + Sync) -> Vec<(Digits, u32)> {
     let places = repeated(vertices);
     if places.is_empty() {
@@ -77,7 +79,7 @@ fn candidates(vertices: &[Point], is_used: impl Fn(u32) -> bool + Sync) -> Vec<(
     found.concat()
 }
 
-/// The places with several vertices, and few others.
+/// Returns the points with several vertices, and a few others.
 fn repeated(vertices: &[Point]) -> HashSet<Digits> {
     let mut filter = Filter::for_places(vertices.len());
     let mut places = HashSet::default();
@@ -89,17 +91,17 @@ fn repeated(vertices: &[Point]) -> HashSet<Digits> {
     places
 }
 
-/// A filter that rules out most places that are not in a set.
+/// A bit table that rules out most points that are not in a set.
 struct Filter {
     words: Vec<u64>,
     shift: u32,
 }
 
 impl Filter {
-    /// Bits per place in the set: one in this many others passes as well.
+    /// The bits per point in the set: so one in this many points outside the set is not ruled out.
     const BITS_PER_PLACE: usize = 16;
 
-    /// The bits in a word.
+    /// The number of bits in a word of the table.
     const WORD: u32 = u64::BITS;
 
     fn for_places(count: usize) -> Self {
@@ -121,7 +123,7 @@ impl Filter {
         filter
     }
 
-    /// Adds a place; returns true if it was surely not there.
+    /// Adds a point; returns true if it was certainly not in the set.
     #[inline]
     fn add(&mut self, place: &Digits) -> bool {
         let (word, bit) = self.at(place);
@@ -155,7 +157,7 @@ mod tests {
     use super::*;
     use crate::mesh::handle::{Slot, VertexId};
 
-    /// A product hash alone gives all of them one bit.
+    /// A hash by multiplication alone would give all these points one bit.
     #[test]
     fn short_coordinates_are_told_apart() {
         let line = || (0..16).map(f64::from);
@@ -183,16 +185,16 @@ mod tests {
         let many = (0..1000).map(|i| ([f64::from(i), 7.0, 7.0], Some(Corner::Point(i))));
         let zero = [0.0, -0.0, 0.0];
         let few = [
-            // A point and a vertex of an input.
+            // A constructed point and a vertex of an input.
             ([1.0, 2.0, 0.0], Some(Corner::Point(1000))),
             ([1.0, 2.0, 0.0], Some(source(0, 0))),
-            // Two points.
+            // Two constructed points.
             (zero, Some(Corner::Point(1001))),
             (zero.map(|x| -x), Some(Corner::Point(1002))),
-            // Copies of one.
+            // Copies of one point.
             ([5.0; 3], Some(Corner::Point(1003))),
             ([5.0; 3], Some(Corner::Point(1003))),
-            // One that no triangle has.
+            // A point that no triangle uses.
             ([5.0; 3], Some(Corner::Point(1004))),
         ];
         let all: Vec<(Point, Option<Corner>)> = many.chain(few).collect();
@@ -200,8 +202,8 @@ mod tests {
         assert_eq!(found(&all[..1001]), [Vec::<u64>::new(), Vec::new()]);
     }
 
-    // Found: meshes touched themselves where an input has vertices in one place that it does not share,
-    // and no finding said so.
+    // Found: meshes touched themselves at vertices that an input has at equal coordinates without sharing
+    // them, and no finding named them.
     #[test]
     fn vertices_that_an_input_has_in_one_place_are_found() {
         let pair = |x: f64, corners: [Corner; 2]| corners.map(|corner| ([x; 3], Some(corner)));
@@ -211,7 +213,7 @@ mod tests {
         assert_eq!(found(&[own, split, cut].concat()), [vec![4, 5], vec![0, 1]]);
     }
 
-    // Found: vertices that mending copied lay in one place, and no finding said so.
+    // Found: vertices that mending copied had equal doubles, and no finding named them.
     #[test]
     fn copies_that_mending_made_are_found() {
         let given = ([3.0; 3], Some(source(0, 0)));

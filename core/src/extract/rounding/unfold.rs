@@ -1,8 +1,8 @@
-//! Triangles that rounding to doubles turned over, corrected by swapping edges.
+//! Corrects triangles that rounding to doubles turned over, by swapping edges.
 //!
-//! A constructed vertex moves by half a unit in its last place at most. A triangle narrower than
-//! that may turn over; together with a neighbour of its plane it mostly has another diagonal with
-//! which both face the right way.
+//! A constructed vertex moves by half a unit in its last place at most. A triangle narrower than that may
+//! turn over; with the other diagonal between it and a neighbour in its plane, both mostly face the right
+//! way.
 
 use rustc_hash::FxHashMap as HashMap;
 
@@ -16,22 +16,23 @@ use crate::merge::lists::list::Sources;
 use crate::mesh::faces::edges;
 use crate::mesh::handle::VertexId;
 
-/// Swaps tried per triangle found turned over; each lowers the number of such triangles.
+/// The largest number of swaps per triangle found turned over; each swap lowers the number of such
+/// triangles.
 const MAX_SWAPS_PER_TRIANGLE: usize = 8;
 
-/// The changes that rounding made to the triangles of a mesh.
+/// The triangles that edge swaps changed, and those that they could not correct.
 #[derive(Debug, Default)]
 pub struct Unfolded {
-    /// Triangles made by swapping an edge.
+    /// The triangles that were made by swapping an edge, ascending.
     pub repaired: Vec<u64>,
-    /// Triangles that still have no area or face the wrong way.
+    /// Triangles that still have no area or face opposite to their planes.
     pub left: Vec<u64>,
 }
 
-/// Swaps edges inside planes until no swap helps a triangle that faces the wrong way.
+/// Swaps edges between triangles of one plane until no swap corrects a triangle that faces the wrong way.
 ///
 /// # Order
-/// Triangles by their numbers, and in each the edges from its first corner on.
+/// Triangles by their numbers, and in each triangle the edges from its first corner on.
 pub fn unfold(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources) -> Unfolded {
     let turned = turned(mesh, exact, sources);
     if turned.is_empty() {
@@ -59,7 +60,7 @@ pub fn unfold(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources) -> Unfolded
     found
 }
 
-/// The triangles with a constructed corner that do not face as their planes do, ascending.
+/// Returns the triangles with a constructed corner that do not face as their planes do, ascending.
 pub fn turned(mesh: &Mesh, exact: &ExactMesh, sources: &Sources) -> Vec<u64> {
     let planes = Planes { exact, sources };
     let is_given = |v: &VertexId| matches!(exact.vertices.get(v.place()), Some(Corner::Source(..)));
@@ -71,7 +72,7 @@ pub fn turned(mesh: &Mesh, exact: &ExactMesh, sources: &Sources) -> Vec<u64> {
         .collect()
 }
 
-/// The exact planes of the triangles.
+/// The exact plane of each triangle, oriented as the triangle should face.
 struct Planes<'a> {
     exact: &'a ExactMesh,
     sources: &'a Sources,
@@ -93,7 +94,8 @@ impl Planes<'_> {
     }
 }
 
-/// Return whether a rounded triangle does not face as its plane does, seen along its main axis.
+/// Returns true if a rounded triangle, projected along the main axis of its plane's normal, does not turn
+/// left.
 fn is_turned(mesh: &Mesh, corners: &[VertexId; 3], normal: &[i128; 3]) -> bool {
     let axis = (0..3).rev().max_by_key(|i| normal[*i].unsigned_abs());
     let axis = axis.unwrap_or(0);
@@ -124,7 +126,8 @@ impl<'a> Surface<'a> {
         self.planes.is_turned(self.mesh, triangle)
     }
 
-    /// Swaps the diagonal of the two triangles at an edge, if fewer are turned then.
+    /// Replaces an edge by the other diagonal of its two triangles, if that leaves fewer of them turned
+    /// over; returns the two triangles.
     fn swap(&mut self, half: usize) -> Option<[usize; 2]> {
         let corner = |h: usize| self.mesh.triangles[h / 3][h % 3];
         let next = |h: usize| h - h % 3 + (h % 3 + 1) % 3;

@@ -1,9 +1,9 @@
-//! Meshes of faces perpendicular to axes, which rounding cannot make cross.
+//! Decides whether all faces of a mesh are perpendicular to axes, so that rounding cannot make them cross.
 //!
-//! If rounding keeps the order of different coordinates on each axis, it is a map of space that
-//! stretches and shrinks along the axes. It takes walls to walls, and surfaces that do not cross to
-//! such surfaces: the parts of a plane end at edges along axes, and the map takes these to the
-//! edges of the images. Inside such a part triangles overlap only if one is turned over.
+//! If rounding keeps the order of different coordinates on each axis, it is a map of space that stretches
+//! and shrinks along the axes. The map takes walls to walls, and surfaces that do not cross to surfaces that
+//! do not cross: each part of a plane ends at edges along axes, and the map takes these to the edges of the
+//! image. Inside such a part triangles overlap only if one is turned over.
 
 #![allow(
     clippy::float_cmp,
@@ -19,12 +19,12 @@ use crate::merge::lists::list::Sources;
 use crate::mesh::faces::Faces;
 use crate::mesh::grid::Pitch;
 
-/// Different coordinates up to this many steps have different nearest doubles: one step is at least
-/// two spacings of the doubles there.
+/// Different coordinates up to this many steps have different nearest doubles: one step is at least two
+/// spacings of doubles there.
 const MAX_DISTINCT_STEPS: u64 = 1 << 51;
 
-/// Return whether the triangles of a rounded mesh cross only if they do so on the lattice: they are
-/// perpendicular to axes, each vertex is at the doubles nearest to its lattice point, and none is
+/// Returns true only if the triangles of a rounded mesh cross no more than on the lattice: all are
+/// perpendicular to axes, each vertex is at the doubles nearest to its lattice point, and no triangle is
 /// turned over. May return false negatives.
 pub fn keeps_order(faces: &Faces, exact: &ExactMesh, sources: &Sources, pitch: Pitch) -> bool {
     let mut triangles = (0..).zip(&exact.faces);
@@ -39,7 +39,7 @@ pub fn keeps_order(faces: &Faces, exact: &ExactMesh, sources: &Sources, pitch: P
     })
 }
 
-/// Return whether a triangle is perpendicular to an axis and faces as a normal does.
+/// Returns true if a triangle is perpendicular to an axis and faces the direction of `normal`.
 fn stands_upright(corners: &Triangle, normal: &[i128; 3]) -> bool {
     let [a, b, c] = corners;
     let axis = (0..3).find(|i| a[*i] == b[*i] && b[*i] == c[*i]);
@@ -49,13 +49,13 @@ fn stands_upright(corners: &Triangle, normal: &[i128; 3]) -> bool {
     })
 }
 
-/// Return whether a place is nearest to a lattice point, and to no other.
+/// Returns true if a point is at the doubles nearest to a lattice point, and to no other lattice point.
 fn is_at(place: &Point, p: &Lattice, pitch: Pitch) -> bool {
     p.iter().all(|k| k.unsigned_abs() <= MAX_DISTINCT_STEPS)
         && p.map(|k| pitch.coordinate(k)) == *place
 }
 
-/// The lattice point of a vertex, if it is known to be one.
+/// Returns the lattice point of a vertex; `None` if the vertex is not known to be a lattice point.
 fn lattice_of(corner: Corner, exact: &ExactMesh, sources: &Sources) -> Option<Lattice> {
     match corner {
         Corner::Point(point) => exact.table.point(point).as_lattice().copied(),
@@ -75,7 +75,7 @@ mod tests {
     use crate::merge::scenes::{cuboid, made_of, tetrahedra};
     use crate::tree::solid::Solid;
 
-    /// Return whether the mesh of a solid keeps its order after moving vertices.
+    /// Returns whether `keeps_order` is true for the mesh of a solid after `put` has moved vertices.
     fn keeps(solid: &Solid, put: impl FnOnce(&mut [Point])) -> bool {
         let exact = assemble(solid).expect("bounded");
         let sources = Sources::new(solid.sources().clone());
@@ -109,7 +109,7 @@ mod tests {
         let boxes = made_of(&[cuboid([0; 3], [4; 3]), cuboid([2; 3], [6; 3])], Term::Or);
         let next = |x: f64| x.next_up();
         assert!(!keeps(&boxes, |places| places[0] = places[0].map(next)));
-        // All of a wall, so that it stays upright.
+        // All vertices of a wall, so that it stays upright.
         assert!(!keeps(&boxes, |places| {
             for place in places.iter_mut().filter(|p| p[0] == 0.0) {
                 place[0] = next(0.0);

@@ -1,4 +1,4 @@
-//! The possible changes in a round, and a choice of independent ones.
+//! Lists the possible changes of a round, and chooses independent ones.
 
 use super::edit::{Act, Edit, Limits, MAX_TRIANGLES_PER_VERTEX};
 use super::sizes::{height, lengths};
@@ -9,11 +9,11 @@ use crate::mesh::faces::edges;
 use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::each_chunk;
 
-/// A change to try, after the length or height that it is about.
+/// A change to try, after the length of its edge or the height of its sliver.
 type Wanted = (f64, Act);
 
 impl Surface<'_> {
-    /// List the changes where vertices are awake: collapses before flips, the smallest first.
+    /// Lists the changes at triangles with an awake vertex: collapses before flips, the smallest first.
     pub fn acts(&self, awake: &[bool], tolerance: f64) -> Vec<Act> {
         let of = |first: usize, triangles: &[[VertexId; 3]]| {
             let some = (as_number(first)..).zip(triangles);
@@ -30,7 +30,8 @@ impl Surface<'_> {
         all.into_iter().map(|(_, act)| act).collect()
     }
 
-    /// The short edges of a triangle, and its longest one if it is a sliver.
+    /// Returns a collapse of each short edge of a triangle, and a flip of its longest edge if it is a
+    /// sliver.
     fn acts_at(&self, t: u32, tolerance: f64) -> Vec<Wanted> {
         let corners = self.corners(t);
         let lengths = lengths(&corners);
@@ -59,17 +60,17 @@ impl Surface<'_> {
     }
 }
 
-/// The changes of a round.
+/// The independent changes chosen for a round, and those that wait.
 pub struct Chosen {
     /// Changes that are independent of each other.
     pub edits: Vec<Edit>,
-    /// Changes that may be possible once these are made.
+    /// Changes that may be possible after the chosen ones.
     pub waiting: Vec<Act>,
 }
 
-/// Chooses independent changes greedily, in the given order.
+/// Chooses independent changes greedily, in the order of `wanted`.
 ///
-/// Flips, which come last, wait until no edge can be collapsed: collapses use less tolerance.
+/// Flips, which come last, wait until no edge can be collapsed, because collapses use less of the tolerance.
 pub fn chosen(limits: &Limits, wanted: &[Act], is_refused: impl Fn(&Act) -> bool) -> Chosen {
     let mut locks = vec![Lock::default(); limits.surface.vertices.len()];
     let mut chosen = Chosen {
@@ -100,22 +101,21 @@ fn is_flip(act: &Act) -> bool {
     matches!(act, Act::Flip(_))
 }
 
-/// The claims of chosen changes on a vertex.
+/// What chosen changes do at a vertex.
 #[derive(Clone, Copy, Default)]
 struct Lock {
-    /// It is an end of a collapsed edge.
+    /// The vertex is an end of a collapsed edge.
     ends: bool,
-    /// It is a neighbour of a removed vertex.
+    /// The vertex is a neighbour of a removed vertex.
     beside: bool,
-    /// It is a corner of triangles whose edge is flipped.
+    /// The vertex is a corner of a triangle whose edge is flipped.
     turns: bool,
 }
 
-/// Return whether a change must wait.
+/// Returns true if a change must wait, because a chosen change alters what it reads.
 ///
-/// A collapse reads the neighbours of both ends and the triangles around the removed one; a flip
-/// reads its two triangles, whether their apexes are joined, and what came to its corners. No other
-/// change may alter what it reads.
+/// A collapse reads the neighbours of both ends, and the triangles around the removed end. A flip reads its
+/// two triangles, whether their apexes are joined, and the drift at its corners.
 fn is_locked(surface: &Surface, locks: &[Lock], act: &Act) -> bool {
     let at = |v: &VertexId| locks[v.place()];
     match act {
@@ -158,7 +158,7 @@ mod tests {
     use super::super::drift::Drift;
     use super::*;
 
-    /// A tetrahedron with a vertex on one edge, very close to its end.
+    /// The vertices of a tetrahedron, and a vertex on one of its edges, close to the edge's end.
     const PLACES: [[f64; 3]; 5] = [
         [0.0; 3],
         [1.0, 0.0, 0.0],

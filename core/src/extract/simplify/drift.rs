@@ -1,46 +1,46 @@
-//! A bound on the distance between the old surface and the new one.
+//! Bounds the distance between the surface before and after simplifying.
 //!
 //! There is a map from the old surface onto the new one that is affine on each triangle: a collapse
 //! moves the vertex, and with it the triangles around, to the other end of the edge. So each old
 //! vertex goes to a new one, and no point moves farther than the farthest corner of its triangle.
 //! The map is onto, so the same bound holds from the new surface to the old one.
 //!
-//! A flip first divides the long edge of a sliver, next to the third corner, and then collapses the
-//! new point onto that corner. The point also becomes a vertex of the old surface. Its place there
-//! is known only as well as the ends of the edge are: that is its slack.
+//! A flip first divides the long edge of a sliver, next to the third corner, and then collapses the new
+//! point onto that corner. The new point also becomes a vertex of the old surface. Its position there is
+//! known only as well as the ends of the edge are; the uncertainty is its slack.
 
 use super::sizes::distance_above;
 use crate::arith::convert::as_number;
 use crate::geometry::doubles::Point;
 use crate::mesh::handle::VertexId;
 
-/// The drift of each vertex: what has come to it.
+/// For each vertex, the points of the old surface that were moved to it, and a bound on their distance.
 pub struct Drift {
     witnesses: Vec<Witness>,
-    /// For each vertex a bound on the distance of what came to it.
+    /// For each vertex, a bound on its distance from the old points that were moved to it.
     bounds: Vec<f64>,
 }
 
-/// A point of the old surface that goes to a vertex. Those of one vertex form a ring, in which the
-/// vertex itself has its own number.
+/// A point of the old surface that was moved to a vertex. The witnesses of one vertex form a ring through
+/// `next`, in which the vertex itself has its own number.
 struct Witness {
     place: Point,
-    /// How far from the place it may lie.
+    /// A bound on the distance of the old point from this position.
     slack: f64,
     next: u32,
 }
 
-/// An old point that comes to a vertex.
+/// The old points that a change moves to a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Arrival {
-    /// All that came to another vertex.
+    /// All old points that were moved to another vertex before.
     Vertex(VertexId),
-    /// A point of an edge, by its place and slack.
+    /// A point of an edge, by its position and its slack.
     Point(Point, f64),
 }
 
 impl Drift {
-    /// Nothing has moved.
+    /// Starts with each vertex at its own position.
     pub fn new(vertices: &[Point]) -> Self {
         let alone = |(v, place): (u32, &Point)| Witness {
             place: *place,
@@ -53,12 +53,12 @@ impl Drift {
         }
     }
 
-    /// Bound the distance from a vertex of what came to it.
+    /// Returns a bound on the distance of a vertex from the old points that were moved to it.
     pub fn at(&self, v: VertexId) -> f64 {
         self.bounds[v.place()]
     }
 
-    /// Return the bound at a vertex after an arrival; `None` beyond a limit.
+    /// Returns the bound at vertex `to` after more points are moved to it; `None` if it exceeds `limit`.
     pub fn with(
         &self,
         (to, place): (VertexId, &Point),
@@ -72,7 +72,8 @@ impl Drift {
         (far <= limit).then(|| far.max(self.at(to)))
     }
 
-    /// Return the largest distance from a place of what came to a vertex; `None` beyond a limit.
+    /// Returns the largest distance of a point from the old points at vertex `v`; `None` if it exceeds
+    /// `limit`.
     fn farthest(&self, v: VertexId, place: &Point, limit: f64) -> Option<f64> {
         let mut farthest = 0.0f64;
         let mut at = v.0;
@@ -89,7 +90,7 @@ impl Drift {
         }
     }
 
-    /// Records an arrival at a vertex, and the bound after it.
+    /// Records that points were moved to a vertex, and the bound after that.
     pub fn follow(&mut self, to: VertexId, arrival: Arrival, bound: f64) {
         let to = to.place();
         let from = match arrival {
@@ -105,13 +106,13 @@ impl Drift {
         self.bounds[to] = bound;
     }
 
-    /// Bound the distance of any point from the other surface.
+    /// Returns a bound on the distance of any point of the old or the new surface from the other surface.
     pub fn bound(&self) -> f64 {
         self.bounds.iter().fold(0.0, |m, b| m.max(*b))
     }
 }
 
-/// A sum, rounded up.
+/// The sum of two numbers, rounded up; exact if the second is zero.
 fn above(x: f64, y: f64) -> f64 {
     if y == 0.0 {
         x
@@ -143,7 +144,7 @@ mod tests {
             1.0
         ));
         drift.follow(VertexId(1), Arrival::Vertex(VertexId(0)), 1.0);
-        // Not the sum of the ways, 1 + 2, but the distance to the first vertex.
+        // Not the sum of the two distances, 1 + 2, but the distance to the first vertex.
         assert!(near(
             drift.with((VertexId(2), &ROW[2]), Arrival::Vertex(VertexId(1)), 9.0),
             3.0

@@ -1,4 +1,4 @@
-//! Changes that mend a short edge or a sliver, and whether they are allowed.
+//! Changes that remove a short edge or a sliver, and whether they are allowed.
 
 use super::drift::{Arrival, Drift};
 use super::sizes::{height, rounding_of, swept};
@@ -7,41 +7,41 @@ use crate::geometry::doubles::vector::{dot, less, normal};
 use crate::geometry::doubles::{is_flat, Triangle};
 use crate::mesh::handle::VertexId;
 
-/// A vertex of more triangles stays: checking each edge of a hub costs a pass over all of them.
+/// A vertex with more triangles is not moved: checking each edge there costs a pass over all of them.
 pub const MAX_TRIANGLES_PER_VERTEX: usize = 64;
 
-/// Triangles lower than this part of the tolerance are not made, unless one was as low before: they
-/// are lower than those that gathering corners leave, and further collapses would not remove them.
+/// Triangles lower than this share of the tolerance are not made, unless one was as low before: further
+/// collapses would not remove them.
 const MIN_HEIGHT_SHARE: f64 = 0.25;
 
-/// A change to try, by its vertices.
+/// A change to try, given by vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Act {
-    /// An edge becomes one of its ends.
+    /// The edge between two vertices is shrunk to one of its ends.
     Collapse([VertexId; 2]),
     /// An edge a → b with the triangles a b c and b a d becomes the edge c d.
     Flip([VertexId; 4]),
 }
 
-/// A change that keeps the surface closed and near, with one fan at each vertex.
+/// A change that is allowed: the surface stays closed and near, with one fan at each vertex.
 #[derive(Clone, Debug)]
 pub struct Edit {
     /// The change.
     pub act: Act,
-    /// The triangles with their new corners; vanishing ones have one corner three times.
+    /// The changed triangles with their new corners; a triangle that vanishes has one corner three times.
     pub changes: Vec<(u32, [VertexId; 3])>,
-    /// The vertex to which a part of the surface comes.
+    /// The vertex to which points of the old surface are moved.
     pub target: VertexId,
-    /// The old point that comes to it.
+    /// The points that are moved to the target.
     pub arrival: Arrival,
-    /// The bound on the drift at the target afterwards.
+    /// The bound on the drift at the target after the change.
     pub bound: f64,
-    /// Six times the volume between the old and the new surface.
+    /// Six times the volume between the surface before and after the change.
     swept: f64,
 }
 
 impl Act {
-    /// Its vertices.
+    /// Yields the vertices that the change names.
     pub fn corners(&self) -> impl Iterator<Item = VertexId> + '_ {
         match self {
             Self::Collapse(ends) => ends.iter().copied(),
@@ -51,13 +51,13 @@ impl Act {
 }
 
 impl Edit {
-    /// The corners of the triangles that are left.
+    /// Yields the corners of the changed triangles that do not vanish.
     pub fn corners(&self) -> impl Iterator<Item = VertexId> + '_ {
         let left = self.changes.iter().map(|c| c.1).filter(|c| c[0] != c[1]);
         left.flatten()
     }
 
-    /// The removed vertex, if any.
+    /// The vertex that the change removes; `None` for a flip.
     pub fn going(&self) -> Option<VertexId> {
         match self.act {
             Act::Collapse([from, _]) => Some(from),
@@ -65,7 +65,7 @@ impl Edit {
         }
     }
 
-    /// The tetrahedra between the surface as it was and as it will be.
+    /// Returns the tetrahedra between the surface before and after the change.
     pub fn bodies(&self) -> Vec<[VertexId; 4]> {
         let left = self.changes.iter().map(|c| c.1).filter(|c| c[0] != c[1]);
         match self.act {
@@ -75,18 +75,19 @@ impl Edit {
     }
 }
 
-/// The limits of changes.
+/// A surface, its drift, and the tolerance that changes must respect.
 pub struct Limits<'a> {
-    /// The surface as it is.
+    /// The surface before the change.
     pub surface: &'a Surface<'a>,
-    /// The drift so far.
+    /// How far each vertex's old points were moved already.
     pub drift: &'a Drift,
-    /// The drift that is allowed.
+    /// The largest drift allowed.
     pub tolerance: f64,
 }
 
 impl Limits<'_> {
-    /// The edit that makes a change; `None` if it is not allowed.
+    /// Returns the edit for a change; `None` if it is not allowed. Of the two ends of a collapse the one
+    /// with the smaller volume change is taken.
     pub fn edit(&self, act: Act, is_refused: impl Fn(&Act) -> bool) -> Option<Edit> {
         match act {
             Act::Collapse([a, b]) => {
@@ -100,7 +101,7 @@ impl Limits<'_> {
         }
     }
 
-    /// Moves a vertex to the other end of an edge.
+    /// Moves the first vertex of a collapse to the second; `None` if that is not allowed.
     fn collapse(&self, act: Act) -> Option<Edit> {
         let Act::Collapse([from, to]) = act else {
             return None;
@@ -127,7 +128,7 @@ impl Limits<'_> {
         (least >= before).then_some(edit)
     }
 
-    /// Adds the change of a triangle; returns its new height, `None` if it is not allowed.
+    /// Adds the new corners of a triangle to an edit; returns its new height, `None` if it is not allowed.
     fn change(&self, edit: &mut Edit, t: u32, [from, to]: [VertexId; 2]) -> Option<f64> {
         let old = self.surface.triangles[t as usize];
         if old.contains(&to) {
@@ -143,8 +144,8 @@ impl Limits<'_> {
         self.is_fit(&corners, &moved).then(|| height(&moved))
     }
 
-    /// The link condition: the ends of an edge have exactly two neighbours in common, the third
-    /// corners of its triangles, and are not those of a tetrahedron.
+    /// Returns whether the link condition is true: the ends of an edge have exactly two neighbours in
+    /// common, the third corners of the edge's triangles, and are not those of a tetrahedron.
     fn may_be_joined(&self, from: VertexId, to: VertexId) -> bool {
         let surface = self.surface;
         let others = surface.neighbours(from).filter(|v| *v != to);
@@ -153,14 +154,15 @@ impl Limits<'_> {
         !is_tetrahedron && common.count() == 2
     }
 
-    /// Return whether a triangle may become another: it has area and does not turn over. A sliver
-    /// may turn over, because its side means little.
+    /// Returns whether a triangle may become another one: the new one has an area and does not turn over. A
+    /// sliver may turn over, because its orientation means little.
     fn is_fit(&self, old: &Triangle, new: &Triangle) -> bool {
         let turns = || dot(&normal(old), &normal(new)) <= 0.0;
         !is_flat(new) && (height(old) <= self.tolerance || !turns())
     }
 
-    /// Swaps the diagonal of two triangles, one of them a sliver.
+    /// Replaces an edge by the other diagonal of its two triangles, one of them a sliver; `None` if not
+    /// allowed.
     fn flip(&self, [a, b, c, d]: [VertexId; 4]) -> Option<Edit> {
         let surface = self.surface;
         if c == d || surface.are_joined(c, d) {
@@ -185,7 +187,7 @@ impl Limits<'_> {
         })
     }
 
-    /// The point of the edge a → b nearest to c, if it is inside.
+    /// Returns the point of the edge a → b nearest to c; `None` if it is not strictly between the ends.
     fn beside(&self, [a, b, c]: [VertexId; 3]) -> Option<Arrival> {
         let [p, q, r] = [a, b, c].map(|v| self.surface.place(v));
         let along = less(q, p);
@@ -200,7 +202,7 @@ impl Limits<'_> {
 pub(super) mod tests {
     use super::*;
 
-    /// The corners of an octahedron in general position: two tips, and the ring between them.
+    /// The corners of an octahedron in general position: two tips, and a ring of four corners between them.
     pub(in crate::extract::simplify) const PLACES: [[f64; 3]; 6] = [
         [0.9, 0.0, 0.5],
         [0.1, 0.0, -2.0],

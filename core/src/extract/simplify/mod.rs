@@ -1,11 +1,11 @@
 //! Removal of short edges and slivers from a mesh, within a tolerance.
 //!
-//! An edge is short if it is no longer than the tolerance, a triangle is a sliver if it is no
-//! higher than that. Rounds of independent changes collapse short edges and flip the long edges of
-//! slivers. After each round changed triangles are compared exactly with all near them, and changes
-//! that made surfaces cross are undone.
+//! An edge is short if it is no longer than the tolerance, a triangle is a sliver if its least height is not
+//! above the tolerance. Rounds of independent changes collapse short edges and flip the long edges of
+//! slivers. After each round changed triangles are compared exactly with all triangles near them, and
+//! changes that made surfaces cross are undone.
 //!
-//! Vertices stay where they are. [`Drift`] proves how far the surface moved.
+//! Vertices are never moved. [`Drift`] bounds how far the surface moved.
 //!
 //! # Cost
 //! A round is linear in the mesh and makes a maximal set of changes: each waiting one is next to

@@ -1,4 +1,4 @@
-//! The exact proof that changes make no crossings; those that do are undone.
+//! Proves exactly that changes make no crossings, and undoes those that do.
 
 use rustc_hash::FxHashMap as HashMap;
 
@@ -9,10 +9,10 @@ use crate::geometry::doubles::Point;
 use crate::mesh::faces::Faces;
 use crate::mesh::handle::VertexId;
 
-/// Makes changes; returns those that stay, and those that were undone.
+/// Makes changes; returns the edits that stay, and the changes that were undone because surfaces crossed.
 ///
-/// Only triangles that just changed can cross something, so only these are checked. Each pass of
-/// the loop undoes at least one change.
+/// Only triangles that just changed can cross another one, so only these are checked. Each pass of the loop
+/// undoes at least one change.
 pub fn proved(
     vertices: &[Point],
     triangles: &mut [[VertexId; 3]],
@@ -37,14 +37,14 @@ pub fn proved(
     (kept.into_iter().map(|(edit, _)| edit).collect(), acts)
 }
 
-/// Changes that are being tried.
+/// Changes that are tried together, with the triangles before them, so that they can be undone.
 struct Trial<'a> {
     vertices: &'a [Point],
     triangles: &'a mut [[VertexId; 3]],
     edits: &'a [Edit],
-    /// For each change the triangles as they were.
+    /// For each change, the corners of its triangles before it.
     before: Vec<Vec<[VertexId; 3]>>,
-    /// The change that each triangle is part of.
+    /// The index of the change that each triangle is part of.
     owners: HashMap<u32, usize>,
     stays: Vec<bool>,
 }
@@ -72,7 +72,7 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// Makes the changes; returns the changed triangles, ascending.
+    /// Makes the changes that stay; returns the changed triangles, ascending.
     fn apply(&mut self) -> Vec<u32> {
         let mut changed = Vec::new();
         let staying = self.edits.iter().zip(&self.stays).filter(|e| *e.1);
@@ -86,7 +86,7 @@ impl<'a> Trial<'a> {
         changed
     }
 
-    /// The changes that make one of `some` triangles cross something, ascending.
+    /// Returns the changes that make one of the triangles `some` cross another or have no area, ascending.
     fn crossing(&self, some: &[u32]) -> Vec<usize> {
         let faces = Faces {
             vertices: self.vertices,
@@ -101,7 +101,7 @@ impl<'a> Trial<'a> {
         guilty
     }
 
-    /// The changes to shells that are now inside out.
+    /// Returns the changes to shells that are now inside out.
     fn turning(&self, shells: &Shells) -> Vec<usize> {
         let turned = shells.turned(self.vertices, self.triangles);
         let is_turning = |k: &usize| self.stays[*k] && turned[shells.of_edit(&self.edits[*k])];
@@ -131,8 +131,8 @@ mod tests {
     use super::super::surface::Surface;
     use super::*;
 
-    /// Collapses an edge of the octahedron beside a tiny tetrahedron; returns the numbers of changes
-    /// that stay and that are taken back.
+    /// Collapses an edge of an octahedron beside a tiny tetrahedron; returns the number of changes that stay
+    /// and the number of those that are undone.
     fn kept_beside(tiny: impl Fn(&Edit) -> Point) -> [usize; 2] {
         let around = [[2, 3], [3, 4], [4, 5], [5, 2]];
         let mut triangles = VertexId::rows(around.map(|[a, b]| [[0, a, b], [1, b, a]]).concat());

@@ -1,4 +1,4 @@
-//! The simplified mesh of a solid as a solid of its own.
+//! Turns the simplified mesh of a solid into a solid.
 
 use std::sync::Arc;
 
@@ -13,14 +13,14 @@ use crate::mesh::import::import;
 use crate::mesh::source::Source;
 use crate::tree::solid::Solid;
 
-/// The lattices to try, by how many powers of ten they are finer than the solid's own: rounding
-/// leaves triangles lower than a step, down to a few last places of doubles.
+/// The lattices that are tried, by how many powers of ten they are finer than the solid's own: rounding
+/// leaves triangles lower than a step, down to a few units in the last place.
 const FINER_POWERS_OF_TEN: [i64; 3] = [0, 3, 6];
 
-/// The solid of a bounded solid's mesh without short edges and slivers.
+/// Returns the solid of a bounded solid's mesh without its short edges and slivers.
 ///
-/// `None` if it has none to remove, or if no lattice represents the result as it is: parts of the
-/// surface that lie closer together than its step would vanish.
+/// `None` if the mesh has none of them, or if no lattice represents the result: parts of the surface closer
+/// together than the lattice step would vanish.
 ///
 /// # Errors
 /// `Unbounded`; `Internal`.
@@ -42,7 +42,7 @@ pub fn simplified(solid: &Solid, tolerance: f64) -> Result<Option<Solid>> {
     Ok(None)
 }
 
-/// The mesh on a lattice, if that keeps each of its faces and none overlap there.
+/// Returns the solid of a mesh on a lattice; `None` if a face would change there, or faces would overlap.
 fn on_lattice(mesh: &Simplified, pitch: Pitch, noticed: Vec<Finding>) -> Result<Option<Solid>> {
     let faces: Vec<[i64; 3]> = mesh.triangles.iter().map(|t| t.map(i64::from)).collect();
     let imported = import(&mesh.vertices, &faces, Some(pitch)).ok();

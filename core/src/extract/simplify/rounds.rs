@@ -1,4 +1,4 @@
-//! Rounds of changes, and what is left after the last.
+//! Simplifies a mesh in rounds of independent changes.
 
 use rustc_hash::FxHashSet as HashSet;
 
@@ -15,18 +15,18 @@ use crate::geometry::doubles::Point;
 use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::each_chunk;
 
-/// The most rounds; changes that still wait then are not made. A vertex has six neighbours on
+/// The largest number of rounds; changes that still wait then are not made. A vertex has six neighbours on
 /// average, so that a change blocks some twenty others: of a million, less than one waits longer.
 const MAX_ROUNDS: usize = 256;
 
-/// A mesh that was simplified.
+/// The result of simplifying a mesh.
 #[derive(Debug)]
 pub struct Simplified {
-    /// The vertices that are left, in their old order and places.
+    /// The vertices that are left, in their old order, at their old positions.
     pub vertices: Vec<Point>,
     /// The triangles that are left.
     pub triangles: Vec<[VertexId; 3]>,
-    /// No point of either surface is farther than this from the other.
+    /// No point of the old or the new surface is farther than this from the other surface.
     pub bound: f64,
     /// Triangles that are still slivers or have a short edge, ascending.
     pub left: Vec<u32>,
@@ -34,7 +34,7 @@ pub struct Simplified {
     pub changed: bool,
 }
 
-/// Takes short edges and slivers out of a mesh that is closed by index with one fan at each vertex.
+/// Removes short edges and slivers from a mesh that is closed by index with one fan at each vertex.
 ///
 /// # Example
 /// ```
@@ -58,16 +58,16 @@ pub fn simplify(vertices: Vec<Point>, triangles: Vec<[VertexId; 3]>, tolerance: 
     simplifying.finished()
 }
 
-/// The state between two rounds.
+/// The mesh between two rounds of changes.
 struct Simplifying {
     vertices: Vec<Point>,
     triangles: Vec<[VertexId; 3]>,
     tolerance: f64,
     drift: Drift,
     shells: Shells,
-    /// Vertices near possible changes: their surroundings changed, or a change waits.
+    /// True for vertices whose surroundings changed in the last round, or at which a change waits.
     awake: Vec<bool>,
-    /// Changes that made surfaces cross.
+    /// Changes that were undone because they made surfaces cross.
     refused: HashSet<Act>,
     changed: bool,
 }
@@ -86,7 +86,7 @@ impl Simplifying {
         }
     }
 
-    /// Makes a maximal set of independent changes; returns whether more may follow.
+    /// Makes a maximal set of independent changes; returns false if none was possible.
     fn round(&mut self) -> bool {
         let surface = Surface::of(&self.vertices, &self.triangles);
         let awake = std::mem::replace(&mut self.awake, vec![false; self.vertices.len()]);
@@ -134,7 +134,7 @@ impl Simplifying {
     }
 }
 
-/// A mesh without the vertices that no triangle uses.
+/// Returns a mesh without the vertices that no triangle uses.
 fn without_unused(
     vertices: &[Point],
     triangles: &[[VertexId; 3]],
@@ -156,7 +156,8 @@ mod tests {
     use crate::extract::rounding::crossings::all_faults;
     use crate::mesh::faces::{edges, Faces};
 
-    /// A cube of edge 1 whose top, z = 1, is divided by more vertices.
+    /// A cube with edges of length 1 whose side z = 1 consists of the triangles `top`, with the vertices
+    /// `more`.
     fn cube(more: &[Point], top: &[[u32; 3]]) -> (Vec<Point>, Vec<[VertexId; 3]>) {
         let corner = |k: u32| [k & 1, k >> 1 & 1, k >> 2].map(f64::from);
         let vertices = (0..8).map(corner).chain(more.iter().copied());
@@ -193,7 +194,7 @@ mod tests {
         let fan = [[4, 5, 8], [5, 7, 8], [7, 6, 8], [6, 4, 8]];
         let (vertices, triangles) = cube(&[[0.003, 0.004, 1.0]], &fan);
         let made = simplify(vertices.clone(), triangles, 0.01);
-        // Of the two ends the one inside the face is removed, which changes no volume.
+        // Of the two ends, the one inside a face is removed, which changes no volume.
         assert_eq!(made.vertices, vertices[..8]);
         assert!(made.bound >= 0.005 && made.bound < 0.005_000_001);
         assert!(made.triangles.len() == 12 && made.left.is_empty() && is_sound(&made));

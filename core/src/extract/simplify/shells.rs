@@ -1,7 +1,7 @@
-//! The connected parts of a surface, which neither turn inside out nor pass through each other.
+//! Shells, the connected parts of a surface, which neither turn inside out nor pass through each other.
 //!
-//! Parts that cross nothing before and after a round may still have passed through one another in
-//! between. Only whole parts can, by lying in the volume that a change sweeps.
+//! Shells that do not cross before and after a round may still have passed through one another. Only a whole
+//! shell can, if it lies in the volume that a change sweeps.
 
 use super::edit::Edit;
 use crate::arith::{Filtered, Sign};
@@ -12,19 +12,19 @@ use crate::interrupt::{poll, spend};
 use crate::mesh::disjoint::DisjointSets;
 use crate::mesh::handle::VertexId;
 
-/// The shell of a vertex without triangles.
+/// The shell number of a vertex without triangles.
 const NONE: u32 = u32::MAX;
 
-/// The connected parts of a surface.
+/// The connected parts (shells) of a surface.
 pub struct Shells {
-    /// The shell of each vertex.
+    /// The shell number of each vertex.
     numbers: Vec<u32>,
-    /// For each shell the sign of its volume, which is negative for a cavity.
+    /// For each shell the sign of its volume, negative for a cavity, or doubtful.
     sides: Vec<Filtered<Sign>>,
 }
 
 impl Shells {
-    /// The shells of a mesh.
+    /// Finds the connected parts of a mesh.
     pub fn of(vertices: &[Point], triangles: &[[VertexId; 3]]) -> Self {
         let numbers = connected(vertices.len(), triangles);
         let mut shells = Self {
@@ -35,24 +35,23 @@ impl Shells {
         shells
     }
 
-    /// Return whether the shell of a change may be changed at all: it is clear which side is
-    /// inside.
+    /// Returns whether the shell of a change may be changed: it is certain on which side its inside is.
     pub fn is_certain(&self, edit: &Edit) -> bool {
         self.sides[self.of_edit(edit)].is_certain()
     }
 
-    /// Mark the shells whose orientation has changed.
+    /// Returns for each shell whether the sign of its volume has changed.
     pub fn turned(&self, vertices: &[Point], triangles: &[[VertexId; 3]]) -> Vec<bool> {
         let now = self.sides_of(vertices, triangles);
         now.iter().zip(&self.sides).map(|(a, b)| a != b).collect()
     }
 
-    /// The shell of a change.
+    /// Returns the number of the shell that a change belongs to.
     pub fn of_edit(&self, edit: &Edit) -> usize {
         self.numbers[edit.target.place()] as usize
     }
 
-    /// For each change whether another shell may lie in the volume it sweeps.
+    /// Returns for each change whether another shell may lie in the volume that the change sweeps.
     pub fn are_swept(
         &self,
         vertices: &[Point],
@@ -75,7 +74,7 @@ impl Shells {
         edits.iter().map(is_swept).collect()
     }
 
-    /// A vertex of each shell that stays in this round.
+    /// Finds for each shell a vertex that no change of this round removes.
     fn shell_points(
         &self,
         vertices: &[Point],
@@ -96,7 +95,7 @@ impl Shells {
         ShellPoints { points }
     }
 
-    /// The sign of each shell's volume.
+    /// Computes the sign of each shell's volume.
     fn sides_of(&self, vertices: &[Point], triangles: &[[VertexId; 3]]) -> Vec<Filtered<Sign>> {
         spend(triangles.len());
         let used = self.numbers.iter().filter(|n| **n != NONE);
@@ -110,7 +109,7 @@ impl Shells {
     }
 }
 
-/// Six times the volume of a shell.
+/// The sum of six times the volume of a shell, with a bound on its error.
 #[derive(Clone, Default)]
 struct ShellVolume {
     origin: Option<Point>,
@@ -119,7 +118,8 @@ struct ShellVolume {
     count: f64,
 }
 
-/// Roundings of a difference, a minor, a product and a sum, in units of the last place, with a margin.
+/// The rounding errors of a difference, a minor, a product and a sum, in units of the last place, with a
+/// margin.
 const VOLUME_ROUNDINGS: f64 = 16.0;
 
 impl ShellVolume {
@@ -139,13 +139,13 @@ impl ShellVolume {
     }
 }
 
-/// A point of each shell, by its x.
+/// A vertex of each shell, sorted by x.
 struct ShellPoints {
     points: Vec<(usize, Point)>,
 }
 
 impl ShellPoints {
-    /// The points within a body's range of x.
+    /// Returns the shell points between the least and the largest x of a tetrahedron.
     fn beside(&self, body: &[&Point; 4]) -> &[(usize, Point)] {
         let of_all = |pick: fn(f64, f64) -> f64| body.iter().map(|p| p[0]).reduce(pick);
         let (low, high) = (
@@ -158,8 +158,7 @@ impl ShellPoints {
     }
 }
 
-/// Return whether a tetrahedron, which may be flat, may hold a point: no face certainly separates
-/// them.
+/// Returns false only if a face of a tetrahedron, which may be flat, certainly separates it from a point.
 fn may_hold(body: &[&Point; 4], point: &Point) -> bool {
     let separates = |apex: usize| {
         let face = [1, 2, 3].map(|i| *body[(apex + i) % 4]);
@@ -169,7 +168,7 @@ fn may_hold(body: &[&Point; 4], point: &Point) -> bool {
     !(0..4).any(separates)
 }
 
-/// For each vertex the number of the connected part that it belongs to.
+/// Returns for each vertex the number of its connected part; the parts are numbered by their first triangle.
 fn connected(count: usize, triangles: &[[VertexId; 3]]) -> Vec<u32> {
     let mut sets = DisjointSets::of_triangles(count, triangles);
     let mut numbers = vec![NONE; count];

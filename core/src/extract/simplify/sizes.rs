@@ -1,12 +1,12 @@
-//! Sizes of triangles, in doubles; they never decide whether a change is right.
+//! Lengths and heights of triangles, in doubles; they never decide whether a change is right.
 
 use crate::geometry::doubles::vector::{cross, dot, less, normal};
 use crate::geometry::doubles::{Point, Triangle};
 
-/// The roundings of a sum of three squares and its root, in units of the last place, with a margin.
+/// The rounding error of a sum of three squares and its root, relative to the root, with a margin.
 const LENGTH_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Rounding errors of three coordinates, and of the point itself, in units of the largest one.
+/// The rounding errors of a point between two points, relative to the largest coordinate.
 const POINT_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The distance of two points, rounded up.
@@ -23,13 +23,13 @@ pub fn distance_above(p: &Point, q: &Point) -> f64 {
     (dot(&scaled, &scaled).sqrt() * (1.0 + LENGTH_ROUNDING) * most).next_up()
 }
 
-/// A bound on the error of a point computed between two others.
+/// A bound on the error of a point that is computed between `p` and `q`.
 pub fn rounding_of(p: &Point, q: &Point) -> f64 {
     let largest = p.iter().chain(q).fold(0.0f64, |m, x| m.max(x.abs()));
     POINT_ROUNDING * largest
 }
 
-/// The edge lengths, each from a corner to the next.
+/// The lengths of a triangle's edges, each from a corner to the next one.
 pub fn lengths(corners: &Triangle) -> [f64; 3] {
     [0, 1, 2].map(|i| {
         let edge = less(&corners[(i + 1) % 3], &corners[i]);
@@ -37,7 +37,7 @@ pub fn lengths(corners: &Triangle) -> [f64; 3] {
     })
 }
 
-/// The least height: that over the longest edge.
+/// The least height of a triangle, the one over its longest edge.
 pub fn height(corners: &Triangle) -> f64 {
     let longest = lengths(corners).into_iter().fold(0.0, f64::max);
     if longest == 0.0 {
@@ -47,13 +47,12 @@ pub fn height(corners: &Triangle) -> f64 {
     dot(&normal, &normal).sqrt() / longest
 }
 
-/// Return whether a triangle is a sliver or has a short edge; one with a short edge is no higher
-/// than that.
+/// Returns true if the least height or an edge of a triangle is not above the tolerance.
 pub fn is_small(corners: &Triangle, tolerance: f64) -> bool {
     height(corners) <= tolerance || lengths(corners).iter().any(|l| *l <= tolerance)
 }
 
-/// Six times the volume that a triangle's edge p → q sweeps when its third corner moves.
+/// Six times the volume that a triangle with the edge p → q sweeps when its third corner moves.
 pub fn swept(from: &Point, to: &Point, [p, q]: [&Point; 2]) -> f64 {
     dot(&less(to, from), &cross(&less(p, from), &less(q, from))).abs()
 }

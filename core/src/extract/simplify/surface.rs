@@ -10,13 +10,13 @@ pub struct Surface<'a> {
     pub vertices: &'a [Point],
     /// The triangles.
     pub triangles: &'a [[VertexId; 3]],
-    /// The places in `around` where the triangles of each vertex begin.
+    /// For each vertex, the index in `stars` at which its triangles begin; the last entry is the end.
     starts: Vec<u32>,
     stars: Vec<u32>,
 }
 
 impl<'a> Surface<'a> {
-    /// The surface of a mesh.
+    /// Finds the triangles around each vertex of a mesh.
     pub fn of(vertices: &'a [Point], triangles: &'a [[VertexId; 3]]) -> Self {
         spend(triangles.len());
         let mut starts = vec![0u32; vertices.len() + 1];
@@ -49,7 +49,7 @@ impl<'a> Surface<'a> {
         &self.stars[start..end]
     }
 
-    /// The neighbours of a vertex, each once: the next corner of each triangle around.
+    /// Yields the neighbours of a vertex, each once: the next corner in each triangle around the vertex.
     pub fn neighbours(&self, v: VertexId) -> impl Iterator<Item = VertexId> + '_ {
         self.star(v).iter().map(move |t| {
             let corners = &self.triangles[*t as usize];
@@ -57,7 +57,7 @@ impl<'a> Surface<'a> {
         })
     }
 
-    /// Return whether an edge joins two vertices.
+    /// Returns true if an edge joins two vertices.
     pub fn are_joined(&self, v: VertexId, w: VertexId) -> bool {
         let [few, other] = self.rarer_first(v, w);
         self.neighbours(few).any(|n| n == other)
@@ -72,7 +72,7 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// The place of a vertex.
+    /// The position of a vertex.
     pub fn place(&self, v: VertexId) -> &'a Point {
         &self.vertices[v.place()]
     }
@@ -82,12 +82,12 @@ impl<'a> Surface<'a> {
         self.places(&self.triangles[triangle as usize])
     }
 
-    /// The places of three vertices.
+    /// The positions of three vertices.
     pub fn places(&self, corners: &[VertexId; 3]) -> Triangle {
         corners.map(|v| *self.place(v))
     }
 
-    /// The triangle on the left of a directed edge.
+    /// Returns the triangle on the left of a directed edge; `None` if there is no such edge.
     pub fn left_of(&self, from: VertexId, to: VertexId) -> Option<u32> {
         let follows = |t: &&u32| {
             let corners = &self.triangles[**t as usize];
@@ -98,7 +98,7 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// Return which corner of a triangle a vertex is.
+/// Returns the index, 0 to 2, of a vertex among the corners of a triangle.
 pub fn place_of(v: VertexId, corners: &[VertexId; 3]) -> usize {
     corners.iter().position(|c| *c == v).unwrap_or(0)
 }

@@ -1,4 +1,4 @@
-//! Ear clipping of one short loop.
+//! Triangulates one short loop by cutting off its corners (ears).
 
 use smallvec::SmallVec;
 
@@ -6,13 +6,13 @@ use super::{Error, Planar};
 use crate::arith::Sign;
 use crate::interrupt::poll;
 
-/// Loops up to this length are clipped; the sweep wins on longer ones.
+/// Loops of at most this many corners are clipped; for longer ones the sweep is faster.
 const MAX_CORNERS_CLIPPED: usize = 8;
 
-/// The vertices of a short loop.
+/// The vertices of a short loop, in order.
 pub(super) type Loop = SmallVec<[u32; MAX_CORNERS_CLIPPED]>;
 
-/// The vertices of `edges` in order, if the edges are one short loop that visits no vertex twice.
+/// Returns the vertices of `edges` in order if they form one short loop that visits no vertex twice.
 pub(super) fn small_loop(edges: &[(u32, u32)]) -> Option<Loop> {
     if !(3..=MAX_CORNERS_CLIPPED).contains(&edges.len()) {
         return None;
@@ -32,8 +32,8 @@ pub(super) fn small_loop(edges: &[(u32, u32)]) -> Option<Loop> {
 
 /// Triangulates a loop by cutting off one corner at a time.
 ///
-/// An ear is a strictly convex corner whose closed triangle holds no further corner. The closed triangle
-/// keeps the diagonals off the vertices on straight runs, so what remains is a simple loop again.
+/// An ear is a strictly convex corner whose closed triangle contains no other corner. Because the triangle
+/// is closed, no diagonal passes through a vertex between collinear edges, so a simple loop remains.
 pub(super) fn clip_ears<P: Planar>(points: &P, mut corners: Loop) -> Result<Vec<[u32; 3]>, Error> {
     if let [a, b, c] = corners[..] {
         let is_left = points.orient(a, b, c) == Sign::Positive;
@@ -64,7 +64,7 @@ pub(super) fn clip_ears<P: Planar>(points: &P, mut corners: Loop) -> Result<Vec<
     Ok(triangles)
 }
 
-/// The corner at `k` between its neighbours.
+/// The corner at index `k`, between the corner before it and the one after it.
 fn around(corners: &[u32], k: usize) -> [u32; 3] {
     let n = corners.len();
     [corners[(k + n - 1) % n], corners[k], corners[(k + 1) % n]]
@@ -75,8 +75,10 @@ fn turn<P: Planar>(points: &P, corners: &[u32], k: usize) -> Sign {
     points.orient(a, b, c)
 }
 
-/// Checks only corners that are not strictly convex: if any corner lies in the triangle, one of
-/// those does too.
+/// Returns true if the corner at index `k` is strictly convex and its triangle contains no other corner.
+///
+/// Tests only corners that are not strictly convex: if the triangle contains a corner, it contains such a
+/// one.
 fn is_ear<P: Planar>(points: &P, corners: &[u32], turns: &[Sign], k: usize) -> bool {
     if turns[k] != Sign::Positive {
         return false;

@@ -1,4 +1,4 @@
-//! Local flips that widen the narrow angles of a triangulation, and the check that it is one.
+//! Flips edges to widen the narrow angles of a triangulation, and checks that it is one.
 
 use std::cmp::Ordering;
 use std::collections::VecDeque;
@@ -9,25 +9,26 @@ use crate::interrupt::poll;
 
 const NONE: usize = usize::MAX;
 
-/// Flips allowed per triangle, so that flipping stays linear.
+/// The largest number of flips per triangle, so that flipping takes linear time.
 ///
-/// Circles, stars, combs and plates need up to two; a grid of 158 by 158 holes would need fifty to
-/// come to rest, and stops at good enough. The bound also ends cycles that rounding might cause.
+/// Circles, stars, combs and plates need up to two; a grid of 158 by 158 holes would need fifty, and stops
+/// before its angles are the widest. The bound also ends cycles that rounding might cause.
 const FLIPS_PER_TRIANGLE: usize = 16;
 
-/// A half-edge `3 t + k` runs from corner `k` of triangle `t` to the next one.
+/// Triangles and their opposite half-edges. Half-edge `3 t + k` runs from corner `k` of triangle `t` to the
+/// next.
 struct Mates {
     triangles: Vec<[u32; 3]>,
-    /// Opposite half-edge, `NONE` on the boundary.
+    /// For each half-edge its opposite, or `NONE` on the boundary.
     mates: Vec<usize>,
 }
 
-/// A half-edge in one number, to be sorted: its edge, its direction, its number.
+/// A half-edge packed into one integer for sorting: its edge, its direction, its number.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Half(u128);
 
 impl Half {
-    /// The bit of the direction; the number is below it.
+    /// The bit of the direction; the lower bits store the number.
     const FORWARD: u128 = 1 << 63;
 
     fn new(a: u32, b: u32, number: usize) -> Self {
@@ -66,7 +67,7 @@ pub(super) fn improve<P: Planar>(
     Ok(flipped(points, Mates::new(triangles, boundary)?))
 }
 
-/// Improves the few ears of one loop, which need no check: no diagonal is cut off twice.
+/// Flips edges of the few ears of one loop; needs no check, because ear clipping makes each diagonal once.
 pub(super) fn improve_ears<P: Planar>(points: &P, ears: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
     if ears.len() == 1 {
         return ears;
@@ -83,7 +84,7 @@ pub(super) fn improve_ears<P: Planar>(points: &P, ears: Vec<[u32; 3]>) -> Vec<[u
 
 fn flipped<P: Planar>(points: &P, mut mesh: Mates) -> Vec<[u32; 3]> {
     let mut budget = FLIPS_PER_TRIANGLE * mesh.triangles.len();
-    // First in, first out spreads a budget that runs out over the whole region.
+    // A queue (first in, first out) spreads a limited number of flips over the whole region.
     let mut pending: VecDeque<usize> = (0..mesh.mates.len())
         .filter(|&h| mesh.is_first(h))
         .collect();
@@ -126,7 +127,7 @@ impl Mates {
         Ok(mesh)
     }
 
-    /// The mates found by comparing all half-edges, which is fastest for a few.
+    /// Finds opposite half-edges by comparing all pairs, which is fastest for a few triangles.
     fn of_ears(triangles: Vec<[u32; 3]>) -> Self {
         let count = 3 * triangles.len();
         let mut mesh = Self {
@@ -167,16 +168,16 @@ impl Mates {
         self.origin(next(next(half)))
     }
 
-    /// Picks one of the two half-edges of every inner edge.
+    /// Returns true for one of the two half-edges of every inner edge, the one with the lower number.
     fn is_first(&self, half: usize) -> bool {
         self.mates[half] != NONE && half < self.mates[half]
     }
 
-    /// Return whether the angles opposite the edge exceed 180 degrees together and the flip is
-    /// valid.
+    /// Returns true if the two angles opposite an edge exceed 180 degrees together and the edge can be
+    /// flipped.
     ///
-    /// Of four points on one circle the first in lexicographic order is not joined to its opposite,
-    /// as if it lay farther out: then there is one best triangulation, wherever the flips begin.
+    /// Of four points on one circle, the first in lexicographic order is not joined to the opposite one, as
+    /// if it lay farther out: then there is one best triangulation, wherever the flips begin.
     fn should_flip<P: Planar>(&self, points: &P, half: usize) -> bool {
         let mate = self.mates[half];
         if mate == NONE {
@@ -197,7 +198,7 @@ impl Mates {
         is_wide && is_left(c, a, d) && is_left(d, b, c)
     }
 
-    /// Replaces the edge by the other diagonal; returns the half-edges around the quadrilateral.
+    /// Replaces an edge by the other diagonal; returns the four half-edges around the quadrilateral.
     fn flip(&mut self, half: usize) -> [usize; 4] {
         let mate = self.mates[half];
         let (a, b, c, d) = (
@@ -228,7 +229,7 @@ fn next(half: usize) -> usize {
     }
 }
 
-/// Return whether the least of four points is one of the first two.
+/// Returns true if the first of four points in lexicographic order is one of `ends`.
 fn is_least_of_ends<P: Planar>(points: &P, ends: [u32; 2], apexes: [u32; 2]) -> bool {
     let lesser = |[a, b]: [u32; 2]| {
         if points.compare(a, b) == Ordering::Less {

@@ -1,12 +1,11 @@
 //! Exact triangulation of planar polygons with holes.
 //!
-//! Knows the points of one plane only by id and by the exact answers of [`Planar`]; floats only
-//! give them a rough order. Ear clipping triangulates small single loops, one sweep everything
-//! else; local flips then widen the narrow angles. They end at the constrained Delaunay
-//! triangulation, with ties broken by the points alone: it does not depend on ids or on the order
-//! of the edges. Invariant: every triangle that leaves this module turns strictly left, and the
-//! triangles' edges are the given boundary edges once each and every other edge once in each
-//! direction.
+//! Knows the points of one plane only by id and by the exact answers of [`Planar`]; floats only give them a
+//! rough order. Ear clipping triangulates a single short loop, one sweep all other regions; flips of edges
+//! then widen the narrow angles. They end at the constrained Delaunay triangulation, with ties broken by the
+//! points alone: it does not depend on ids or on the order of the edges. Invariant: every triangle that
+//! leaves this module turns strictly left, and the triangles' edges are the given boundary edges once each
+//! and every other edge once in each direction.
 //!
 //! # Source
 //! Hertel, Mehlhorn 1983 (sweep); Meisters 1975 (ears); Lawson 1977 (flips).
@@ -27,7 +26,8 @@ use crate::arith::Sign;
 
 /// Exact questions about the points of one plane, asked by id.
 ///
-/// Different ids must stand for different points, and the answers must agree with one placement of them.
+/// Different ids must stand for different points, and all answers must agree with one assignment of
+/// coordinates.
 ///
 /// # Example
 /// ```
@@ -73,19 +73,18 @@ pub trait Planar {
     /// Lexicographic order of two points by (x, y).
     fn compare(&self, a: u32, b: u32) -> Ordering;
 
-    /// Turn of the path a, b, c.
+    /// The turn of the path from a over b to c.
     ///
     /// - `Positive`: left turn, the triangle abc is counterclockwise
     /// - `Zero`: the three points are collinear
     /// - `Negative`: right turn
     fn orient(&self, a: u32, b: u32, c: u32) -> Sign;
 
-    /// Compare the sum of the angles at two apexes, on the left and the right of an edge, to 180
-    /// degrees.
+    /// Compares the sum of the angles at two apexes, on the left and the right of an edge, to 180 degrees.
     ///
-    /// - `Greater`: it is more, each apex lies inside the circle through the others
+    /// - `Greater`: the sum is larger, so each apex lies inside the circle through the other three points
     /// - `Equal`: the four points lie on one circle
-    /// - `Less`: it is less
+    /// - `Less`: the sum is smaller
     fn opposite_angles(&self, ends: [u32; 2], apexes: [u32; 2]) -> Ordering;
 
     /// The point in floats, for a rough order that [`Planar::compare`] then corrects.

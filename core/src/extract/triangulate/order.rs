@@ -1,16 +1,16 @@
-//! A sequence kept in order by its owner's answers.
+//! A sequence of numbers in an order that only the caller knows.
 
-/// Longest block; a trade between moving entries and moving blocks.
+/// The longest block: a trade-off between shifting entries in a block and shifting blocks.
 const MAX_BLOCK_LENGTH: usize = 256;
 
-/// Numbers in an order that only the caller knows, in blocks so that insertion stays cheap.
+/// Numbers in an order that only the caller knows, in blocks, so that insertion is cheap.
 #[derive(Default)]
 pub(super) struct Order {
     /// No block is empty.
     blocks: Vec<Vec<usize>>,
 }
 
-/// A gap between two entries of an [`Order`], valid until it changes.
+/// A gap between two entries of an [`Order`], valid until the order changes.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     block: usize,
@@ -18,7 +18,7 @@ pub(super) struct Place {
 }
 
 impl Order {
-    /// The place after all entries that are `below`; those must come first.
+    /// Returns the gap after all entries for which `below` is true; these must come first.
     pub(super) fn search(&self, below: impl Fn(usize) -> bool) -> Place {
         let block = self
             .blocks
@@ -31,13 +31,13 @@ impl Order {
         Place { block, offset }
     }
 
-    /// The entry before a place.
+    /// The entry before a gap; `None` at the start.
     pub(super) fn before(&self, place: Place) -> Option<usize> {
         let offset = place.offset.checked_sub(1)?;
         self.blocks.get(place.block)?.get(offset).copied()
     }
 
-    /// Inserts an entry at a place.
+    /// Inserts an entry at a gap.
     pub(super) fn insert(&mut self, place: Place, entry: usize) {
         if self.blocks.is_empty() {
             self.blocks.push(Vec::new());
@@ -50,7 +50,7 @@ impl Order {
         }
     }
 
-    /// Removes `entry`, which must follow `place` with only `among` between; false if it does not.
+    /// Removes `entry` after the gap `place`; returns false if an entry between them is not `among`.
     pub(super) fn remove(
         &mut self,
         mut place: Place,

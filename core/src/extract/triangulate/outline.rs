@@ -1,4 +1,4 @@
-//! Boundary edges joined to corners.
+//! Joins boundary edges at their vertices to corners.
 //!
 //! A corner is one wedge of the region at a vertex, named by the edge that leaves it. A vertex
 //! where boundaries touch has several corners; in angular order, wedges of the region and of the
@@ -9,12 +9,12 @@ use std::cmp::Ordering;
 use super::{Error, Planar};
 use crate::interrupt::poll;
 
-/// For every edge the edge before it along its boundary.
+/// For every edge of a region's boundary, the edge before it.
 pub(super) struct Outline {
     previous: Vec<usize>,
 }
 
-/// An end of an edge, seen from its vertex.
+/// An edge at a vertex, with its other end.
 #[derive(Clone, Copy)]
 struct Spoke {
     edge: usize,
@@ -23,7 +23,7 @@ struct Spoke {
 }
 
 impl Outline {
-    /// Joins edges whose vertices are numbered from zero.
+    /// Joins edges to boundaries; their vertices are numbered from zero.
     pub(super) fn new<P: Planar>(points: &P, edges: &[(u32, u32)]) -> Result<Self, Error> {
         let mut outline = Self {
             previous: vec![0; edges.len()],
@@ -55,12 +55,12 @@ impl Outline {
         self.previous[edge]
     }
 
-    /// Vertex before, at and after the corner that `edge` leaves.
+    /// The vertices before, at and after the corner that `edge` leaves.
     pub(super) fn corner(&self, edges: &[(u32, u32)], edge: usize) -> [u32; 3] {
         [edges[self.previous[edge]].0, edges[edge].0, edges[edge].1]
     }
 
-    /// Joins the edges of one vertex.
+    /// Joins the edges that leave and that reach one vertex, in pairs along the boundary.
     fn join<P: Planar>(
         &mut self,
         points: &P,
@@ -100,7 +100,7 @@ impl Outline {
     }
 }
 
-/// Sorts counterclockwise, from the direction straight down.
+/// Sorts the edges at a vertex counterclockwise, from the direction straight down.
 fn sort_by_angle<P: Planar>(points: &P, vertex: u32, spokes: &mut [Spoke]) -> Result<(), Error> {
     if spokes
         .iter()

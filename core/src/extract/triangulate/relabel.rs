@@ -5,16 +5,16 @@ use std::cmp::Ordering;
 use super::{Error, Planar};
 use crate::arith::Sign;
 
-/// A view of some points of `points`, numbered 0, 1, ... in the order of their ids, with cached floats.
+/// The points at which edges end, numbered 0, 1, ... in the order of their ids, with cached floats.
 pub(super) struct Relabelled<'a, P> {
     points: &'a P,
-    /// New number to id, increasing.
+    /// The id of each new number, increasing.
     ids: Vec<u32>,
     places: Vec<[f64; 2]>,
 }
 
 impl<'a, P: Planar> Relabelled<'a, P> {
-    /// Renumbers the ends of `edges`; fails if an edge ends where none begins.
+    /// Renumbers the ends of `edges`; returns an error if an edge ends where no edge begins.
     pub(super) fn new(
         points: &'a P,
         edges: &[(u32, u32)],
@@ -47,7 +47,7 @@ impl<'a, P: Planar> Relabelled<'a, P> {
         self.ids[number as usize]
     }
 
-    /// Triangles in the original ids.
+    /// Returns triangles with the original ids.
     pub(super) fn restore(&self, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
         triangles
             .iter()
@@ -55,7 +55,7 @@ impl<'a, P: Planar> Relabelled<'a, P> {
             .collect()
     }
 
-    /// The same error about the original id.
+    /// Returns an error with the original id of its vertex.
     pub(super) fn restore_error(&self, error: Error) -> Error {
         match error {
             Error::Open { vertex } => Error::Open {

@@ -18,35 +18,35 @@ use crate::interrupt::poll;
 
 const NONE: usize = usize::MAX;
 
-/// The shape of the region at a corner, in the order in which corners of one vertex are visited.
+/// The kind of a corner for the sweep, in the order in which corners of one vertex are visited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
-    /// An interval closes.
+    /// An interval of the sweep line inside the region ends at the corner.
     End,
-    /// An interval's lower edge is replaced.
+    /// The lower edge of an interval ends at the corner, and another one continues it.
     Lower,
-    /// An interval's upper edge is replaced.
+    /// The upper edge of an interval ends at the corner, and another one continues it.
     Upper,
-    /// Two intervals become one.
+    /// Two intervals become one at the corner.
     Merge,
-    /// One interval becomes two.
+    /// One interval becomes two at the corner.
     Split,
-    /// An interval opens.
+    /// An interval of the sweep line inside the region starts at the corner.
     Start,
 }
 
-/// A vertex in a chain.
+/// A vertex in a chain, with the nodes below and above it.
 struct Node {
     vertex: u32,
     down: usize,
     up: usize,
 }
 
-/// A stretch of the sweep line inside the region, between two boundary edges.
+/// An interval of the sweep line inside the region, between two boundary edges, with its chain of vertices.
 struct Interval {
     lower: usize,
     upper: usize,
-    /// Ends of the chain, and its rightmost node.
+    /// The lowest, the highest and the rightmost node of the chain.
     bottom: usize,
     top: usize,
     last: usize,
@@ -57,9 +57,9 @@ struct Sweep<'a, P> {
     edges: &'a [(u32, u32)],
     nodes: Vec<Node>,
     intervals: Vec<Interval>,
-    /// Edge to the interval it bounds.
+    /// For each edge the interval that it bounds.
     interval_of: Vec<usize>,
-    /// Open intervals, bottom to top.
+    /// The open intervals, from bottom to top.
     order: Order,
     triangles: Vec<[u32; 3]>,
 }
@@ -120,9 +120,9 @@ fn kinds<P: Planar>(
     (0..edges.len()).map(kind).collect()
 }
 
-/// The corners in the order of the sweep.
+/// Returns the corners, named by the edge that leaves each, in the order of the sweep.
 ///
-/// Sorting by floats first leaves the exact order little to do.
+/// Sorting by floats first leaves little work for the exact comparison.
 fn visits<P: Planar>(points: &P, edges: &[(u32, u32)], kinds: &[Kind]) -> Vec<usize> {
     let mut keyed: Vec<([f64; 2], usize)> = (0..edges.len())
         .map(|e| (points.approx(edges[e].0), e))
@@ -145,7 +145,7 @@ fn visits<P: Planar>(points: &P, edges: &[(u32, u32)], kinds: &[Kind]) -> Vec<us
     corners
 }
 
-/// The steps return `None` where the edges do not bound a region.
+/// A step of the sweep returns `None` if the edges do not bound a region.
 impl<P: Planar> Sweep<'_, P> {
     fn visit(&mut self, kind: Kind, into: usize, out: usize) -> Option<()> {
         let vertex = self.edges[out].0;
@@ -271,7 +271,7 @@ impl<P: Planar> Sweep<'_, P> {
         node
     }
 
-    /// Keeps a triangle if it turns strictly left.
+    /// Appends a triangle if it turns strictly left; returns whether it does.
     fn emit(&mut self, corners: [u32; 3]) -> bool {
         let [a, b, c] = corners;
         let is_left = self.points.orient(a, b, c) == Sign::Positive;
@@ -295,7 +295,7 @@ impl<P: Planar> Sweep<'_, P> {
         self.nodes[up].down = down;
     }
 
-    /// Moves the part of the chain above `node` to a copy of it.
+    /// Moves the part of the chain above `node` to a copy of the node, which it returns.
     fn twin(&mut self, node: usize) -> usize {
         let twin = self.push_node(self.nodes[node].vertex);
         let up = self.nodes[node].up;
@@ -333,7 +333,7 @@ impl<P: Planar> Sweep<'_, P> {
         Some(self.interval_of[edge]).filter(|&interval| interval != NONE)
     }
 
-    /// Removes an interval whose lower edge ends at `vertex` from the order.
+    /// Removes from the order an interval whose lower edge ends at `vertex`; `None` if it is not there.
     fn close(&mut self, interval: usize, vertex: u32) -> Option<()> {
         let place = self.order.search(|other| self.is_below(other, vertex));
         let (intervals, edges) = (&self.intervals, self.edges);
@@ -341,14 +341,14 @@ impl<P: Planar> Sweep<'_, P> {
         self.order.remove(place, interval, touches).then_some(())
     }
 
-    /// Return whether the interval's lower edge passes strictly below a vertex.
+    /// Returns true if the interval's lower edge passes strictly below a vertex.
     fn is_below(&self, interval: usize, vertex: u32) -> bool {
         let (a, b) = self.edges[self.intervals[interval].lower];
         a != vertex && b != vertex && self.points.orient(a, b, vertex) == Sign::Positive
     }
 
-    /// Return whether the interval's lower edge passes below `vertex`, or starts there and runs
-    /// below `head`.
+    /// Returns true if the interval's lower edge passes below `vertex`, or starts there and runs below
+    /// `head`.
     fn is_below_ray(&self, interval: usize, vertex: u32, head: u32) -> bool {
         let (a, b) = self.edges[self.intervals[interval].lower];
         if a == vertex {

@@ -1,4 +1,5 @@
-//! Shapes whose area and boundary are known exactly, among them the worst for pinches and straight runs.
+//! Triangulates shapes with known area and boundary, among them many that touch themselves or have straight
+//! corners.
 
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
@@ -60,7 +61,7 @@ impl Planar for Lattice {
     }
 }
 
-/// Checks both engines' answers; returns the chosen one.
+/// Checks the triangles of `triangulate` and of the sweep alone; returns the former.
 fn check(points: &Lattice, edges: &Edges) -> Vec<[u32; 3]> {
     let triangles =
         triangulate(points, edges).unwrap_or_else(|error| panic!("{error}\n{points:?}\n{edges:?}"));
@@ -70,7 +71,7 @@ fn check(points: &Lattice, edges: &Edges) -> Vec<[u32; 3]> {
     triangles
 }
 
-/// A surface of left-turning triangles with the right boundary and area covers each point of the region once.
+/// Checks that triangles turn left and have the region's boundary and area: so they cover it exactly once.
 fn check_cover(points: &Lattice, edges: &Edges, triangles: &[[u32; 3]]) {
     let mut halves = BTreeSet::new();
     let mut area = 0;
@@ -102,8 +103,7 @@ fn check_cover(points: &Lattice, edges: &Edges, triangles: &[[u32; 3]]) {
     );
 }
 
-/// Checks the shape, also turned, sheared and mirrored, so that every vertex kind meets every
-/// other.
+/// Checks a shape, and its images rotated, sheared and mirrored, so that corners of all kinds are met.
 fn check_all_ways(points: &Lattice, edges: &Edges) {
     check(points, edges);
     check(&points.mapped(|[x, y]| [-y, x]), edges);
@@ -143,7 +143,7 @@ fn cells_outline(filled: impl Fn(i64, i64) -> bool, width: i64, height: i64) -> 
     (points, edges)
 }
 
-/// Joins straight runs at the chosen vertices.
+/// Removes the vertices between collinear edges for which `drop` is true.
 fn straightened(points: &Lattice, edges: &Edges, drop: impl Fn(u32) -> bool) -> Edges {
     let mut edges = edges.clone();
     for vertex in 0..u32::try_from(points.0.len()).unwrap() {
@@ -160,7 +160,8 @@ fn straightened(points: &Lattice, edges: &Edges, drop: impl Fn(u32) -> bool) -> 
     edges
 }
 
-/// A loop around the origin, through the given points sorted by direction.
+/// A loop around the origin through the given points, sorted by direction; `None` if they do not surround
+/// it.
 fn star(mut spokes: Vec<[i64; 2]>) -> Option<Vec<[i64; 2]>> {
     let is_lower = |[x, y]: [i64; 2]| y < 0 || (y == 0 && x < 0);
     let cross = |[a, b]: [i64; 2], [c, d]: [i64; 2]| a * d - b * c;
@@ -322,7 +323,7 @@ fn flips_find_the_short_diagonal() {
         .all(|corners| corners.contains(&1) && corners.contains(&3)));
 }
 
-/// The triangles by their places, each from its least corner on.
+/// The triangles by the coordinates of their corners, each from its least corner on.
 fn by_place(points: &Lattice, triangles: &[[u32; 3]]) -> BTreeSet<[[i64; 2]; 3]> {
     let placed = |corners: &[u32; 3]| {
         let mut places = corners.map(|v| points.0[v as usize]);
@@ -333,7 +334,7 @@ fn by_place(points: &Lattice, triangles: &[[u32; 3]]) -> BTreeSet<[[i64; 2]; 3]>
     triangles.iter().map(placed).collect()
 }
 
-/// The same shape with points and edges numbered in another order.
+/// A shape with its points and edges numbered in another order.
 fn renumbered(points: &Lattice, edges: &Edges, step: usize) -> (Lattice, Edges) {
     let count = points.0.len();
     let image = |v: u32| (v as usize * step + 1) % count;

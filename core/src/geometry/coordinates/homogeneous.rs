@@ -1,19 +1,19 @@
-//! Homogeneous coordinates of any width.
+//! Homogeneous coordinates as integers of any fixed width.
 
 use crate::arith::{inv_mod, mul_mod, Int, Sign, P1};
 use crate::geometry::plane::{Plane, ShortPlane};
 
-/// Homogeneous coordinates, w > 0.
+/// The homogeneous coordinates of the point (x/w, y/w, z/w), with w > 0.
 #[derive(Clone, Debug)]
 pub struct Homogeneous<const N: usize = 6> {
-    /// x, y and z times w.
+    /// The numerators: the point's x, y and z times w.
     pub x: [Int<N>; 3],
     /// The positive denominator.
     pub w: Int<N>,
 }
 
 impl<const N: usize> Homogeneous<N> {
-    /// The coordinates with the denominator made positive; `None` if it is zero.
+    /// The point with these homogeneous coordinates, all negated if w is negative; `None` if w is zero.
     pub(super) fn positive(x: [Int<N>; 3], w: Int<N>) -> Option<Self> {
         match w.sign() {
             Sign::Zero => None,
@@ -25,13 +25,13 @@ impl<const N: usize> Homogeneous<N> {
         }
     }
 
-    /// The coordinates rounded to the nearest doubles.
+    /// The coordinates x, y, z and w, each rounded to the nearest double.
     pub fn approx(&self) -> [f64; 4] {
         let [x, y, z] = &self.x;
         [x.to_f64(), y.to_f64(), z.to_f64(), self.w.to_f64()]
     }
 
-    /// The same coordinates in six limbs.
+    /// The same coordinates as integers of six limbs.
     pub fn widened(&self) -> Homogeneous {
         let [x, y, z] = &self.x;
         Homogeneous {
@@ -52,7 +52,7 @@ impl<const N: usize> Homogeneous<N> {
 }
 
 impl Homogeneous {
-    /// A plane's value here times the denominator.
+    /// A plane's value at this point, times w.
     pub fn value(&self, plane: &Plane) -> Int<8> {
         let n = plane.normal();
         let term = |i: usize| -> Int<8> { self.x[i].mul_i128(n[i]) };

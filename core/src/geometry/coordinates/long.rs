@@ -1,11 +1,11 @@
-//! Meets of any planes.
+//! Points where planes of any width meet each other or lattice edges, in integers of six limbs.
 
 use super::homogeneous::Homogeneous;
 use crate::arith::Int;
 use crate::geometry::axes::each_axis;
 use crate::geometry::plane::{Lattice, Plane};
 
-/// The meet of three planes; `None` if they have no single common point.
+/// The point where three planes meet; `None` if they have no single common point.
 pub(super) fn meet(a: &Plane, b: &Plane, c: &Plane) -> Option<Homogeneous> {
     for (cut, p, q) in [(c, a, b), (b, a, c), (a, b, c)] {
         if let Some(axis) = cut.only_axis() {
@@ -26,7 +26,7 @@ pub(super) fn meet(a: &Plane, b: &Plane, c: &Plane) -> Option<Homogeneous> {
     Homogeneous::positive(x, -w)
 }
 
-/// The meet of a lattice edge's line with a plane; `None` if they are parallel.
+/// The point where the line through a lattice edge meets a plane; `None` if the two are parallel.
 ///
 /// # Bits
 /// The denominator is a difference of two values at lattice points, far below that of three planes.
@@ -39,7 +39,8 @@ pub(super) fn on_edge(a: &Lattice, b: &Lattice, cut: &Plane) -> Option<Homogeneo
     Homogeneous::positive(x, (vb - va).widen())
 }
 
-/// The meet of two planes with an axis-parallel one, by 2×2 determinants.
+/// The point where two planes meet an axis-parallel plane, by 2×2 determinants; `None` if there is no single
+/// such point.
 fn meet_on_axis_cut(cut: &Plane, axis: usize, p: &Plane, q: &Plane) -> Option<Homogeneous> {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let lead = cut.normal()[axis];
@@ -59,7 +60,7 @@ fn meet_on_axis_cut(cut: &Plane, axis: usize, p: &Plane, q: &Plane) -> Option<Ho
     Homogeneous::positive(x, -w)
 }
 
-/// The cross product of two normals, exact: components below 2^217.
+/// The exact cross product of two plane normals; its components are below 2^217.
 pub fn cross(a: &[i128; 3], b: &[i128; 3]) -> [Int<4>; 3] {
     [
         product(a[1], b[2]) - product(a[2], b[1]),
@@ -68,7 +69,7 @@ pub fn cross(a: &[i128; 3], b: &[i128; 3]) -> [Int<4>; 3] {
     ]
 }
 
-/// The product of two normal components; one machine multiplication where both are short.
+/// The product of two components of plane normals; one machine multiplication if both fit an `i64`.
 fn product(a: i128, b: i128) -> Int<4> {
     match (i64::try_from(a), i64::try_from(b)) {
         (Ok(a), Ok(b)) => Int::from_i128(i128::from(a) * i128::from(b)),

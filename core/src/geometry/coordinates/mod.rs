@@ -13,11 +13,12 @@ use super::plane::{Lattice, Plane};
 use crate::arith::Int;
 use crate::geometry::side::Side;
 
-/// Coordinates in four limbs where all planes are short, else in six.
+/// The homogeneous coordinates of an exact point: in four limbs if all planes of its construction are short,
+/// else in six.
 pub enum Coordinates {
-    /// From short planes.
+    /// Four limbs: the point is a lattice point or a meet of short planes.
     Short(Homogeneous<4>),
-    /// From any planes.
+    /// Six limbs: the point may come from planes of any width.
     Long(Homogeneous),
 }
 
@@ -30,7 +31,7 @@ impl Coordinates {
         })
     }
 
-    /// The coordinates of the meet of three planes; `None` if they have no single common point.
+    /// The coordinates of the point where three planes meet; `None` if they have no single common point.
     pub fn of_planes(a: &Plane, b: &Plane, c: &Plane) -> Option<Self> {
         match (a.short(), b.short(), c.short()) {
             (Some(a), Some(b), Some(c)) => short::meet(&a, &b, &c).map(Self::Short),
@@ -38,7 +39,8 @@ impl Coordinates {
         }
     }
 
-    /// The coordinates of the meet of a lattice edge's line with a plane; `None` if they are parallel.
+    /// The coordinates of the point where the line through a lattice edge meets a plane; `None` if the two
+    /// are parallel.
     pub fn on_edge(edge: &LatticeEdge, cut: &Plane) -> Option<Self> {
         let (a, b) = edge.ends();
         match cut.short() {
@@ -47,7 +49,7 @@ impl Coordinates {
         }
     }
 
-    /// The coordinates rounded to the nearest doubles.
+    /// The homogeneous coordinates x, y, z and w, each rounded to the nearest double.
     pub fn approx(&self) -> [f64; 4] {
         match self {
             Self::Short(h) => h.approx(),
@@ -55,7 +57,7 @@ impl Coordinates {
         }
     }
 
-    /// The coordinates in six limbs.
+    /// The same coordinates as integers of six limbs.
     pub fn widened(&self) -> Homogeneous {
         match self {
             Self::Short(h) => h.widened(),
@@ -63,7 +65,7 @@ impl Coordinates {
         }
     }
 
-    /// The side of a plane on which the point lies.
+    /// The side of a plane on which the point with these coordinates lies.
     pub fn side_of(&self, plane: &Plane) -> Side {
         Side::from_sign(match (self, plane.short()) {
             (Self::Short(h), Some(plane)) => h.value(&plane).sign(),
@@ -71,7 +73,7 @@ impl Coordinates {
         })
     }
 
-    /// Order of two points by one coordinate.
+    /// The exact order of two points by their coordinate along an axis.
     pub fn compare(&self, other: &Self, axis: usize) -> Ordering {
         if let (Self::Short(p), Self::Short(q)) = (self, other) {
             let left: Int<8> = p.x[axis].mul(&q.w);
@@ -84,7 +86,7 @@ impl Coordinates {
         left.cmp(&right)
     }
 
-    /// The coordinates x/w, y/w and z/w modulo a prime.
+    /// The coordinates x/w, y/w and z/w modulo the prime `P1`; all `u64::MAX` if the prime divides w.
     pub fn residues(&self) -> [u64; 3] {
         match self {
             Self::Short(h) => h.residues(),

@@ -1,12 +1,12 @@
-//! Meets of short planes, in machine words wherever the result fits.
+//! Points where short planes meet each other or lattice edges, in machine words wherever the result fits.
 //!
-//! The widths are `arith::bounds::SHORT_NORMAL_BITS` and those asserted beside it.
+//! `arith::bounds::SHORT_NORMAL_BITS` and the constants beside it bound the widths.
 
 use super::homogeneous::Homogeneous;
 use crate::arith::Int;
 use crate::geometry::plane::{Lattice, ShortPlane};
 
-/// The meet of three planes; `None` if they have no single common point.
+/// The point where three short planes meet; `None` if they have no single common point.
 pub(super) fn meet(a: &ShortPlane, b: &ShortPlane, c: &ShortPlane) -> Option<Homogeneous<4>> {
     for (cut, p, q) in [(c, a, b), (b, a, c), (a, b, c)] {
         if let Some((axis, offset)) = as_cut(cut) {
@@ -21,7 +21,7 @@ pub(super) fn meet(a: &ShortPlane, b: &ShortPlane, c: &ShortPlane) -> Option<Hom
     Homogeneous::positive([x(0), x(1), x(2)], -w)
 }
 
-/// The meet of a lattice edge's line with a plane; `None` if they are parallel.
+/// The point where the line through a lattice edge meets a short plane; `None` if the two are parallel.
 pub(super) fn on_edge(a: &Lattice, b: &Lattice, cut: &ShortPlane) -> Option<Homogeneous<4>> {
     let (va, vb) = (cut.value_at(a), cut.value_at(b));
     if let (Ok(va), Ok(vb)) = (i64::try_from(va), i64::try_from(vb)) {
@@ -32,8 +32,8 @@ pub(super) fn on_edge(a: &Lattice, b: &Lattice, cut: &ShortPlane) -> Option<Homo
     Homogeneous::positive([x(0), x(1), x(2)], Int::from_i128(vb - va))
 }
 
-/// The point of a line at which a plane is zero, from two lattice points and the plane's values there; for
-/// cuts across axes.
+/// The point where the line through two lattice points meets a plane, from the plane's values at these
+/// points; `None` if the values are equal. Values that fit an `i64` are usual for cuts across an axis.
 ///
 /// # Bits
 /// Each coordinate is a difference of two products of a value in a machine word and a lattice
@@ -51,7 +51,8 @@ fn on_edge_by_words(a: &Lattice, va: i64, b: &Lattice, vb: i64) -> Option<Homoge
     })
 }
 
-/// The axis and the offset of a plane across an axis, if its lead is one or two as that of a cut.
+/// The axis and the offset of a plane across an axis, if its leading coefficient is at most two in magnitude;
+/// else `None`.
 fn as_cut(plane: &ShortPlane) -> Option<(usize, i64)> {
     let axis = match plane.n {
         [_, 0, 0] => 0,
@@ -63,7 +64,8 @@ fn as_cut(plane: &ShortPlane) -> Option<(usize, i64)> {
     (plane.n[axis].abs() <= 2).then_some((axis, offset))
 }
 
-/// The meet of two planes with an axis-parallel one, by 2×2 determinants.
+/// The point where two planes meet an axis-parallel plane, by 2×2 determinants; `None` if there is no single
+/// such point.
 fn meet_on_axis_cut(
     lead: i64,
     axis: usize,

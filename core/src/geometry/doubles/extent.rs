@@ -1,19 +1,19 @@
-//! Boxes around points in doubles.
+//! Axis-parallel boxes around triangles in doubles.
 
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::{Point, Triangle};
 
-/// A box in doubles.
+/// An axis-parallel box in doubles, the border included.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
-    /// The lowest coordinates.
+    /// The corner with the smallest coordinates.
     pub low: Point,
-    /// The highest coordinates.
+    /// The corner with the largest coordinates.
     pub high: Point,
 }
 
 impl Extent {
-    /// The box of a triangle.
+    /// The smallest box around a triangle.
     pub fn of(triangle: &Triangle) -> Self {
         let [a, b, c] = triangle;
         Self {
@@ -22,7 +22,7 @@ impl Extent {
         }
     }
 
-    /// The smallest box that holds both.
+    /// The smallest box that contains both boxes.
     #[must_use]
     pub fn joined(&self, other: &Self) -> Self {
         Self {
@@ -31,7 +31,7 @@ impl Extent {
         }
     }
 
-    /// Return whether the two have no point in common.
+    /// Return whether the two boxes have no point in common.
     pub fn misses(&self, other: &Self) -> bool {
         (0..3).any(|i| self.high[i] < other.low[i] || other.high[i] < self.low[i])
     }

@@ -1,9 +1,9 @@
-//! Convex hulls of points in space, exactly.
+//! Exact convex hulls of points in space.
 //!
-//! Points are added one by one to a polytope. A point sees the faces that it lies strictly before; they are
-//! a disk, and new faces join its rim to the point. No new face is flat, because a point before a face is
-//! not on a line with an edge of it. A point in the plane of a face and before no other face already lies
-//! in the polytope.
+//! Points are added one by one to a polytope. A point sees the faces on whose outer side it strictly lies;
+//! they form a disk, and new faces join the border of the disk to the point. No new face is flat, because a
+//! point outside a face's plane is not on a line with an edge of that face. A point that sees no face already
+//! lies in the polytope.
 //!
 //! # Source
 //! Barber, Dobkin, Huhdanpaa 1996, "The quickhull algorithm for convex hulls".
@@ -17,22 +17,23 @@ use crate::geometry::doubles::{side, turn, Facing, Point, Triangle};
 use crate::geometry::side::Side;
 use crate::interrupt::poll;
 
-/// The number of no face.
+/// Stands for the number of a face where there is none.
 const NONE: usize = usize::MAX;
 
 /// A triangle of the polytope, counterclockwise as seen from outside.
 struct Face {
     corners: [usize; 3],
-    /// The face behind the edge from each corner to the next.
+    /// For each corner, the number of the face across the edge from this corner to the next.
     beside: [usize; 3],
-    /// Points before this face; each point is listed at one face only.
+    /// Points strictly on the outer side of this face; each point is listed at one face only.
     before: Vec<usize>,
     is_gone: bool,
 }
 
-/// The triangles of the convex hull of finite points, as their numbers.
+/// The triangles of the convex hull of finite points, each as three indices of points, counterclockwise from
+/// outside.
 ///
-/// All corners are corners of the hull as a set: none lies within an edge or a side of it. Empty if all
+/// All corners are true corners of the hull: none lies inside an edge or a flat side of it. Empty if all
 /// points lie in one plane.
 ///
 /// # Example
@@ -51,8 +52,8 @@ pub fn hull(points: &[Point]) -> Vec<[usize; 3]> {
 
 /// The triangles of a convex hull of finite points that may each be off by a radius.
 ///
-/// A point is no corner if it lies within twice the radius of the hull of the others; no point lies farther
-/// outside. Empty if one plane may hold all points.
+/// A point is no corner if it lies within twice the radius of the hull of the other points, and no point lies
+/// farther outside than that. Empty if all points may lie in one plane.
 ///
 /// # Example
 /// ```
@@ -84,16 +85,16 @@ pub fn hull_beyond(points: &[Point], radius: f64) -> Vec<[usize; 3]> {
     faces
 }
 
-/// The most passes. Where several corners are one but for rounding, none is sharp; the first pass leaves
-/// one of them.
+/// The largest number of passes. Where several corners differ only by rounding, none is sharp; the first pass
+/// leaves one of them.
 const MAX_PASSES: usize = 3;
 
 /// Points of one plane, each off by a radius, lie within this many radii of the plane through three of them
-/// that are far apart. The three contribute at most three, two and one, by how far the plane extends beyond
+/// that are far apart. The three contribute at most three, two and one, by how far the plane extends outside
 /// each, and the point itself one.
 const FLAT_RADII: f64 = 7.0;
 
-/// The points that faces use, ascending.
+/// The indices of the points that are corners of faces, ascending and without repetition.
 #[must_use]
 pub fn corners_of(faces: &[[usize; 3]]) -> Vec<usize> {
     let mut used: Vec<usize> = faces.as_flattened().to_vec();
@@ -102,7 +103,7 @@ pub fn corners_of(faces: &[[usize; 3]]) -> Vec<usize> {
     used
 }
 
-/// Return whether all points lie within a distance from the plane of three that are far apart.
+/// Return whether all points lie within a distance from the plane through three of them that are far apart.
 fn is_flat_within(points: &[Point], most: f64) -> bool {
     let width = |axis: usize| {
         let along = || points.iter().map(|p| p[axis]);
@@ -117,7 +118,7 @@ fn is_flat_within(points: &[Point], most: f64) -> bool {
     let (low, high) = (farthest(&|p| -p[axis]), farthest(&|p| p[axis]));
     let along = less(&high, &low);
     let length = dot(&along, &along);
-    // Relative to the line, so that a plane through points near it keeps its digits.
+    // Computed relative to the line, so that a plane through points near it keeps its digits.
     let off = |p: &Point| {
         let way = less(p, &low);
         let share = dot(&way, &along) / length;
@@ -129,7 +130,7 @@ fn is_flat_within(points: &[Point], most: f64) -> bool {
     height(&farthest(&height)) <= most * dot(&normal, &normal).sqrt()
 }
 
-/// The corners of faces that lie farther than a distance from the hull of the others, ascending.
+/// The corners of faces that lie farther than a distance from the hull of their neighbours, ascending.
 fn sharp_corners(points: &[Point], faces: &[[usize; 3]], most: f64) -> Vec<usize> {
     let mut around: Vec<(usize, usize)> = Vec::with_capacity(3 * faces.len());
     for (number, face) in faces.iter().enumerate() {
@@ -158,10 +159,10 @@ fn sharp_corners(points: &[Point], faces: &[[usize; 3]], most: f64) -> Vec<usize
     sharp
 }
 
-/// Relative to the size of a hull: doubles decide distances beyond this.
+/// A distance as a fraction of the hull's size: doubles decide all larger ones.
 const CLEAR_DISTANCE: f64 = 1e-12;
 
-/// The largest distance along an axis between corners of faces and the first of them.
+/// The largest difference, in any coordinate, between a corner of the faces and the first corner.
 fn size_of(points: &[Point], faces: &[[usize; 3]]) -> f64 {
     let Some([first, ..]) = faces.first() else {
         return 0.0;
@@ -174,14 +175,14 @@ fn size_of(points: &[Point], faces: &[[usize; 3]]) -> f64 {
     ways.map(most).fold(0.0, f64::max)
 }
 
-/// Return whether triangles around a corner lie in three planes or more: the corner is then inside no edge
-/// and no side.
+/// Return whether the triangles around a corner lie in at least three planes: the corner is then inside no
+/// edge and no flat side.
 fn has_three_planes(planes: &[Triangle]) -> bool {
     let others: Vec<&Triangle> = planes.iter().filter(|p| are_apart(&planes[0], p)).collect();
     others.iter().any(|third| are_apart(others[0], third))
 }
 
-/// Return whether triangles that share a corner lie in different planes.
+/// Return whether two triangles that share a corner lie in different planes.
 fn are_apart(a: &Triangle, b: &Triangle) -> bool {
     b.iter().any(|p| side(a, p) != Side::On)
 }
@@ -189,15 +190,15 @@ fn are_apart(a: &Triangle, b: &Triangle) -> bool {
 struct Polytope<'a> {
     points: &'a [Point],
     faces: Vec<Face>,
-    /// Faces that may have points before them.
+    /// Faces whose outer side may contain points that are not yet added.
     waiting: Vec<usize>,
-    /// For each point, the round that adds it, if there are several rounds.
+    /// For each point, the number of the round that adds it; empty if there is one round only.
     rounds: Vec<usize>,
 }
 
 impl<'a> Polytope<'a> {
-    /// The hull of several groups of points: of all points of the first, and of those of the others that
-    /// are farther outside than a distance.
+    /// The hull of several groups of points: of all points of the first group, and of those points of the
+    /// others that lie farther outside than the distance `most`.
     fn around(points: &'a [Point], groups: &[&[usize]], most: f64) -> Vec<[usize; 3]> {
         let all = groups.concat();
         let Some(first) = simplex(points, groups[0]).or_else(|| simplex(points, &all)) else {
@@ -225,7 +226,7 @@ impl<'a> Polytope<'a> {
         left.map(|face| face.corners).collect()
     }
 
-    /// Adds the points up to a round that lie farther outside than a distance.
+    /// Adds the points up to a round that lie farther outside the polytope than the distance `most`.
     fn add_all(&mut self, round: usize, most: f64) {
         let is_left = |f: &usize| !self.faces[*f].is_gone;
         self.waiting = (0..self.faces.len()).filter(is_left).collect();
@@ -250,20 +251,20 @@ impl<'a> Polytope<'a> {
         }
     }
 
-    /// Drops the points before a face that lie within a distance of it.
+    /// Drops the points listed at a face that lie within the distance `most` of it.
     fn leave_out(&mut self, face: usize, most: f64) {
         let (triangle, points) = (self.triangle(face), self.points);
         let before = &mut self.faces[face].before;
         before.retain(|p| is_beyond(&points[*p], &triangle, most));
     }
 
-    /// Return whether a point lies within a distance of the faces that it sees.
+    /// Return whether a point lies within the distance `most` of the faces that it sees.
     fn is_within(&self, point: usize, seen: &[usize], most: f64) -> bool {
         let corners: Vec<Point> = seen.iter().flat_map(|f| self.triangle(*f)).collect();
         !is_beyond(&self.points[point], &corners, most)
     }
 
-    /// Makes the tetrahedron of four points in general position, and distributes the others.
+    /// Starts with the tetrahedron of four points in general position, and lists all points at its faces.
     fn start(&mut self, [a, b, c, d]: [usize; 4], all: Vec<usize>) {
         let corners = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];
         let beside = [[2, 3, 1], [0, 3, 2], [1, 3, 0], [2, 1, 0]];
@@ -287,8 +288,8 @@ impl<'a> Polytope<'a> {
         self.faces[face].corners.map(|corner| self.points[corner])
     }
 
-    /// Lists each point at the first face it lies before, of those from a number on; points before none lie
-    /// in the polytope for good.
+    /// Lists each point at the first face, from number `from` on, on whose outer side it lies; points on no
+    /// outer side already lie in the polytope and are dropped.
     fn distribute(&mut self, mut points: Vec<usize>, from: usize) {
         for face in from..self.faces.len() {
             let triangle = self.triangle(face);
@@ -303,7 +304,8 @@ impl<'a> Polytope<'a> {
         }
     }
 
-    /// The point of the rounds so far that seems farthest before a face; any would do.
+    /// The point listed at a face, of the rounds up to `round`, that seems farthest from it in doubles;
+    /// `None` if there is none. Any such point would do.
     fn farthest(&self, face: usize, round: usize) -> Option<usize> {
         if self.faces[face].is_gone {
             return None;
@@ -319,11 +321,11 @@ impl<'a> Polytope<'a> {
         })
     }
 
-    /// Adds a point: new faces at the rim replace those that it sees.
+    /// Adds a point to the polytope: new faces between the point and the rim replace the faces that it sees.
     fn add(&mut self, point: usize, seen: Vec<usize>, rim: &[Rim]) {
         let first = self.faces.len();
-        // The rim is a cycle: each new face is beside the one that starts where it ends, and the one that
-        // ends where it starts.
+        // The rim is a cycle: each new face adjoins the one whose rim edge starts where its own ends, and the
+        // one whose rim edge ends where its own starts.
         let starts: HashMap<usize, usize> = rim
             .iter()
             .enumerate()
@@ -347,7 +349,8 @@ impl<'a> Polytope<'a> {
         self.distribute(orphans, first);
     }
 
-    /// The faces that a point sees, removed, and the edges around them.
+    /// Marks the faces that a point sees as gone, starting from one of them; returns these faces and the
+    /// edges around them.
     fn seen(&mut self, point: usize, face: usize) -> (Vec<usize>, Vec<Rim>) {
         let (mut seen, mut rim) = (vec![face], Vec::new());
         self.faces[face].is_gone = true;
@@ -383,12 +386,13 @@ impl<'a> Polytope<'a> {
 struct Rim {
     start: usize,
     end: usize,
-    /// The face on its other side, and the number of the edge in that face.
+    /// The face across the edge, which stays; `slot` is the number of the edge in that face.
     behind: usize,
     slot: usize,
 }
 
-/// Four of the points in general position, the last behind the first three.
+/// Four of the points in general position, the last on the inner side of the first three; `None` if all lie
+/// in one plane.
 fn simplex(points: &[Point], some: &[usize]) -> Option<[usize; 4]> {
     let all = || some.iter().copied();
     let a = all().min_by(|p, q| order(&points[*p], &points[*q]))?;
@@ -414,7 +418,7 @@ fn simplex(points: &[Point], some: &[usize]) -> Option<[usize; 4]> {
     })
 }
 
-/// Return whether three points lie on one line: then they do in each projection along an axis.
+/// Return whether three points lie on one line: in each projection along an axis they make no turn.
 fn are_in_line(points: &Triangle) -> bool {
     (0..3).all(|axis| {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -431,7 +435,7 @@ mod tests {
     use super::{hull, hull_beyond, side, Point, Side};
     use proptest::prelude::*;
 
-    /// Points of a small grid: many share lines and planes.
+    /// Points of a small grid, of which many share lines and planes.
     fn grid_points() -> impl Strategy<Value = Vec<Point>> {
         let coordinate = (-2i32..3).prop_map(f64::from);
         prop::collection::vec(prop::array::uniform3(coordinate), 0..40)
@@ -472,7 +476,7 @@ mod tests {
             assert_hull(&points);
         }
 
-        /// Points of a grid, each moved by no more than a radius, many of them twice.
+        /// Points of a grid, each moved by no more than a radius; many points occur twice.
         #[test]
         fn what_rounding_moves_keeps_its_faces(
             points in grid_points(),

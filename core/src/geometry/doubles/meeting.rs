@@ -1,8 +1,8 @@
-//! The points that two triangles in doubles have in common, exactly.
+//! How two triangles in doubles intersect, exactly.
 //!
-//! Surfaces that pass through each other do so along lines, never in single points. So common points count
-//! as nothing, and a common stretch of a line is classified by whether it runs inside the triangles or
-//! along their edges.
+//! Surfaces that pass through each other do so along lines, never in single points. So single common points
+//! count as nothing, and a common segment is classified by whether it runs inside the triangles or along
+//! their edges.
 #![allow(clippy::float_cmp, reason = "equal corners are meant to the last bit")]
 
 use crate::arith::{Filtered, Sign};
@@ -12,29 +12,29 @@ use crate::geometry::doubles::{
 use crate::geometry::polygon::straddle;
 use crate::geometry::side::Side;
 
-/// The kinds of points that two triangles have in common.
+/// How two triangles intersect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meeting {
-    /// Nothing, or points.
+    /// The triangles have no more than single points in common.
     Clear,
-    /// A stretch of this edge of the first, inside the second.
+    /// A segment of this edge of the first triangle lies inside the second.
     FirstEdge(usize),
-    /// A stretch of this edge of the second, inside the first.
+    /// A segment of this edge of the second triangle lies inside the first.
     SecondEdge(usize),
-    /// A stretch of an edge of each.
+    /// A segment that lies on an edge of the first triangle and on an edge of the second, by their numbers.
     Edges(usize, usize),
-    /// A stretch that runs inside both.
+    /// A segment that runs inside both triangles.
     Crossing,
-    /// An area.
+    /// The triangles lie in one plane and have an area in common.
     Overlap,
 }
 
-/// Return what two triangles with area have in common.
+/// Return how two triangles with area intersect.
 pub fn meeting(p: &Triangle, q: &Triangle) -> Meeting {
     meeting_of(&Facing::of(p), &Facing::of(q))
 }
 
-/// Return what two prepared triangles with area have in common.
+/// Return how two prepared triangles with area intersect.
 pub fn meeting_of(p: &Facing, q: &Facing) -> Meeting {
     if are_clear(p, q) {
         Meeting::Clear
@@ -67,8 +67,8 @@ fn meeting_by_sides(p: &Triangle, q: &Triangle) -> Meeting {
     }
 }
 
-/// Return whether doubles alone show that two triangles have nothing or one corner in common, as most pairs
-/// do.
+/// Return whether doubles alone prove that two triangles have nothing or one corner in common; true for
+/// nearly all pairs.
 pub fn are_clear(p: &Facing, q: &Facing) -> bool {
     let common = Common::of(p.triangle(), q.triangle());
     if common.several() {
@@ -98,27 +98,27 @@ impl Common {
         Self(bits)
     }
 
-    /// Return whether more than one corner of the first is common.
+    /// Return whether the triangles have at least two corners in common.
     #[inline]
     fn several(self) -> bool {
         // Corners of a triangle with area are distinct.
         self.0.count_ones() > 1
     }
 
-    /// Return whether a corner of the first is one of the second.
+    /// Return whether corner `i` of the first triangle is a corner of the second.
     #[inline]
     fn has(self, i: usize) -> bool {
         self.0 >> (3 * i) & 0b111 != 0
     }
 
-    /// Return whether a corner of the first is an end of an edge of the second.
+    /// Return whether corner `i` of the first triangle is an end of the given edge of the second.
     #[inline]
     fn is_end(self, i: usize, edge: usize) -> bool {
         const ENDS: [u16; 3] = [0b011, 0b110, 0b101];
         self.0 >> (3 * i) & ENDS[edge] != 0
     }
 
-    /// The same with the two triangles exchanged.
+    /// The common corners with the roles of the two triangles exchanged.
     #[inline]
     fn turned(self) -> Self {
         const DIAGONAL: u16 = 0b100_010_001;
@@ -130,7 +130,8 @@ impl Common {
     }
 }
 
-/// Return whether a triangle is clearly on one side of the plane of another, except at common corners.
+/// Return whether a triangle, except for its common corners, is certainly on one side of another triangle's
+/// plane.
 #[inline]
 fn lies_beside(t: &Facing, common: Common, plane: &Facing) -> bool {
     let corners = t.triangle().iter().enumerate();
@@ -138,8 +139,8 @@ fn lies_beside(t: &Facing, common: Common, plane: &Facing) -> bool {
     plane.clearly_beside(others.map(|(_, corner)| corner))
 }
 
-/// Return whether a triangle, seen along an axis, is clearly beyond an edge of another, except at an end of
-/// the edge. Seen so, no two points of the other coincide.
+/// Return whether a triangle, projected along an axis, certainly lies on the outer side of an edge of another
+/// one, except for ends of that edge. The projection of the other triangle must have an area.
 fn lies_outside(t: &Facing, common: Common, other: &Facing, axis: usize) -> bool {
     let Filtered::Certain(inner) = other.clear_turn(axis) else {
         return false;
@@ -157,10 +158,10 @@ fn lies_outside(t: &Facing, common: Common, other: &Facing, axis: usize) -> bool
     })
 }
 
-/// Return whether a triangle folds onto its mate at an edge, given by its number in the mate; both have
-/// area. If not, only the edge is common.
+/// Return whether two triangles with area that share an edge overlap there, folded onto each other; `edge` is
+/// its number in `q`. If not, they have only the edge in common.
 pub fn folds_over(p: &Facing, q: &Facing, edge: usize) -> bool {
-    // In a view where both face one way, they lie on different sides of the edge.
+    // In a projection in which both turn the same way, they lie on different sides of the edge.
     let is_spread = |axis: usize| {
         let own = p.clear_turn(axis);
         own.is_certain() && q.clear_turn(axis) == own
@@ -173,7 +174,7 @@ pub fn folds_over(p: &Facing, q: &Facing, edge: usize) -> bool {
     (0..3).all(|axis| facing(p, axis) == -facing(q, axis))
 }
 
-/// The sides of a triangle's plane on which the corners of another lie.
+/// The sides of the plane of the triangle `plane` on which the corners of `triangle` lie.
 fn sides(triangle: &Triangle, plane: &Triangle) -> [Side; 3] {
     let facing = Facing::of(plane);
     let side = |p: &Point| {
@@ -187,7 +188,7 @@ fn sides(triangle: &Triangle, plane: &Triangle) -> [Side; 3] {
     [side(a), side(b), side(c)]
 }
 
-/// Return whether a point is a corner of a triangle.
+/// Return whether a point equals a corner of a triangle.
 #[inline]
 fn has_corner([a, b, c]: &Triangle, p: &Point) -> bool {
     is_same(p, a) || is_same(p, b) || is_same(p, c)
@@ -199,16 +200,16 @@ fn is_same(p: &Point, q: &Point) -> bool {
     p[0] == q[0] && p[1] == q[1] && p[2] == q[2]
 }
 
-/// The part of a triangle in the plane of another.
+/// The part of a triangle that lies in the plane of another triangle.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Reach {
-    /// A corner at most.
+    /// One corner, or nothing.
     Point,
     /// An edge, by its number.
     Edge(usize),
-    /// A stretch of its inside.
+    /// A segment through the triangle's inside.
     Inside,
-    /// All of it.
+    /// The whole triangle.
     All,
 }
 
@@ -229,7 +230,7 @@ fn is_same_edge(p: &Triangle, i: usize, q: &Triangle, j: usize) -> bool {
     a == d && b == c || a == c && b == d
 }
 
-/// The corner that is alone on its side; not one in the plane if another will do.
+/// The corner that is alone on its side of a plane; a corner in the plane only if no other is alone.
 fn lone_corner(sides: [Side; 3]) -> usize {
     let single = |i: &usize| {
         let others = sides.iter().filter(|s| **s == sides[*i]).count();
@@ -238,12 +239,12 @@ fn lone_corner(sides: [Side; 3]) -> usize {
     (0..3).find(single).unwrap_or(0)
 }
 
-/// Return whether the stretches in which two triangles cover the common line of their planes share more
-/// than a point.
+/// Return whether the segments in which two triangles meet the common line of their planes share more than a
+/// point.
 ///
-/// The edges at the lone corners `p[i]` and `q[k]` end the stretches. The sign of the volume that two such
-/// edges span says which comes first on the line, up to a sign that is the same for all four pairs; `On`
-/// means that they meet there.
+/// The edges at the lone corners `p[i]` and `q[k]` bound the segments. The sign of the volume that two such
+/// edges span says which edge meets the line first, up to a sign that is the same for all four pairs; `On`
+/// means that both meet it in one point.
 fn has_common_stretch(p: &Triangle, i: usize, q: &Triangle, k: usize) -> bool {
     let ends = |t: &Triangle, at: usize| [t[(at + 1) % 3], t[(at + 2) % 3]];
     let order = |our: &Point, their: &Point| side(&[p[i], *our, q[k]], their);
@@ -253,8 +254,7 @@ fn has_common_stretch(p: &Triangle, i: usize, q: &Triangle, k: usize) -> bool {
     straddle(&orders) == (true, true)
 }
 
-/// Return whether two triangles of one plane have an area in common: no line through an edge separates
-/// them.
+/// Return whether two triangles of one plane have an area in common: no line through an edge separates them.
 fn overlap(p: &Triangle, q: &Triangle) -> bool {
     let facing = |axis: usize| turn(seen_along(p, axis));
     let Some(axis) = (0..3).find(|axis| facing(*axis) != Sign::Zero) else {
@@ -271,7 +271,7 @@ fn lie_apart(p: &[[f64; 2]; 3], q: &[[f64; 2]; 3]) -> bool {
     (0..2).any(|i| high(p, i) <= low(q, i) || high(q, i) <= low(p, i))
 }
 
-/// Return whether the line through some edge of `p` separates it from `q`, which may touch the line.
+/// Return whether the line through some edge of `p` separates `p` from `q`, which may touch the line.
 fn separates(p: &[[f64; 2]; 3], q: &[[f64; 2]; 3]) -> bool {
     let inner = turn(*p);
     (0..3).any(|i| {
@@ -281,7 +281,7 @@ fn separates(p: &[[f64; 2]; 3], q: &[[f64; 2]; 3]) -> bool {
     })
 }
 
-/// Return whether a triangle has no area, so that all its points lie on its neighbours' edges.
+/// Return whether a triangle has no area: corners coincide or lie on one line.
 pub fn has_no_area(triangle: &Triangle) -> bool {
     let [a, b, c] = triangle;
     a == b || b == c || c == a || is_flat(triangle)
@@ -291,12 +291,12 @@ pub fn has_no_area(triangle: &Triangle) -> bool {
 mod tests {
     use super::*;
 
-    /// A point of a small grid, by number; triangles of these points touch in every way.
+    /// A point of a small grid, by its number; triangles of such points touch in all possible ways.
     fn corner(number: u32, step: f64) -> Point {
         [1, 3, 9].map(|place| f64::from(number / place % 3) * step)
     }
 
-    /// Pseudorandom numbers below a bound.
+    /// Pseudorandom integers below a bound.
     fn numbers(bound: u32) -> impl Iterator<Item = u32> {
         let next = |x: &u32| Some(x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
         std::iter::successors(Some(7), next).map(move |x| (x >> 8) % bound)

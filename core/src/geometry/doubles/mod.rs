@@ -1,7 +1,7 @@
-//! Exact questions about points given in doubles.
+//! Exact predicates of points given in doubles.
 //!
-//! A filter in doubles settles clear cases. Integers decide the others: coordinates times a power of two,
-//! in fixed width if their exponents lie close together.
+//! A filter in doubles settles clear cases. Integers decide the others: coordinates times a common power of
+//! two, in fixed width if their exponents lie close together.
 #![allow(
     clippy::float_cmp,
     reason = "equal coordinates are meant to the last bit"
@@ -24,10 +24,11 @@ use crate::arith::{mantissa_and_exponent, Filtered, Int, Sign};
 /// A point of space in finite doubles.
 pub type Point = [f64; 3];
 
-/// A triangle by its corners.
+/// A triangle, given by its corners.
 pub type Triangle = [Point; 3];
 
-/// A number for each coordinate of a place; equal coordinates have equal numbers, zeros of either sign too.
+/// A hash value for each coordinate of a point; equal coordinates have equal values, and so do zeros of
+/// either sign.
 ///
 /// Meant for hash tables, as it uses [`folded`].
 ///
@@ -43,34 +44,34 @@ pub fn digits(place: &Point) -> [u64; 3] {
     place.map(|c| folded((c + 0.0).to_bits()))
 }
 
-/// The bits of a double, the upper half folded into the lower one; different bits stay different.
+/// The bits of a double, the upper half folded into the lower one; different bits give different results.
 ///
-/// Short numbers differ only in the upper bits of their doubles. A product hash drops these and would put
-/// all whole coordinates in the same few slots.
+/// Integers of few bits differ only in the upper bits of their doubles. A product hash drops these and would
+/// put all whole coordinates in the same few slots.
 #[inline]
 pub fn folded(bits: u64) -> u64 {
     bits ^ (bits >> (u64::BITS / 2))
 }
 
-/// Half a unit in the last place of 1.
+/// Half a unit in the last place of 1: the largest relative error of one rounding.
 const ROUNDING: f64 = f64::EPSILON / 2.0;
 
-/// Shewchuk 1997, "Adaptive precision floating-point arithmetic", the bound A of orient3d.
+/// The relative error bound A of orient3d in Shewchuk 1997, "Adaptive precision floating-point arithmetic".
 const SIDE_BOUND: f64 = (7.0 + 56.0 * ROUNDING) * ROUNDING;
 
-/// The same paper, the bound A of orient2d.
+/// The relative error bound A of orient2d in Shewchuk 1997, "Adaptive precision floating-point arithmetic".
 const TURN_BOUND: f64 = (3.0 + 16.0 * ROUNDING) * ROUNDING;
 
-/// The filter's bounds assume no underflow and no overflow; sums of products beyond this range may have had
-/// either. A product of three differences below 1e100 that lost 2^-1074 in one step is off by 1e-223 at
-/// most, far less than the bound at 1e-200.
+/// The range of sums of products that the filters trust. Their bounds assume no underflow and no overflow,
+/// and sums outside this range may have had either. A product of three differences below 1e100 that lost
+/// 2^-1074 in one step is off by 1e-223 at most, far less than the bound at 1e-200.
 const TRUSTED: std::ops::Range<f64> = 1e-200..1e200;
 
-/// The largest difference of exponents that fits: 53 + 70 bits a coordinate, 124 a difference, 249 a minor
-/// of two rows, 375 a determinant of three.
+/// The largest difference of exponents for which integers of fixed width suffice: 53 + 70 bits for a
+/// coordinate, 124 for a difference, 249 for a minor of two rows, 375 for a determinant of three.
 const MAX_EXPONENT_DIFFERENCE: i32 = 70;
 
-/// A triangle with its plane, prepared for questions about sides.
+/// A triangle with the products that define its plane, prepared for questions on which side points lie.
 #[derive(Clone, Copy, Debug)]
 pub struct Facing {
     triangle: Triangle,
@@ -79,7 +80,7 @@ pub struct Facing {
 }
 
 impl Facing {
-    /// Prepares a triangle.
+    /// Prepares a triangle for questions on which side of its plane points lie.
     #[inline]
     pub fn of(triangle: &Triangle) -> Self {
         let [a, b, c] = triangle;
@@ -94,14 +95,14 @@ impl Facing {
         }
     }
 
-    /// The triangle.
+    /// The triangle that was prepared.
     #[inline]
     pub fn triangle(&self) -> &Triangle {
         &self.triangle
     }
 
-    /// Sign of the turn of the corners as seen against the direction of an axis, where doubles settle it
-    /// and it is not zero.
+    /// The sign of the turn of the corners in the projection along an axis; certain only where doubles settle
+    /// it and it is not zero.
     #[inline]
     pub fn clear_turn(&self, axis: usize) -> Filtered<Sign> {
         let (value, size) = (self.minors[axis], self.sizes[axis]);
@@ -109,14 +110,16 @@ impl Facing {
         Filtered::when(clear, Sign::of(value))
     }
 
-    /// The side on which a point lies, exactly; the normal by the right-hand rule points to `Plus`.
+    /// The side of the triangle's plane on which a point lies, exactly; the normal by the right-hand rule
+    /// points to `Plus`.
     #[inline]
     pub fn side(&self, d: &Point) -> Side {
         let [a, b, c] = &self.triangle;
         self.clear_side(d).or_exact(|| exact_side([a, b, c, d]))
     }
 
-    /// The side on which a point lies, where doubles settle it.
+    /// The side of the triangle's plane on which a point lies, where doubles settle it; certain also for `On`
+    /// if the plane is across an axis.
     #[inline]
     pub fn clear_side(&self, d: &Point) -> Filtered<Side> {
         let [a, b, c] = &self.triangle;
@@ -127,7 +130,8 @@ impl Facing {
         self.clear_side_off(d)
     }
 
-    /// The side on which a point lies, where doubles show it off the plane.
+    /// The side of the triangle's plane on which a point lies, where doubles prove that it is not in the
+    /// plane.
     #[inline]
     pub fn clear_side_off(&self, d: &Point) -> Filtered<Side> {
         let (value, error) = self.height(d);
@@ -135,7 +139,7 @@ impl Facing {
         Filtered::when(value.abs() > error, side)
     }
 
-    /// Return whether doubles show that all points lie off the plane on one side.
+    /// Return whether doubles prove that all points lie strictly on one side of the triangle's plane.
     #[inline]
     pub fn clearly_beside<'a>(&self, points: impl Iterator<Item = &'a Point>) -> bool {
         let (mut above, mut below) = (true, true);
@@ -149,7 +153,7 @@ impl Facing {
         true
     }
 
-    /// Six times the volume that a point spans with the triangle, and a bound on its error.
+    /// Six times the signed volume that a point spans with the triangle, and a bound on its error.
     #[inline]
     fn height(&self, d: &Point) -> (f64, f64) {
         let (m, s) = (&self.minors, &self.sizes);
@@ -167,7 +171,7 @@ impl Facing {
         )
     }
 
-    /// The axis along which the triangle is seen best.
+    /// The axis along which the triangle's projection has the largest area, by doubles.
     pub fn main_axis(&self) -> usize {
         let [x, y, z] = self.minors;
         let (x, y, z) = (x.abs(), y.abs(), z.abs());
@@ -184,7 +188,8 @@ fn difference(p: &Point, q: &Point) -> Point {
     [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
 }
 
-/// The side of the plane through a triangle's corners on which a point lies; exact.
+/// The side of the plane through a triangle's corners on which a point lies; exact. The normal by the
+/// right-hand rule points to `Plus`.
 ///
 /// # Example
 /// ```
@@ -219,7 +224,7 @@ fn exact_side(points: [&Point; 4]) -> Side {
     }
 }
 
-/// Sign of the turn a → b → c in the plane, positive to the left; exact.
+/// The sign of the turn a → b → c in the plane, positive to the left; exact.
 #[inline]
 pub fn turn(points: [[f64; 2]; 3]) -> Sign {
     clear_turn(points)
@@ -227,7 +232,7 @@ pub fn turn(points: [[f64; 2]; 3]) -> Sign {
         .or_exact(|| exact_turn(points))
 }
 
-/// Sign of the turn a → b → c in the plane, where doubles settle it and it is not zero.
+/// The sign of the turn a → b → c in the plane; certain only where doubles settle it and it is not zero.
 #[inline]
 pub fn clear_turn([a, b, c]: [[f64; 2]; 3]) -> Filtered<Sign> {
     let left = (b[0] - a[0]) * (c[1] - a[1]);
@@ -237,11 +242,12 @@ pub fn clear_turn([a, b, c]: [[f64; 2]; 3]) -> Filtered<Sign> {
     Filtered::when(clear, Sign::of(value))
 }
 
-/// The turn where differences of coordinates are exact in doubles, so that two products decide: mostly for
-/// points of one plane along the axes.
+/// The sign of the turn a → b → c, certain where all differences of coordinates are exact in doubles, so that
+/// two products decide: mostly for points on axis-parallel lines.
 fn turn_by_parts([a, b, c]: [[f64; 2]; 3]) -> Filtered<Sign> {
     let [u, v] = [b, c].map(|p| [0, 1].map(|i| exact_difference(p[i], a[i])));
-    // Rounding keeps the order of products; equal ones differ by their rounding errors.
+    // Rounding keeps the order of products; products with equal roundings are ordered by their rounding
+    // errors.
     let order = || {
         let [left, right] = [exact_product(u[0]?, v[1]?)?, exact_product(u[1]?, v[0]?)?];
         left.partial_cmp(&right)
@@ -252,7 +258,7 @@ fn turn_by_parts([a, b, c]: [[f64; 2]; 3]) -> Filtered<Sign> {
     }
 }
 
-/// a − b, if it is exact in doubles (Knuth's sum of two).
+/// The difference a − b, or `None` if it is not exact in doubles (Knuth's sum of two).
 fn exact_difference(a: f64, b: f64) -> Option<f64> {
     let difference = a - b;
     let of_b = a - difference;
@@ -260,7 +266,8 @@ fn exact_difference(a: f64, b: f64) -> Option<f64> {
     (lost == 0.0).then_some(difference)
 }
 
-/// A product as its rounded value and the exact rest (Veltkamp and Dekker).
+/// A product as its rounded value and the exact rest (Veltkamp and Dekker); `None` if it may over- or
+/// underflow.
 fn exact_product(a: f64, b: f64) -> Option<(f64, f64)> {
     let product = a * b;
     if product == 0.0 {
@@ -274,7 +281,7 @@ fn exact_product(a: f64, b: f64) -> Option<(f64, f64)> {
     Some((product, rest))
 }
 
-/// The leading 26 bits of a double, and the others.
+/// The leading 26 bits of a double, and its other bits, as two doubles.
 fn halves(x: f64) -> [f64; 2] {
     const SPLITTER: f64 = 134_217_729.0; // 2^27 + 1
     let scaled = SPLITTER * x;
@@ -296,7 +303,8 @@ fn exact_turn(points: [[f64; 2]; 3]) -> Sign {
     }
 }
 
-/// The numbers as multiples of the smallest power of two among them, if they fit.
+/// Numbers, given by mantissas and exponents, as multiples of the smallest power of two among them; `None` if
+/// these do not fit.
 fn on_common_grid(parts: &[(i64, i32)]) -> Option<[i128; 12]> {
     let exponents = || parts.iter().filter(|p| p.0 != 0).map(|p| p.1);
     let (least, most) = (
@@ -322,12 +330,12 @@ fn on_big_grid(parts: &[(i64, i32)]) -> Vec<BigInt> {
     parts.iter().map(scaled).collect()
 }
 
-/// Return whether the corners of a triangle lie on one line, or in one place; exact.
+/// Return whether the corners of a triangle lie on one line, or two or all of them coincide; exact.
 pub fn is_flat(triangle: &Triangle) -> bool {
     (0..3).all(|axis| turn(seen_along(triangle, axis)) == Sign::Zero)
 }
 
-/// A triangle as seen against the direction of an axis.
+/// The corners of a triangle projected along an axis, as seen from the axis' positive end.
 #[inline]
 pub fn seen_along([a, b, c]: &Triangle, axis: usize) -> [[f64; 2]; 3] {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -383,7 +391,7 @@ mod tests {
 
     #[test]
     fn integers_of_fixed_width_and_big_ones_agree() {
-        // Near-coplanar points, within the span of the fixed width and beyond it.
+        // Nearly coplanar points, with exponents that fit the fixed width and with exponents that do not.
         for seed in 0..2000u32 {
             let next = |k: u32| f64::from((seed * 12 + k).wrapping_mul(2_654_435_761)) / 4e9;
             let mut points = [0, 1, 2, 3].map(|p| [0, 1, 2].map(|i| next(3 * p + i) + 1.0));

@@ -1,16 +1,16 @@
-//! Tests whether a point lies far from the convex hull of a few others, in doubles.
+//! Tests in doubles whether a point lies far from the convex hull of a small number of other points.
 
 use crate::geometry::doubles::vector::{cross, dot, less};
 use crate::geometry::doubles::{Point, Triangle};
 
-/// The most steps towards the nearest point; a few usually suffice.
+/// The largest number of steps towards the nearest point of the hull; usually two or three suffice.
 const MAX_STEPS: usize = 64;
 
-/// Return whether a point outside the convex hull of others lies farther from it than a distance; true
-/// where rounding leaves a doubt.
+/// Return whether `point`, outside the convex hull of `others`, lies farther from it than the distance
+/// `most`; true where rounding leaves a doubt, and if there are no others.
 ///
-/// The nearest point lies in a triangle of others. In each step, the other that lies farthest towards
-/// `point` replaces a corner.
+/// The nearest point of the hull lies in a triangle of the others. In each step, the one of them that lies
+/// farthest towards `point` replaces a corner of the triangle.
 ///
 /// # Source
 /// Gilbert, Johnson, Keerthi 1988, "A fast procedure for computing the distance between complex
@@ -36,7 +36,7 @@ pub fn is_beyond(point: &Point, others: &[Point], most: f64) -> bool {
             return false;
         }
         let (along, next) = farthest_against(&near, point, others);
-        // All others lie beyond a plane that is far enough away.
+        // All others lie on the far side of a plane that is far enough away.
         if along > 0.0 && along * along > most * most * size {
             return true;
         }
@@ -59,7 +59,7 @@ pub fn is_beyond(point: &Point, others: &[Point], most: f64) -> bool {
     true
 }
 
-/// The vector from a point to the mean of others.
+/// The vector from a point to the mean of other points; `None` if there are none.
 fn middle(point: &Point, others: &[Point]) -> Option<Point> {
     let mut sum = [0.0; 3];
     let mut count = 0.0;
@@ -71,7 +71,8 @@ fn middle(point: &Point, others: &[Point]) -> Option<Point> {
     (count > 0.0).then(|| sum.map(|x| x / count))
 }
 
-/// The least scalar product of a direction with a vector from the point to another, and that vector.
+/// Of the vectors from a point to others, the one with the least scalar product with a direction, and this
+/// product.
 fn farthest_against(direction: &Point, point: &Point, others: &[Point]) -> (f64, Point) {
     let mut least = (f64::INFINITY, *direction);
     for other in others {
@@ -131,7 +132,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// A convex combination of the others is in their hull; a plane above them is not.
+        /// A point near a convex combination of the others is near their hull; a point above a plane over
+        /// them is not.
         #[test]
         fn what_is_near_is_no_farther_than_a_mix(
             others in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 1..12),

@@ -1,7 +1,7 @@
-//! Exact crossings of surfaces at a line, from the half-planes of triangles around it.
+//! Exact tests whether surfaces cross at an edge, from the half-planes of the triangles around it.
 //!
-//! Where more than two triangles share an edge, their pairing into surfaces is unknown. Surfaces cross
-//! there if they do in every pairing.
+//! Where more than two triangles share an edge, it is unknown which of them continue each other as one
+//! surface. Surfaces cross there if they do so however the triangles are paired.
 
 use std::cmp::Ordering;
 
@@ -11,17 +11,17 @@ use super::{seen_along, side, turn, Facing, Point, Triangle};
 use crate::arith::Sign;
 use crate::geometry::side::Side;
 
-/// A triangle at an edge, as a half-plane that the edge's line bounds.
+/// A triangle at an edge, as the half-plane that the edge's line bounds on the triangle's side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sheet {
-    /// The corner off the edge.
+    /// The corner of the triangle that is not on the edge.
     pub apex: Point,
-    /// True if the triangle runs along the edge, false if against it.
+    /// True if the triangle's border runs in the direction of the edge, false if in the opposite direction.
     pub is_along: bool,
 }
 
 impl Sheet {
-    /// 1 along the edge, -1 against it.
+    /// 1 if the triangle's border runs in the direction of the edge, −1 if in the opposite direction.
     fn way(&self) -> i64 {
         if self.is_along {
             1
@@ -31,18 +31,19 @@ impl Sheet {
     }
 }
 
-/// The sheets at an edge: nearly always two.
+/// The triangles around an edge as half-planes; nearly always two.
 pub type Sheets = SmallVec<[Sheet; 2]>;
 
-/// Return whether sheets lack opposites, so that a surface ends at the edge.
+/// Return whether more sheets run in one direction of the edge than in the other, so that a surface ends
+/// there.
 fn is_open(sheets: &[Sheet]) -> bool {
     sheets.iter().map(Sheet::way).sum::<i64>() != 0
 }
 
-/// Return whether a surface of the sheets at an edge passes through the plane of a triangle that contains
-/// the edge, or ends there.
+/// Return whether a surface made of the sheets at an edge crosses the plane of a triangle that contains the
+/// edge, or ends at the edge.
 ///
-/// Sheets in the plane overlap the triangle, which is found elsewhere; here they do not count as passing.
+/// Sheets in the plane overlap the triangle, which other tests find; here they do not count as crossing.
 pub fn pass(plane: &Triangle, sheets: &[Sheet]) -> bool {
     let facing = Facing::of(plane);
     let (mut below, mut above) = (0, 0);
@@ -56,13 +57,13 @@ pub fn pass(plane: &Triangle, sheets: &[Sheet]) -> bool {
     is_open(sheets) || below != 0 && above != 0
 }
 
-/// Return whether surfaces of the sheets at one edge pass through those of the sheets at another on the
-/// same line, or end there.
+/// Return whether surfaces made of the sheets at one edge cross surfaces made of the sheets at another edge
+/// on the same line, or end there.
 ///
-/// Around the line each sheet is a letter, and its opposite the inverse letter: the sheets can be paired
-/// without a crossing exactly if their word cancels in the free group.
+/// In the order around the line, each sheet is a letter, and a sheet of the opposite direction the inverse
+/// letter: the sheets can be paired without a crossing exactly if their word cancels in the free group.
 ///
-/// Sheets that coincide overlap, which is found elsewhere; here they do not count as crossing.
+/// Sheets that coincide overlap, which other tests find; here they do not count as crossing.
 pub fn entwine(axis: [&Point; 2], [first, second]: [&[Sheet]; 2]) -> bool {
     if is_open(first) || is_open(second) {
         return true;
@@ -82,10 +83,10 @@ pub fn entwine(axis: [&Point; 2], [first, second]: [&[Sheet]; 2]) -> bool {
     !word.windows(2).any(is_beside) && !cancels(&word)
 }
 
-/// Sheets around a line; true marks those of the first of two edges.
+/// The sheets around a line at which two edges lie, each with true if it belongs to the first edge.
 type Letters = SmallVec<[(bool, Sheet); 4]>;
 
-/// Return whether a word cancels in the free group.
+/// Return whether a word of sheets cancels to the empty word in the free group.
 fn cancels(word: &[(bool, Sheet)]) -> bool {
     let mut left = SmallVec::<[(bool, bool); 4]>::new();
     for (is_first, Sheet { is_along, .. }) in word {
@@ -98,7 +99,8 @@ fn cancels(word: &[(bool, Sheet)]) -> bool {
     left.is_empty()
 }
 
-/// The order of half-planes around a line, starting at one of them.
+/// The order of two half-planes around a line, by angle from a half-plane `start`; each is given by a point
+/// in it.
 fn order_around([a, b]: [&Point; 2], start: &Point, [x, y]: [&Point; 2]) -> Ordering {
     let turn = |u: &Point, v: &Point| side(&[*a, *b, *u], v);
     let quarter = |x: &Point| match turn(start, x) {
@@ -115,7 +117,7 @@ fn order_around([a, b]: [&Point; 2], start: &Point, [x, y]: [&Point; 2]) -> Orde
     quarter(x).cmp(&quarter(y)).then_with(within)
 }
 
-/// Return whether two points in one plane with a line lie on the same side of it.
+/// Return whether two points, in one plane with the line through a and b, lie on the same side of the line.
 fn is_same_half([a, b]: [&Point; 2], x: &Point, y: &Point) -> bool {
     let first = [*a, *b, *x];
     let second = [*a, *b, *y];
@@ -134,7 +136,8 @@ mod tests {
 
     const AXIS: [Point; 2] = [[0.0; 3], [0.0, 0.0, 1.0]];
 
-    /// Sheets around the axis at angles in twelfths of a turn, negative if they run against it; 12 is 0.
+    /// Sheets around an axis at angles in twelfths of a turn, like hours; negative if they run against the
+    /// axis, and 12 is the angle 0.
     fn sheets(hours: &[i32]) -> Sheets {
         let sheet = |hour: &i32| {
             let (y, x) = (f64::from(hour.abs()) * std::f64::consts::TAU / 12.0).sin_cos();
@@ -154,7 +157,8 @@ mod tests {
         there
     }
 
-    /// Return whether sheets can be paired so that no two pairs of different edges interleave.
+    /// Return whether sheets can be paired so that no two pairs from different edges interleave around the
+    /// line.
     fn can_be_paired(word: &mut Vec<(bool, i32)>) -> bool {
         let Some((is_first, hour)) = word.pop() else {
             return true;
@@ -180,15 +184,15 @@ mod tests {
 
     #[test]
     fn of_more_sheets_those_are_one_surface_that_need_not_cross() {
-        // Between two wedges, and from inside each to outside.
+        // One sheet between two wedges, and one from inside each wedge to the outside.
         assert!(!are_entwined(&[12, -2, 6, -8], &[4, -10]));
         assert!(are_entwined(&[12, -2, 6, -8], &[1, -10]));
     }
 
     #[test]
     fn words_cancel_if_sheets_can_be_paired() {
-        // Eight places around a line, each with a sheet of either edge in either direction or none: every
-        // seventh combination.
+        // There are eight angles around a line, each with a sheet of either edge in either direction or with
+        // none; every seventh combination is tested.
         let (mut entwined, mut apart) = (0, 0);
         for number in (0..5_u32.pow(8)).step_by(7) {
             let letter = |hour: u8| number / 5_u32.pow(u32::from(hour) - 1) % 5;
@@ -218,12 +222,12 @@ mod tests {
 
     #[test]
     fn surfaces_pass_where_a_side_is_left_with_a_sheet_too_many() {
-        // The plane through 12 and 6 hours.
+        // The plane contains the directions of 12 and of 6 hours.
         let plane = [[-9.0, 0.0, 0.0], [9.0, 0.0, -1.0], [9.0, 0.0, 2.0]];
         let there = |hours: &[i32]| pass(&plane, &sheets(hours));
         assert!(there(&[1, -8]) && there(&[1]) && there(&[1, -2, 3]));
         assert!(!there(&[1, -2]) && !there(&[1, -12]));
-        // Wedges on either side, in any order.
+        // The wedges lie on both sides of the plane, in any order.
         assert!(!there(&[1, -7, 8, -2]) && !there(&[-2, 8, -7, 1]));
         assert!(there(&[1, -7, 2, -8]) && there(&[-8, 2, -7, 1]));
     }

@@ -1,7 +1,8 @@
-//! Slabs across diagonals of the axes: slanted triangles overlap in boxes more often than in slabs.
+//! Slabs: intervals of triangles along diagonals of the axes. Slanted triangles overlap less often in slabs
+//! than in boxes.
 //!
 //! Rounding keeps the order of numbers, and so do rounded sums and differences. So slabs that overlap still
-//! do so when rounded.
+//! do so after rounding.
 //!
 //! # Source
 //! Klosowski, Held, Mitchell, Sowizral, Zikan 1998, "Efficient collision detection using bounding volume
@@ -9,10 +10,10 @@
 
 use super::{Point, Triangle};
 
-/// Slabs are compared in this many lanes: the directions and two of padding.
+/// The number of lanes in which slabs are compared: six directions and two of padding.
 const LANES: usize = 8;
 
-/// The ends of a triangle across six diagonals, in single precision.
+/// The intervals that a triangle covers along six diagonals of the axes, in single precision.
 #[derive(Clone, Copy, Debug)]
 pub struct Slabs {
     low: [f32; LANES],
@@ -20,8 +21,8 @@ pub struct Slabs {
 }
 
 impl Slabs {
-    /// The slabs of a triangle, relative to an origin near it; two triangles need the same origin to be
-    /// compared.
+    /// The slabs of a triangle, relative to an origin near it; two triangles can be compared only if they
+    /// have the same origin.
     #[allow(
         clippy::cast_possible_truncation,
         reason = "rounding keeps the order of numbers"
@@ -37,7 +38,8 @@ impl Slabs {
         Self { low, high }
     }
 
-    /// Return whether these slabs are disjoint from others along one of the diagonals.
+    /// Return whether the intervals of two triangles are disjoint along some diagonal; the triangles then
+    /// have no point in common.
     #[inline]
     pub fn miss(&self, others: &Self) -> bool {
         let word = |b: bool| if b { !0u32 } else { 0 };
@@ -49,7 +51,7 @@ impl Slabs {
     }
 }
 
-/// The coordinates of a point along the diagonals.
+/// The coordinates of a point along the six diagonals.
 fn across([x, y, z]: &Point) -> [f64; 6] {
     [x + y, x - y, y + z, y - z, z + x, z - x]
 }

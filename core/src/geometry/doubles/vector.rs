@@ -1,20 +1,20 @@
-//! Vectors in doubles: differences and products, rounded.
+//! Rounded differences and products of vectors in doubles.
 
 use super::{Point, Triangle};
 
-/// The vector from the second point to the first.
+/// The vector p − q, from `q` to `p`.
 #[inline]
 pub fn less(p: &Point, q: &Point) -> Point {
     [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
 }
 
-/// The scalar product.
+/// The scalar product of two vectors.
 #[inline]
 pub fn dot(u: &Point, v: &Point) -> f64 {
     u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 }
 
-/// The vector product: perpendicular to both, as long as the parallelogram between them is large.
+/// The vector product of two vectors: perpendicular to both, its length the area of their parallelogram.
 ///
 /// # Example
 /// ```
@@ -30,7 +30,7 @@ pub fn cross(u: &Point, v: &Point) -> Point {
     [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
-/// The normal of a triangle, as long as twice its area.
+/// The normal of a triangle by the right-hand rule, its length twice the triangle's area.
 #[inline]
 pub fn normal([a, b, c]: &Triangle) -> Point {
     cross(&less(b, a), &less(c, a))

@@ -1,7 +1,7 @@
-//! Points in fixed binary places, and the flux of (0, 0, z) through polygons of them.
+//! Points in fixed-point binary, and the flux of the field (0, 0, z) through polygons of such points.
 //!
-//! Clipping exact polygons to cells is expensive where only a sum over all of them is needed. Here corners
-//! are rounded to a small part of a step, and each answer has an error bound.
+//! Clipping polygons to cells exactly is expensive, and only a sum over all of them is needed. So corners are
+//! rounded to a small fraction of a lattice step, and each result has an error bound.
 
 use smallvec::SmallVec;
 
@@ -13,38 +13,41 @@ use crate::geometry::plane::Lattice;
 use crate::geometry::side::Orientation;
 use crate::geometry::vertex::Vertex;
 
-/// Binary places of a step. Coordinates below 2^54 steps leave a bit for sums of three.
+/// The number of binary fraction digits of a coordinate in lattice steps. Coordinates are below 2^54 steps,
+/// so a sum of three fits an `i128`.
 pub const PLACES: u32 = 72;
 
-/// A point in units of 2^-`PLACES` steps.
+/// A point in fixed-point binary: coordinates in units of 2^-`PLACES` lattice steps.
 pub type Fixed = [i128; 3];
 
-/// A closed polygon, its corners in order.
+/// The corners of a closed polygon, in order.
 pub type Ring = SmallVec<[Fixed; 12]>;
 
-/// Six times a flux, in units of 2^-152 cubic steps, and a bound on its error.
+/// Six times the flux of the field (0, 0, z) through a surface, in units of 2^-152 cubic lattice steps, with
+/// a bound on its error.
 ///
 /// # Bits
 /// A triangle's flux is below 2^165 cubic steps; 66 bits are left for sums of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Flux {
-    /// The value.
+    /// Six times the flux, rounded.
     pub value: Int<6>,
-    /// A bound on its distance from the true value.
+    /// A bound on the difference between `value` and six times the exact flux.
     pub error: f64,
 }
 
-/// Binary places of a cubic step in a [`Flux`]: three times `PLACES` less one limb.
+/// The number of binary fraction digits of a [`Flux`] in cubic lattice steps: three times `PLACES` less one
+/// limb.
 pub const FLUX_PLACES: u32 = 3 * PLACES - 64;
 
 impl Flux {
-    /// No flux.
+    /// The exact flux zero.
     pub const ZERO: Self = Self {
         value: Int::ZERO,
         error: 0.0,
     };
 
-    /// The least and the greatest value within the error; `None` if the error is not finite.
+    /// The least and the greatest value that the error allows; `None` if the error is not finite.
     pub fn ends(&self) -> Option<[Int<6>; 2]> {
         let in_limbs = |k: u8| self.error * 2f64.powi(-64 * i32::from(k));
         let limbs = (0..4).find(|k| in_limbs(*k) < 2f64.powi(100))?;
@@ -57,7 +60,7 @@ impl Flux {
         Some([self.value - error, self.value + error])
     }
 
-    /// Adds or subtracts the flux through something, by its orientation.
+    /// Adds another flux, or subtracts it if the orientation is `Opposite`; the errors add up in either case.
     pub fn add(&mut self, other: &Self, orientation: Orientation) {
         match orientation {
             Orientation::Same => self.value += other.value,
@@ -67,12 +70,12 @@ impl Flux {
     }
 }
 
-/// A lattice point.
+/// A lattice point in fixed-point binary; exact.
 pub fn of_lattice(p: &Lattice) -> Fixed {
     p.map(|c| i128::from(c) << PLACES)
 }
 
-/// An exact point, each coordinate within `slack`.
+/// An exact point in fixed-point binary, each coordinate within `slack` of the exact one.
 pub fn of_vertex(vertex: &Vertex) -> Fixed {
     if let Some(p) = vertex.as_lattice() {
         return of_lattice(p);
@@ -82,7 +85,8 @@ pub fn of_vertex(vertex: &Vertex) -> Fixed {
     each_axis(|i| place(&h.x[i], &h.w, near[i]))
 }
 
-/// x / w in units of 2^-`PLACES`, from a double that is off by a few units in its last place.
+/// The quotient x / w in units of 2^-`PLACES`, improved from a double that is off by a few units in its last
+/// place.
 ///
 /// Uses the leading 120 bits of w, and drops as many bits of x as of w: an error of 2^-119 of the quotient.
 fn place(x: &Int<6>, w: &Int<6>, near: f64) -> i128 {
@@ -94,7 +98,7 @@ fn place(x: &Int<6>, w: &Int<6>, near: f64) -> i128 {
     first + as_wide(rest.to_f64() / divisor.to_f64())
 }
 
-/// The floor of a number over 2^shift, in `N` limbs that fit it.
+/// The integer divided by 2^shift and rounded down, in `N` limbs, which must suffice.
 fn window<const N: usize>(number: &Int<6>, shift: i32) -> Int<N> {
     let sign = if number.is_negative() { u64::MAX } else { 0 };
     let limb = |i: i32| match usize::try_from(i) {
@@ -109,17 +113,17 @@ fn window<const N: usize>(number: &Int<6>, shift: i32) -> Int<N> {
     }))
 }
 
-/// A step in units.
+/// The number of units of 2^-`PLACES` in a lattice step.
 #[allow(clippy::cast_precision_loss, reason = "a small constant")]
 const UNIT: f64 = (1u128 << PLACES) as f64;
 
-/// A fraction in units of 2^-`PLACES`, by two steps of long division in doubles.
+/// The quotient n / d in units of 2^-`PLACES`, by two steps of long division in doubles.
 fn fraction(n: i128, d: i128) -> i128 {
     if n.unsigned_abs() >= 1 << 104 || d.unsigned_abs() >= 1 << 120 {
         return long_fraction(&Int::from_i128(n), d);
     }
     let first = as_wide(as_double(n) / as_double(d) * UNIT);
-    // The remainder is 2^-50 of the numerator and fits; overflow cancels.
+    // The remainder is 2^-50 of the numerator, so it fits; overflow cancels.
     let rest = (n << PLACES).wrapping_sub(first.wrapping_mul(d));
     first.saturating_add(as_wide(as_double(rest) / as_double(d)))
 }
@@ -132,7 +136,7 @@ fn long_fraction(n: &Int<3>, d: i128) -> i128 {
     )
 }
 
-/// A quotient by two steps of long division in doubles.
+/// The quotient n / d, by two steps of long division in doubles; `times` multiplies an integer by d.
 fn quotient<const N: usize, const M: usize>(
     n: &Int<N>,
     d: &Int<M>,
@@ -144,19 +148,20 @@ fn quotient<const N: usize, const M: usize>(
     first.saturating_add(as_wide(rest.to_f64() * reciprocal))
 }
 
-/// Bound the error of a coordinate after a quotient, if none exceeds `size`.
+/// A bound on the error of a coordinate that is a quotient of at most `size` in magnitude, in units of
+/// 2^-`PLACES`.
 ///
-/// The first step leaves 2^-50 of the quotient, the second 2^-50 of that, and rounding 1.
+/// The first step of the division leaves 2^-50 of the quotient, the second 2^-50 of that, and rounding 1.
 fn slack(size: f64) -> f64 {
     1.0 + size * 2f64.powi(-99)
 }
 
-/// The walls of a cell.
+/// The positions of a cell's six walls: for each axis the low wall, then the high one.
 #[derive(Clone, Copy, Debug)]
 pub struct Walls {
-    /// In half steps: below and above on each axis.
+    /// The coordinates of the walls in half lattice steps.
     doubled: [i64; 6],
-    /// The same in units.
+    /// The coordinates of the walls in units of 2^-`PLACES` steps.
     at: [i128; 6],
 }
 
@@ -174,7 +179,7 @@ impl Walls {
         }
     }
 
-    /// Return the distance of a lattice point beyond a wall, in half steps.
+    /// Return how far a lattice point lies outside a wall, in half steps; negative for points inside.
     pub fn beyond(&self, wall: usize, p: &Lattice) -> i64 {
         let over = 2 * p[wall / 2] - self.doubled[wall];
         if wall.is_multiple_of(2) {
@@ -184,7 +189,7 @@ impl Walls {
         }
     }
 
-    /// Return the distance of a point beyond a wall.
+    /// Return how far a point lies outside a wall, in units of 2^-`PLACES` steps; negative for points inside.
     fn excess(&self, wall: usize, p: &Fixed) -> i128 {
         let over = p[wall / 2] - self.at[wall];
         if wall.is_multiple_of(2) {
@@ -194,13 +199,13 @@ impl Walls {
         }
     }
 
-    /// Return whether all points lie inside.
+    /// Return whether all points lie inside all walls, or on them.
     pub fn hold<'a>(&self, mut points: impl Iterator<Item = &'a Fixed>) -> bool {
         points.all(|p| (0..6).all(|wall| self.excess(wall, p) <= 0))
     }
 
-    /// Return whether a point surely lies inside, given coordinates that are off by some units in the last
-    /// place.
+    /// Return whether a point certainly lies inside all walls; its doubles may be off by a few units in the
+    /// last place.
     pub fn surely_hold(&self, near: &[f64; 3]) -> bool {
         (0..3).all(|i| {
             let [low, high] = [2 * i, 2 * i + 1].map(|wall| as_double(self.doubled[wall]) / 2.0);
@@ -209,7 +214,7 @@ impl Walls {
         })
     }
 
-    /// Clips a polygon to the inside; returns how many walls cut it.
+    /// Clips a polygon to the inside of the cell; returns the number of walls that cut it.
     pub fn clip(&self, ring: &mut Ring) -> u32 {
         let mut cuts = 0;
         for wall in 0..6 {
@@ -238,9 +243,9 @@ impl Walls {
     }
 }
 
-/// Return the point in which an edge with ends on both sides meets a wall.
+/// Return the point in which an edge, with one end on each side of a wall across `axis`, meets the wall.
 ///
-/// The order of the ends is fixed, so that neighbours on the two sides of an edge agree.
+/// The result does not depend on the direction of the edge, so that the two polygons at an edge agree.
 fn crossing(p: &Fixed, q: &Fixed, axis: usize, wall: i128) -> Fixed {
     let (p, q) = if p[axis] < q[axis] { (p, q) } else { (q, p) };
     let run = Int::<2>::from_i128(q[axis] - p[axis]);
@@ -265,17 +270,17 @@ pub struct Triangle<'a> {
     normal: [i128; 3],
 }
 
-/// A corner of a clipped triangle, and the carrier of the edge that leaves it: below 3 the triangle's edge
-/// by its first corner, from 3 on a wall.
+/// A corner of a clipped triangle, and what carries the edge that leaves it: a number below 3 is an edge of
+/// the triangle, by its first corner; 3 + k is wall k.
 type Cut = (Fixed, usize);
 
 impl<'a> Triangle<'a> {
-    /// A triangle with its normal, which need not be coprime.
+    /// A triangle with its normal, whose components may have a common divisor.
     pub fn new(corners: &'a [Lattice; 3], normal: [i128; 3]) -> Self {
         Self { corners, normal }
     }
 
-    /// The part inside a cell; `None` if that has no area.
+    /// The part of the triangle inside a cell, as corners; `None` if it has no area.
     pub fn clipped(&self, walls: &Walls) -> Option<Ring> {
         let mut ring: SmallVec<[Cut; 12]> =
             (0..3).map(|i| (of_lattice(&self.corners[i]), i)).collect();
@@ -309,7 +314,8 @@ impl<'a> Triangle<'a> {
         }
     }
 
-    /// Return the point in which an edge meets a wall, between its ends.
+    /// Return the point in which the edge between two corners of a clipped triangle meets a wall; the ends
+    /// lie on different sides.
     fn crossing(&self, from: &Cut, to: &Fixed, walls: &Walls, wall: usize) -> Fixed {
         let axis = wall / 2;
         let mut at = from.0;
@@ -326,7 +332,8 @@ impl<'a> Triangle<'a> {
         at
     }
 
-    /// The coordinate along `axis` of the point in which an edge of the triangle meets a wall.
+    /// The coordinate along `axis` of the point in which an edge of the triangle meets a wall, in units of
+    /// 2^-`PLACES` steps.
     fn on_edge(&self, edge: usize, axis: usize, walls: &Walls, wall: usize) -> i128 {
         let (a, b) = (&self.corners[edge], &self.corners[(edge + 1) % 3]);
         let across = wall / 2;
@@ -336,7 +343,8 @@ impl<'a> Triangle<'a> {
         (i128::from(a[axis]) << PLACES) + fraction(rise * part, run)
     }
 
-    /// The coordinate along `axis` of the point in which the plane meets walls across the others.
+    /// The coordinate along `axis` of the point in which the triangle's plane meets two walls across the
+    /// other axes; `None` if the plane is parallel to `axis` or the coordinate overflows.
     fn on_walls(&self, axis: usize, walls: &Walls, pair: [usize; 2]) -> Option<i128> {
         let a = &self.corners[0];
         let divisor = 2 * self.normal[axis];
@@ -359,21 +367,22 @@ impl<'a> Triangle<'a> {
     }
 }
 
-/// Six times the flux through the triangle of three points.
+/// Six times the flux of (0, 0, z) through the triangle with these corners, in units of 2^-[`FLUX_PLACES`]
+/// cubic steps.
 pub fn through(a: &Fixed, b: &Fixed, c: &Fixed) -> Int<6> {
     let product = |x: i128, y: i128| -> Int<4> { Int::<2>::from_i128(x).mul_i128(y) };
     let area = product(b[0] - a[0], c[1] - a[1]) - product(c[0] - a[0], b[1] - a[1]);
     over_limb(&area.mul_i128(a[2] + b[2] + c[2]))
 }
 
-/// A number divided by 2^64, rounded down.
+/// The integer divided by 2^64 and rounded down.
 pub fn over_limb(number: &Int<6>) -> Int<6> {
     let mut limbs = [if number.is_negative() { u64::MAX } else { 0 }; 6];
     limbs[..5].copy_from_slice(&number.limbs()[1..]);
     Int::from_limbs(limbs)
 }
 
-/// Six times the flux through a polygon.
+/// Six times the flux of (0, 0, z) through a polygon, in units of 2^-[`FLUX_PLACES`] cubic steps.
 pub fn through_ring(ring: &Ring) -> Int<6> {
     let mut sum = Int::ZERO;
     for i in 2..ring.len() {
@@ -382,7 +391,7 @@ pub fn through_ring(ring: &Ring) -> Int<6> {
     sum
 }
 
-/// Six times the flux through a lattice triangle, in cubic steps.
+/// Six times the flux of (0, 0, z) through a lattice triangle, in cubic lattice steps; exact.
 ///
 /// # Example
 /// ```
@@ -402,14 +411,15 @@ pub fn sixfold_flux(corners: &[Lattice; 3]) -> Int<4> {
     Int::<2>::from_i128(minor(corners, 0, 1)).mul_i64(height)
 }
 
-/// A component of the normal of a triangle, from the projection along the remaining axis.
+/// The component of a triangle's normal along the axis after `u` and `v`, in lattice steps: twice the area of
+/// its projection.
 pub fn minor(corners: &[Lattice; 3], u: usize, v: usize) -> i128 {
     let [a, b, c] = corners;
     let d = |p: &Lattice, i: usize| i128::from(p[i] - a[i]);
     d(b, u) * d(c, v) - d(c, u) * d(b, v)
 }
 
-/// A number of cubic steps in the units of a [`Flux`].
+/// A whole number of cubic lattice steps in the units of a [`Flux`], 2^-[`FLUX_PLACES`] cubic steps.
 pub fn of_cubic_steps(whole: &Int<4>) -> Int<6> {
     let high: Int<4> = whole.mul_i64(1 << (FLUX_PLACES - 128));
     let mut limbs = [0; 6];
@@ -417,7 +427,8 @@ pub fn of_cubic_steps(whole: &Int<4>) -> Int<6> {
     Int::from_limbs(limbs)
 }
 
-/// The largest coordinate of points, and their extent, in units.
+/// How far points lie from the origin, and how wide the box around them is, along the worst axis; in units of
+/// 2^-`PLACES` steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Reach {
     size: f64,
@@ -425,7 +436,7 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// The reach of these points.
+    /// The reach of points in fixed-point binary.
     pub fn of(points: &[Fixed]) -> Self {
         let mut low = [i128::MAX; 3];
         let mut high = [i128::MIN; 3];
@@ -456,12 +467,12 @@ impl Reach {
         }
     }
 
-    /// A bound on the error of the flux through a polygon of such points whose corners were rounded and cut
-    /// `rounds` times in all; `slope` bounds |z| / |(x, y)| of its plane's normal.
+    /// A bound on the error of six times the flux through a polygon of such points whose corners were rounded
+    /// and cut `rounds` times in all; `slope` bounds |z| / |(x, y)| of its plane's normal.
     ///
-    /// With corners off by s, sizes Z and extents L, each of n fan triangles errs by at most s (24 Z L + 6
-    /// L²). Where a wall z = c cuts the polygon, the edge is off by s (1 + slope), and the strip beside it
-    /// counts with 6 Z; the field has no flux through walls across x or y.
+    /// With corners off by s, coordinates up to Z and extents up to L, each of n fan triangles errs by at
+    /// most s (24 Z L + 6 L²). Where a wall z = c cuts the polygon, the edge is off by s (1 + slope), and the
+    /// strip beside it counts with 6 Z; the field has no flux through walls across x or y.
     pub fn error(&self, corners: usize, rounds: u32, slope: f64) -> f64 {
         let s = slack(self.size);
         let product = (self.extent + 8.0 * s) * (self.size + self.extent) * (1.0 + slope);
@@ -487,7 +498,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
 
-        /// Few coordinates, so that edges meet where walls do.
+        /// Coordinates are few, so that triangle edges often meet the edges between walls.
         #[test]
         fn triangles_clipped_from_their_corners_are_those_clipped_wall_by_wall(
             corners in [point(9), point(9), point(9)],

@@ -1,4 +1,4 @@
-//! The flux of (0, 0, z), from which volumes are summed.
+//! The flux of the vector field (0, 0, z) through faces, from which volumes are summed.
 
 pub mod fixed;
 pub mod trim;

@@ -1,8 +1,8 @@
-//! The flux of (0, 0, z) through a triangle trimmed by the walls of a cell across one axis.
+//! The flux of (0, 0, z) through the part of a triangle between the walls of a cell across one axis.
 //!
-//! Most triangles at the border of a cell are cut by one of its walls, or by two opposite ones. A wall cuts
-//! off the corner that is alone on its side, or all but that corner: the corner's share follows from where
-//! the wall divides two edges, without new corners.
+//! Usually a triangle at the border of a cell is cut by one wall, or by two opposite ones. A wall separates
+//! one corner from the two others: the flux through this corner's part follows from where the wall divides
+//! two edges, without computing new corners.
 
 use super::fixed::{of_cubic_steps, over_limb, sixfold_flux, Flux, Walls, PLACES};
 use crate::arith::convert::as_double;
@@ -11,20 +11,21 @@ use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Orientation;
 
-/// The part of a triangle that the walls of a cell leave.
+/// The part of a triangle inside the walls of a cell.
 #[derive(Clone, Copy, Debug)]
 pub enum Rest {
-    /// All of it.
+    /// The whole triangle.
     All,
-    /// Some of it, with six times the flux through that part.
+    /// Part of the triangle, with six times the flux through that part.
     Some(Flux),
-    /// Nothing.
+    /// No part of the triangle: all corners lie outside one wall.
     Nothing,
-    /// Walls across several axes cut it.
+    /// Undecided: walls across several axes cut the triangle.
     Open,
 }
 
-/// Trims a lattice triangle by the walls of a cell; `area` is its normal's z.
+/// Trims a lattice triangle by the walls of a cell; `area` is the z component of its normal, in lattice
+/// steps.
 pub fn trimmed(corners: &[Lattice; 3], area: i128, walls: &Walls) -> Rest {
     let mut cuts = [None; 6];
     for (wall, cut) in cuts.iter_mut().enumerate() {
@@ -43,7 +44,8 @@ pub fn trimmed(corners: &[Lattice; 3], area: i128, walls: &Walls) -> Rest {
     }
 }
 
-/// The flux through a triangle minus the parts beyond walls that do not meet.
+/// Six times the flux through a triangle minus its parts outside walls that do not meet; each of `cuts` has
+/// the corners' distances outside a wall.
 fn less<'a>(corners: &[Lattice; 3], area: i128, cuts: impl Iterator<Item = &'a [i64; 3]>) -> Flux {
     let all = of_cubic_steps(&sixfold_flux(corners));
     let mut rest = Flux {
@@ -62,7 +64,7 @@ fn less<'a>(corners: &[Lattice; 3], area: i128, cuts: impl Iterator<Item = &'a [
     rest
 }
 
-/// The corner that lies alone on its side of a wall.
+/// The index of the corner that lies alone on its side of a wall.
 fn lone_corner(beyond: &[i64; 3]) -> usize {
     match beyond.map(|b| b > 0) {
         [a, b, c] if b == c && a != b => 0,
@@ -71,13 +73,14 @@ fn lone_corner(beyond: &[i64; 3]) -> usize {
     }
 }
 
-/// Binary places of a [`share`].
+/// The number of binary fraction digits of a [`share`].
 const SHARE_PLACES: u32 = 104;
 
-/// Six times the flux through the corner of a triangle that a wall cuts off.
+/// Six times the flux through the part of a triangle between its corner `lone` and a wall that separates this
+/// corner from the others.
 ///
-/// With the corner a and the shares s and t of the edges to b and c, it is the area of the triangle times s
-/// t (3 a + s (b − a) + t (c − a)), where a, b, c are heights.
+/// With the corner a and the shares s and t of the edges to b and c, it is the triangle's `area` times s t (3
+/// a + s (b − a) + t (c − a)), where a, b, c are heights z.
 ///
 /// # Error
 /// Let u be 2^-104, Z the largest |z|. Shares are off by u, their product by 2u + 2^-144, the sum
@@ -101,7 +104,8 @@ fn at_corner(corners: &[Lattice; 3], area: i128, beyond: &[i64; 3], lone: usize)
     }
 }
 
-/// Return the part of an edge before a wall, from the distances of both ends to it; rounded down.
+/// Return the fraction of an edge before a wall, from the distances of both ends to the wall, in units of
+/// 2^-[`SHARE_PLACES`]; rounded down.
 fn share(before: u64, behind: u64) -> Int<2> {
     let length = u128::from(before + behind);
     let dividend = u128::from(before) << (SHARE_PLACES / 2);
@@ -110,7 +114,7 @@ fn share(before: u64, behind: u64) -> Int<2> {
     Int::from_i128((high << (SHARE_PLACES / 2) | low).cast_signed())
 }
 
-/// A sum of heights at shares of edges, in units of 2^-`PLACES` steps; rounded down.
+/// The height `first` plus the given shares of rises, in units of 2^-`PLACES` steps; rounded down.
 fn height(first: i64, rises: [(Int<2>, i64); 2]) -> i128 {
     let mut sum: Int<3> = Int::<2>::from_i128(1 << SHARE_PLACES).mul_i64(first);
     for (share, rise) in rises {
@@ -138,7 +142,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
 
-        /// Few coordinates, so that edges run along walls.
+        /// Coordinates are few, so that triangle edges often run along walls.
         #[test]
         fn trimmed_triangles_have_the_flux_of_clipped_ones(
             corners in [point(12), point(12), point(12)],
@@ -160,7 +164,7 @@ mod tests {
                 Rest::Open => return Ok(()),
             };
             let gap = (flux.value - expected).to_f64().abs();
-            // The clipped ring's corners are rounded to 2^-72 steps.
+            // The corners of the clipped polygon are rounded to 2^-72 steps.
             let rounding = 2f64.powi(FLUX_PLACES.cast_signed() - 60) * (1.0 + as_double(shift));
             prop_assert!(gap <= flux.error + rounding, "{} apart, {}", gap, flux.error);
         }

@@ -1,4 +1,4 @@
-//! Cuts across the axes, and the border of the frame: what construction in a frame needs.
+//! Hyperplanes across the axes, and the border of the frame: what building a tree inside a frame needs.
 
 use std::sync::Arc;
 
@@ -14,21 +14,22 @@ use crate::geometry::plane::Plane;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::side::Half;
 
-/// A space with axes.
+/// A space with coordinate axes, in a frame around all lattice points.
 pub trait AxisSpace: Space {
-    /// A coordinate of one of a fragment's corners, rounded to the lattice.
+    /// A coordinate of the fragment's first corner, rounded to the lattice.
     fn corner(piece: &Self::Fragment, axis: usize) -> i64;
 
-    /// The hyperplane across an axis at a lattice coordinate, smaller coordinates on its minus side.
+    /// The hyperplane across an axis at a lattice coordinate, with smaller coordinates on its minus side.
     fn axis_cut(axis: usize, at: i64) -> Self::Hyperplane;
 
-    /// The frame around all lattice points.
+    /// The frame: a convex body around all lattice points.
     fn universe() -> Self::Frame;
 
-    /// The border of the frame in convex pieces, the frame on their minus sides.
+    /// The border of the frame as convex fragments, with the frame on their minus sides.
     fn border() -> Vec<Self::Fragment>;
 
-    /// The side on which the frame's lowest corner lies, moved inwards by (ε, ε², ε³).
+    /// The side of a hyperplane on which the frame's corner of least coordinates lies, moved inwards by (ε,
+    /// ε², ε³) for an infinitely small ε.
     fn side_of_corner(cut: &Self::Hyperplane) -> Half;
 }
 
@@ -98,7 +99,7 @@ impl AxisSpace for Dim3 {
     }
 
     fn border() -> Vec<Polygon> {
-        // Half a step inside the walls, where no mesh reaches: a wall has no span in its own cell.
+        // Half a step inside the cell's walls, outside all meshes: a wall has no span in its own cell.
         let (low, high) = (Cell::UNIVERSE.low(), Cell::UNIVERSE.high());
         let wall = |i: usize| {
             let axis = i / 2;

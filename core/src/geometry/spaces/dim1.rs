@@ -1,4 +1,4 @@
-//! The line, whose hyperplanes are oriented points; small enough for exhaustive tests.
+//! The line, whose hyperplanes are oriented points; simple enough for exhaustive tests.
 
 use super::space::Space;
 use crate::geometry::side::{Orientation, Side, Split};
@@ -14,7 +14,7 @@ pub struct Point1 {
     inside: Direction,
 }
 
-/// A direction on the line.
+/// One of the two directions along the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// Towards smaller coordinates.
@@ -29,12 +29,12 @@ impl Point1 {
         Self { at, inside }
     }
 
-    /// The coordinate.
+    /// The coordinate of the point, in lattice steps.
     pub fn at(&self) -> i64 {
         self.at
     }
 
-    /// The direction of the minus side.
+    /// The direction in which the point's minus side lies.
     pub fn inside(&self) -> Direction {
         self.inside
     }

@@ -1,7 +1,7 @@
 //! The plane: hyperplanes are lines through lattice points, fragments are segments of them.
 //!
 //! Notation: a line is a·x + b·y + c = 0, a point (x/w, y/w) with w > 0. Every line comes from lattice
-//! points, given coefficients or the frame, never from constructed points, so that widths do not grow
+//! points, given coefficients or the frame, never from constructed points, so that coefficients do not widen
 //! (`arith::bounds`).
 
 use std::cmp::Ordering;
@@ -23,7 +23,7 @@ pub struct Dim2;
 /// A lattice point of the plane.
 pub type Lattice2 = [i64; 2];
 
-/// The square |x|, |y| ≤ [`REACH`] + 1/2; its walls contain no lattice point.
+/// The frame of the plane: the square |x|, |y| ≤ [`REACH`] + 1/2, whose border contains no lattice point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Square;
 
@@ -35,14 +35,14 @@ pub struct Line2 {
     c: i128,
 }
 
-/// A line with its coefficients in doubles, for many side tests.
+/// A line together with its coefficients in doubles, for many side tests.
 #[derive(Clone, Copy, Debug)]
 pub struct RoundedLine {
     line: Line2,
     rounded: [f64; 3],
 }
 
-/// An exact point: a lattice point, or the meet of two lines.
+/// An exact point of the plane: a lattice point, or the meet of two lines.
 #[derive(Clone, Copy, Debug)]
 pub struct Point2 {
     x: [Int<LINE_MEET_LIMBS>; 2],
@@ -52,7 +52,7 @@ pub struct Point2 {
 
 /// A segment of a line, from its first to its last point along the line's direction.
 ///
-/// A line that crosses the segment's own defines each end, the segment on its minus side.
+/// Each end is the meet with another line, which has the segment on its minus side.
 #[derive(Clone, Copy, Debug)]
 pub struct Segment2 {
     line: Line2,
@@ -63,7 +63,7 @@ pub struct Segment2 {
 impl Line2 {
     /// The line through two lattice points with its minus side to the left of `from` → `to`.
     ///
-    /// Returns `None` if the points are equal or beyond [`REACH`].
+    /// Returns `None` if the points are equal or a coordinate exceeds [`REACH`].
     pub fn through(from: Lattice2, to: Lattice2) -> Option<Self> {
         if from == to || !is_near(from) || !is_near(to) {
             return None;
@@ -73,7 +73,8 @@ impl Line2 {
 
     /// The line with the outward normal (a, b) through a lattice point.
     ///
-    /// Returns `None` if the normal is zero or too wide, or the point beyond [`REACH`].
+    /// Returns `None` if the normal is zero or has [`LINE_NORMAL_BITS`] bits or more, or if a coordinate
+    /// exceeds [`REACH`].
     pub fn with_normal(normal: [i64; 2], point: Lattice2) -> Option<Self> {
         let wide = normal.iter().any(|n| is_wide(*n));
         if normal == [0; 2] || wide || !is_near(point) {
@@ -84,7 +85,7 @@ impl Line2 {
 
     /// The line with these coefficients, divided by their greatest common divisor.
     ///
-    /// Returns `None` if the normal is zero or a coefficient is too wide for a line that meets the frame.
+    /// Returns `None` if the normal is zero or a coefficient is too wide for a line through the frame.
     pub fn new(a: i64, b: i64, c: i128) -> Option<Self> {
         let narrow = !is_wide(a) && !is_wide(b) && c.unsigned_abs() < 1 << LINE_OFFSET_BITS;
         if [a, b] == [0; 2] || !narrow {
@@ -98,10 +99,9 @@ impl Line2 {
         Some(Self { a, b, c })
     }
 
-    /// The line of the points whose product with the outward normal (a, b) is this offset, if it meets the
-    /// lattice.
+    /// The line n·x = offset with the outward normal n = (a, b), if it may meet the lattice.
     ///
-    /// Returns `None` if it does not, or if the normal is zero or too wide.
+    /// Returns `None` if the offset is too large for that, or if the normal is zero or too wide.
     pub fn across_lattice(normal: [i64; 2], offset: i128) -> Option<Self> {
         let [a, b] = normal;
         if is_wide(a) || is_wide(b) {
@@ -115,14 +115,14 @@ impl Line2 {
         }
     }
 
-    /// The line across an axis at a lattice coordinate, smaller coordinates on its minus side.
+    /// The line across an axis at a lattice coordinate, with smaller coordinates on its minus side.
     pub fn axis_cut(axis: usize, at: i64) -> Self {
         let [a, b] = [[1, 0], [0, 1]][axis.min(1)];
         let c = -i128::from(at);
         Self { a, b, c }
     }
 
-    /// The line through a lattice point with normal (a, b).
+    /// The line with normal (a, b) through a lattice point, its coefficients divided by their common divisor.
     fn normalized(a: i64, b: i64, point: Lattice2) -> Self {
         let g = gcd(a.unsigned_abs(), b.unsigned_abs());
         // Both coefficients are narrow, so their divisor fits.
@@ -133,7 +133,7 @@ impl Line2 {
         Self { a, b, c }
     }
 
-    /// The same line with its sides exchanged.
+    /// The same line with its sides exchanged, and so its direction.
     #[must_use]
     pub fn flipped(&self) -> Self {
         let Self { a, b, c } = *self;
@@ -141,7 +141,7 @@ impl Line2 {
         Self { a, b, c }
     }
 
-    /// The coefficients a, b of the normal, and c.
+    /// The coefficients a and b of the normal, and c.
     pub fn coefficients(&self) -> ([i64; 2], i128) {
         ([self.a, self.b], self.c)
     }
@@ -150,7 +150,7 @@ impl Line2 {
         RoundedLine::of(*self).side_of(p)
     }
 
-    /// The side of a point, where doubles do not decide it.
+    /// The side of the line on which a point lies, in integers.
     fn exact_side_of(&self, p: &Point2) -> Side {
         if let Some([x, y]) = p.as_lattice() {
             let along = i128::from(self.a) * i128::from(x) + i128::from(self.b) * i128::from(y);
@@ -161,21 +161,21 @@ impl Line2 {
         Side::from_sign((along + last).sign())
     }
 
-    /// Order of two lines by the angle of their directions (−b, a), if it is less than a half turn:
-    /// counterclockwise is greater.
+    /// The order of two lines by the angle of their directions (−b, a), if it is less than a half turn: this
+    /// line is `Less` if the other's direction is counterclockwise from its own.
     #[inline]
     pub fn turn(&self, other: &Self) -> Ordering {
         let product = |m: i64, n: i64| i128::from(m) * i128::from(n);
         (product(self.b, other.a)).cmp(&product(self.a, other.b))
     }
 
-    /// Return whether two lines have the same direction, or opposite ones.
+    /// Return whether two lines are parallel, in the same or in opposite directions.
     pub fn is_parallel(&self, other: &Self) -> bool {
         self.turn(other) == Ordering::Equal
     }
 
-    /// The line across this one at a lattice point on it, parallel to the axis that is less parallel to
-    /// this line; its minus side is along this line's direction.
+    /// The line across this one at a lattice point on it, parallel to the axis that makes the larger angle
+    /// with this line; points farther along this line's direction are on its minus side.
     fn across(&self, point: Lattice2) -> Self {
         let direction = [-self.b, self.a];
         if direction[0].abs() >= direction[1].abs() {
@@ -193,12 +193,12 @@ impl RoundedLine {
         Self { line, rounded }
     }
 
-    /// The line itself.
+    /// The line with its exact coefficients.
     pub fn line(&self) -> &Line2 {
         &self.line
     }
 
-    /// The side on which a point lies, exactly.
+    /// The side of the line on which a point lies: by doubles if they decide it, else exactly.
     #[inline]
     pub fn side_of(&self, p: &Point2) -> Side {
         let [a, b, c] = self.rounded;
@@ -222,7 +222,7 @@ impl Point2 {
         }
     }
 
-    /// The meet of two lines; `None` if they are parallel.
+    /// The point where two lines meet; `None` if they are parallel.
     pub fn meet(p: &Line2, q: &Line2) -> Option<Self> {
         let wide = |k: i64| i128::from(k);
         let w = wide(p.a) * wide(q.b) - wide(q.a) * wide(p.b);
@@ -242,7 +242,7 @@ impl Point2 {
         Self { x, w, approx }
     }
 
-    /// The lattice coordinates, if it was made from them.
+    /// The lattice coordinates, or `None` if the denominator is not 1.
     #[inline]
     pub fn as_lattice(&self) -> Option<Lattice2> {
         if self.w != Int::ONE {
@@ -266,7 +266,7 @@ impl Point2 {
         ]
     }
 
-    /// Order of two points by one coordinate.
+    /// The exact order of two points by their coordinate along an axis.
     #[inline]
     pub fn compare(&self, other: &Self, axis: usize) -> Ordering {
         let left = self.approx[axis] * other.approx[2];
@@ -279,7 +279,7 @@ impl Point2 {
         left.cmp(&right)
     }
 
-    /// Order of two points by x, then y.
+    /// The exact order of two points by x, then y.
     #[inline]
     pub fn order(&self, other: &Self) -> Ordering {
         self.compare(other, 0).then_with(|| self.compare(other, 1))
@@ -287,9 +287,9 @@ impl Point2 {
 }
 
 impl Segment2 {
-    /// The segment between two lattice points, its minus side to the left of `from` → `to`.
+    /// The segment between two lattice points, with its minus side to the left of `from` → `to`.
     ///
-    /// Returns `None` if the points are equal or beyond [`REACH`].
+    /// Returns `None` if the points are equal or a coordinate exceeds [`REACH`].
     pub fn between(from: Lattice2, to: Lattice2) -> Option<Self> {
         let line = Line2::through(from, to)?;
         Some(Self {
@@ -299,9 +299,11 @@ impl Segment2 {
         })
     }
 
-    /// The segment of a line between two of its points, each with a line that crosses it there.
+    /// The segment of a line between two of its points, in order; `limits` are lines that cross it in these
+    /// points, with either orientation.
     pub fn limited(line: Line2, limits: [Line2; 2], points: [Point2; 2]) -> Self {
-        // The segment lies on both minus sides: it enters the first limit's and leaves the last one's.
+        // The segment lies on the minus side of both limits: its line enters that of the first and leaves
+        // that of the last.
         let turned = |limit: Line2, enters: bool| {
             if (line.turn(&limit) == Ordering::Greater) == enters {
                 limit
@@ -313,22 +315,23 @@ impl Segment2 {
         Self { line, ends, points }
     }
 
-    /// The line the segment lies in.
+    /// The line in which the segment lies, with the segment's direction.
     pub fn line(&self) -> &Line2 {
         &self.line
     }
 
-    /// The lines that define its first and its last point, the segment on their minus sides.
+    /// The lines that cross the segment's line in its first and in its last point, with the segment on their
+    /// minus sides.
     pub fn limits(&self) -> &[Line2; 2] {
         &self.ends
     }
 
-    /// The first and the last point along the line's direction.
+    /// The first and the last point of the segment along its line's direction.
     pub fn points(&self) -> &[Point2; 2] {
         &self.points
     }
 
-    /// Order of two points of the segment's line along its direction.
+    /// The order of two points of the segment's line along the line's direction.
     pub fn along(&self, p: &Point2, q: &Point2) -> Ordering {
         let direction = [-self.line.b, self.line.a];
         let axis = usize::from(direction[0].unsigned_abs() < direction[1].unsigned_abs());
@@ -338,7 +341,8 @@ impl Segment2 {
         }
     }
 
-    /// The segment extended to the end of a later one on its line.
+    /// The segment from this one's first point to the last point of another segment farther along the same
+    /// line.
     #[must_use]
     pub fn joined(&self, last: &Self) -> Self {
         let mut longer = *self;
@@ -347,7 +351,8 @@ impl Segment2 {
         longer
     }
 
-    /// The segment with one end moved to where `cut` crosses it.
+    /// The segment with its first (0) or last (1) point moved to where the line `cut` crosses it; `None` if
+    /// they are parallel.
     fn ended(&self, end: usize, cut: Line2) -> Option<Self> {
         let mut shorter = *self;
         shorter.points[end] = Point2::meet(&self.line, &cut)?;
@@ -355,7 +360,8 @@ impl Segment2 {
         Some(shorter)
     }
 
-    /// The two parts of a segment whose first point lies on side `first` of `cut`, its last beyond.
+    /// The parts of the segment on the minus and on the plus side of a line; its first point lies on the side
+    /// `first`, its last on the other. `None` if the two are parallel.
     fn parted(&self, first: Side, cut: &Line2) -> Option<Split<Self>> {
         let flipped = cut.flipped();
         let (inner, outer) = match first {
@@ -396,7 +402,7 @@ impl Space for Dim2 {
         match (first, last) {
             (Side::Minus | Side::On, Side::Minus | Side::On) => Split::Minus,
             (Side::Plus | Side::On, Side::Plus | Side::On) => Split::Plus,
-            // Points lie strictly on both sides of the line, so it is not parallel to the segment.
+            // The ends lie strictly on different sides of the line, so it is not parallel to the segment.
             _ => piece.parted(first, cut).unwrap_or(Split::Minus),
         }
     }
@@ -430,7 +436,7 @@ impl Space for Dim2 {
     }
 }
 
-/// The part of `line` between two opposite walls that it crosses.
+/// The segment of a line between two opposite walls of the frame; `None` if it is parallel to them.
 fn between_walls(line: &Line2, p: &Line2, q: &Line2) -> Option<Segment2> {
     let points = [Point2::meet(line, p)?, Point2::meet(line, q)?];
     let whole = Segment2 {
@@ -451,13 +457,13 @@ fn between_walls(line: &Line2, p: &Line2, q: &Line2) -> Option<Segment2> {
     })
 }
 
-/// The lines that bound the frame, opposite ones in pairs, the frame on their minus sides.
+/// The lines of the frame's four walls, opposite ones in pairs, with the frame on their minus sides.
 fn square_walls() -> [Line2; 4] {
     let c = -(2 * i128::from(REACH) + 1);
     [(2, 0), (-2, 0), (0, 2), (0, -2)].map(|(a, b)| Line2 { a, b, c })
 }
 
-/// The border of the frame, with the frame on the minus sides.
+/// The border of the frame as four segments, with the frame on their minus sides.
 pub fn border() -> Vec<Segment2> {
     let walls = square_walls();
     let side = |i: usize| {
@@ -467,7 +473,7 @@ pub fn border() -> Vec<Segment2> {
     (0..4).filter_map(side).collect()
 }
 
-/// Return whether a component is too wide for a line's normal.
+/// Return whether a component of a normal has [`LINE_NORMAL_BITS`] bits or more, too wide for a line.
 fn is_wide(component: i64) -> bool {
     component.unsigned_abs() >= 1 << LINE_NORMAL_BITS
 }

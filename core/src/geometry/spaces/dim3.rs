@@ -1,8 +1,8 @@
-//! Space: hyperplanes are planes with canonical integer coefficients, fragments convex polygons.
+//! Space: hyperplanes are planes with coprime integer coefficients, fragments are convex polygons.
 //!
 //! # Bits
-//! Every plane comes from lattice points or the frame, so that the side of a meet of three planes is the
-//! widest predicate (`arith::bounds`).
+//! Every plane comes from lattice points or the frame, so the widest predicate is the side of a meet of three
+//! planes (`arith::bounds`).
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! One to three dimensions behind one trait, and motions of their lattices.
+//! The line, the plane and space behind one trait, and motions of their lattices.
 
 pub mod affine;
 pub mod axis;

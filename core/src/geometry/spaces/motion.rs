@@ -1,4 +1,5 @@
-//! Maps of the lattice into itself, in one to three dimensions, and images of points and hyperplanes.
+//! Motions that map the lattice into itself, in one to three dimensions, and images of points and
+//! hyperplanes.
 
 use super::dim1::{Direction, Point1};
 use super::dim2::Line2;
@@ -7,26 +8,26 @@ use crate::geometry::plane::{Lattice, Plane};
 
 /// A map of the lattice into itself: a signed permutation of the axes, a scale and a shift.
 ///
-/// On the line and in the plane, missing axes are unchanged.
+/// On the line and in the plane, the motion leaves the missing axes unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Motion {
-    /// For each new axis, the old axis it takes and its sign.
+    /// For each new axis, the old axis whose coordinates it takes, and their sign.
     pub axes: [(usize, i64); 3],
-    /// Steps added after the permutation.
+    /// The translation that is applied last, in lattice steps.
     pub shift: Lattice,
-    /// A positive factor applied first.
+    /// A positive factor that is applied first.
     pub scale: i64,
 }
 
 impl Motion {
-    /// The identity.
+    /// The motion that changes nothing.
     pub const IDENTITY: Self = Self {
         axes: [(0, 1), (1, 1), (2, 1)],
         shift: [0; 3],
         scale: 1,
     };
 
-    /// Return for each old axis whether coordinates along it are shifted.
+    /// Return, for each old axis, whether its coordinates are shifted.
     pub fn shifted(&self) -> [bool; 3] {
         let mut shifted = [false; 3];
         for ((axis, _), shift) in self.axes.iter().zip(self.shift) {
@@ -35,10 +36,10 @@ impl Motion {
         shifted
     }
 
-    /// The motion of a space of at most three dimensions: for each new axis, the number of the old one,
-    /// counted from 1, with its sign.
+    /// The motion that takes, for each new axis, the coordinates of an old axis, counted from 1 and with its
+    /// sign, and then shifts them.
     ///
-    /// `None` if this is not a signed permutation of the axes.
+    /// `None` if `axes` is not a signed permutation of at most three axes, or `shift` has another length.
     pub fn of_axes(axes: &[i64], shift: &[i64]) -> Option<Self> {
         let mut sorted: Vec<u64> = axes.iter().map(|a| a.unsigned_abs()).collect();
         sorted.sort_unstable();
@@ -55,7 +56,7 @@ impl Motion {
         Some(motion)
     }
 
-    /// Return whether the motion reverses orientation.
+    /// Return whether the motion reverses orientation, as a mirror does.
     pub fn mirrors(&self) -> bool {
         let order = self.axes.map(|a| a.0);
         let even = matches!(order, [0, 1, 2] | [1, 2, 0] | [2, 0, 1]);
@@ -63,7 +64,7 @@ impl Motion {
         even != (signs > 0)
     }
 
-    /// The image of a lattice point; `None` if it leaves the lattice.
+    /// The image of a lattice point; `None` if a coordinate leaves the lattice.
     pub fn point(&self, p: &Lattice) -> Option<Lattice> {
         let mut image = [0; 3];
         for (i, (axis, sign)) in self.axes.into_iter().enumerate() {
@@ -79,7 +80,7 @@ impl Motion {
         turned.checked_add(self.shift[axis])
     }
 
-    /// The image of a point on the line; `None` if it leaves the lattice.
+    /// The image of an oriented point of the line; `None` if it exceeds [`REACH`].
     pub fn end(&self, p: &Point1) -> Option<Point1> {
         let (_, sign) = self.axes[0];
         let turned = match (p.inside(), sign < 0) {
@@ -91,7 +92,7 @@ impl Motion {
             .map(|at| Point1::new(at, turned))
     }
 
-    /// The image of a line in the plane; `None` if its coefficients leave their width.
+    /// The image of a line of the plane; `None` if its coefficients become too wide.
     pub fn line(&self, line: &Line2) -> Option<Line2> {
         let (old, c) = line.coefficients();
         let normal = [0, 1].map(|i| old[self.axes[i].0] * self.axes[i].1);
@@ -101,7 +102,7 @@ impl Motion {
             .and_then(|c| Line2::new(normal[0], normal[1], c))
     }
 
-    /// The image of a plane; `None` if its coefficients leave their width.
+    /// The image of a plane of space; `None` if its coefficients become too wide.
     pub fn plane(&self, plane: &Plane) -> Option<Plane> {
         plane.scaled(self.scale)?.moved(&self.axes, &self.shift)
     }

@@ -1,8 +1,8 @@
-//! The geometric predicates that a partition tree needs.
+//! The trait with the geometric predicates that a partition tree needs, in any dimension.
 //!
-//! `tree::partition` and `merge` use only [`Space`], so that a law tested exhaustively on the line holds
-//! for the plane and for space as far as the tree goes. Invariant: no fragment is empty or of lower
-//! dimension than its hyperplane.
+//! `tree::partition` and `merge` use only [`Space`], so a law of trees that is tested exhaustively on the
+//! line also holds in the plane and in space. Invariant: no fragment is empty or of lower dimension than its
+//! hyperplane.
 //!
 //! # Example
 //! ```
@@ -26,49 +26,50 @@ use crate::geometry::side::{Half, Orientation, Side, Split};
 
 /// A space of fixed dimension, as partition trees see it.
 ///
-/// Four exact predicates (`side`, `coincide`, `split`, `span`) and three ways to take a fragment apart
+/// It has four exact predicates (`side`, `coincide`, `split`, `span`) and three views of a fragment
 /// (`hyperplane`, `reversed`, `rims`). The minus side of a hyperplane is its inside.
 pub trait Space: Copy + Debug + Send + Sync + 'static {
-    /// The dimension.
+    /// The number of dimensions: 1, 2 or 3.
     const DIM: usize;
 
     /// A point that can be tested against hyperplanes.
     type Point: Clone + Debug + Send + Sync;
 
-    /// An oriented flat of codimension one.
+    /// An oriented point of the line, line of the plane or plane of space.
     type Hyperplane: Clone + Eq + Hash + Debug + Send + Sync;
 
     /// A convex piece of one hyperplane: a point (1D), a segment (2D), a convex polygon (3D).
     type Fragment: Clone + Debug + Send + Sync;
 
-    /// The convex body that contains everything; its border bounds no set.
+    /// The convex body in which trees are built; its border is not part of any set's boundary.
     type Frame: Clone + Debug + Send + Sync;
 
     /// The side of `cut` on which a point lies.
     fn side(cut: &Self::Hyperplane, point: &Self::Point) -> Side;
 
-    /// The orientation of `a` relative to `b` if they are the same set of points.
+    /// The orientation of `a` relative to `b` if they are the same set of points, else `None`.
     fn coincide(a: &Self::Hyperplane, b: &Self::Hyperplane) -> Option<Orientation>;
 
-    /// Splits `piece` by `cut`: returns the side it lies on, or its two parts if it crosses.
+    /// Splits `piece` by `cut`: returns the side on which it lies, or its two parts if `cut` crosses it.
     fn split(piece: &Self::Fragment, cut: &Self::Hyperplane) -> Split<Self::Fragment>;
 
-    /// The part of `cut` inside `frame`, if it has a relative interior in the frame's interior.
+    /// The part of `cut` inside `frame`; `None` if `cut` does not cross the frame's interior.
     fn span(cut: &Self::Hyperplane, frame: &Self::Frame) -> Option<Self::Fragment>;
 
     /// The hyperplane of a fragment, oriented as the fragment is.
     fn hyperplane(piece: &Self::Fragment) -> &Self::Hyperplane;
 
-    /// The same piece in the reversed hyperplane.
+    /// The same piece with the orientation of its hyperplane reversed.
     fn reversed(piece: &Self::Fragment) -> Self::Fragment;
 
-    /// Hyperplanes that bound a fragment within its own, the fragment on their minus sides.
+    /// Hyperplanes through the ends or edges of a fragment, crossing its own, with the fragment on their
+    /// minus sides.
     ///
     /// Needed to compare coplanar fragments, which `split` by their common hyperplane cannot tell apart.
     fn rims(piece: &Self::Fragment) -> Vec<Self::Hyperplane>;
 }
 
-/// The part of `piece` on one side of `cut`, if it has a relative interior.
+/// The part of `piece` on one side of `cut`; `None` if it has no relative interior.
 pub fn clip<S: Space>(piece: S::Fragment, cut: &S::Hyperplane, half: Half) -> Option<S::Fragment> {
     match (S::split(&piece, cut), half) {
         (Split::Minus, Half::Minus) | (Split::Plus, Half::Plus) => Some(piece),
@@ -78,7 +79,8 @@ pub fn clip<S: Space>(piece: S::Fragment, cut: &S::Hyperplane, half: Half) -> Op
     }
 }
 
-/// Splits `piece` by the outline of a coplanar `mask` into its part inside and the parts outside.
+/// Divides `piece` by the outline of a coplanar `mask`: returns the part inside, if any, and the parts
+/// outside.
 ///
 /// # Order
 /// The outside parts follow the order of the mask's rims.
@@ -95,7 +97,7 @@ pub fn overlay<S: Space>(
                 outside.push(plus);
                 rest = minus;
             }
-            // A rim's hyperplane is never the mask's own, so no coplanar piece is inside.
+            // A rim's hyperplane is never the mask's own, so a coplanar piece is not inside.
             Split::Plus | Split::Coplanar(_) => return (None, vec_with(outside, rest)),
         }
     }
@@ -107,7 +109,7 @@ fn vec_with<T>(mut list: Vec<T>, last: T) -> Vec<T> {
     list
 }
 
-/// The region of a node: a frame, and the half-spaces along the path from the root.
+/// The region of a node of a tree: a frame, cut off by the half-spaces along the path from the root.
 #[derive(Clone, Debug)]
 pub struct Region<S: Space> {
     frame: S::Frame,
@@ -115,28 +117,28 @@ pub struct Region<S: Space> {
 }
 
 impl<S: Space> Region<S> {
-    /// The whole frame: the region of a root.
+    /// The region of a root: the whole frame.
     pub fn new(frame: S::Frame) -> Self {
         let bounds = Vec::new();
         Self { frame, bounds }
     }
 
-    /// The number of half-spaces.
+    /// The number of half-spaces that bound the region.
     pub fn depth(&self) -> usize {
         self.bounds.len()
     }
 
-    /// Descends to one side of a cut.
+    /// Narrows the region to one side of a cut.
     pub fn push(&mut self, cut: S::Hyperplane, half: Half) {
         self.bounds.push((cut, half));
     }
 
-    /// Returns to the region at `depth` half-spaces.
+    /// Widens the region to its first `depth` half-spaces.
     pub fn truncate(&mut self, depth: usize) {
         self.bounds.truncate(depth);
     }
 
-    /// The sub-hyperplane of `cut`: its part inside this region, if the cut crosses the interior.
+    /// The part of `cut` inside this region; `None` if the cut does not cross the interior.
     ///
     /// # Cost
     /// One split per half-space.
@@ -144,7 +146,8 @@ impl<S: Space> Region<S> {
         self.clip(S::span(cut, &self.frame)?)
     }
 
-    /// The faces of this region, itself on their minus sides; without the frame's border.
+    /// The faces of this region that lie in its cuts, with the region on their minus sides; the frame's
+    /// border is left out.
     pub fn faces(&self) -> Vec<S::Fragment> {
         let face = |i: usize| {
             let (cut, half) = &self.bounds[i];
@@ -160,7 +163,7 @@ impl<S: Space> Region<S> {
         (0..self.bounds.len()).filter_map(face).collect()
     }
 
-    /// The part of a fragment inside this region's half-spaces.
+    /// The part of a fragment inside all of the region's half-spaces; `None` if it has no relative interior.
     pub fn clip(&self, piece: S::Fragment) -> Option<S::Fragment> {
         self.bounds
             .iter()

@@ -1,8 +1,8 @@
 //! Tests whether directed outlines in the plane wind around each point at most once.
 //!
-//! Triangles that all turn left cover a point as often as their outline winds around it: the edges of only
-//! one of them. If that is at most once, no two triangles overlap. The test costs a sweep over the outline
-//! instead of all pairs.
+//! Triangles that all turn left cover a point as often as their outline winds around it, where the outline
+//! consists of the edges that only one triangle has. If that is at most once, no two triangles overlap. The
+//! test costs a sweep over the outline instead of a test of all pairs.
 
 use std::cmp::Ordering;
 
@@ -13,24 +13,26 @@ use crate::interrupt::poll;
 /// A point of the plane in finite doubles.
 pub type Place = [f64; 2];
 
-/// An edge as a sweep to the right meets it; vertical edges run upwards.
+/// A directed edge with its ends in the order in which a sweep to the right meets them; upwards for a
+/// vertical edge.
 #[derive(Clone, Copy, Debug)]
 struct Running {
     left: Place,
     right: Place,
-    /// True if the edge runs this way: the winding number is one more above it.
+    /// True if the edge runs from `left` to `right`: the winding number is then one more above the edge than
+    /// below.
     forward: bool,
 }
 
 /// Return whether closed outlines wind around each point of the plane once or not at all.
 ///
-/// May return false negatives, where outlines touch at other points than common ends of edges.
+/// May return false negatives, where outlines touch at points other than common ends of edges.
 ///
 /// # Source
 /// Shamos, Hoey 1976, "Geometric intersection problems": a sweep that ends at the first crossing.
 ///
 /// # Cost
-/// n log n comparisons for n edges, and a move for each edge above an inserted one.
+/// n log n comparisons for n edges; inserting an edge also shifts the indices of all edges above it.
 ///
 /// # Example
 /// ```
@@ -75,18 +77,18 @@ impl Running {
         }
     }
 
-    /// The side on which a point lies: positive above.
+    /// The side of the edge on which a point lies: positive above, zero on its line.
     fn turn_to(&self, p: &Place) -> Sign {
         turn([self.left, self.right, *p])
     }
 }
 
-/// The state of the sweep.
+/// The state of a sweep to the right over edges.
 struct Sweep<'a> {
     edges: &'a [Running],
-    /// The edges still to come, by their left ends.
+    /// The edges that the sweep has not reached, by their left ends.
     starts: &'a [u32],
-    /// The edges that cross the sweep line, from bottom to top.
+    /// The edges that cross the sweep line, in order from bottom to top.
     above: Vec<u32>,
 }
 
@@ -95,7 +97,8 @@ impl Sweep<'_> {
         &self.edges[number as usize]
     }
 
-    /// Advances to the next stop; returns whether the outlines are fine there and up to the stop after it.
+    /// Advances the sweep to a stop; returns whether the outlines wind at most once there and up to the next
+    /// stop.
     fn passes(&mut self, stop: &Place) -> bool {
         poll();
         let first = self
@@ -121,7 +124,7 @@ impl Sweep<'_> {
         self.takes_turns(first, after, count) && self.stays_apart(first, after)
     }
 
-    /// Removes and returns the edges that begin at a stop.
+    /// Removes and returns the edges whose left end is the stop; all earlier ones must be removed already.
     fn beginning_at(&mut self, stop: &Place) -> &[u32] {
         let begins = |k: &u32| is_same(&self.edges[*k as usize].left, stop);
         let count = self.starts.iter().take_while(|k| begins(k)).count();
@@ -136,20 +139,22 @@ impl Sweep<'_> {
         turn.order().reverse()
     }
 
-    /// Return whether these edges enter and leave the inside in turns, and so do those above: an even
-    /// number begins and ends here.
+    /// Return whether the edges from index `first` to `after` enter and leave the inside by turns, and an
+    /// even number of edges begins and ends at the stop, so that the edges above still do, too.
     fn takes_turns(&self, first: usize, after: usize, ended: usize) -> bool {
         let in_turn = |at: usize| self.edge(self.above[at]).forward == at.is_multiple_of(2);
         (ended + after - first).is_multiple_of(2) && (first..after).all(in_turn)
     }
 
-    /// Return whether new neighbours do not meet further on, except in a common end.
+    /// Return whether the new neighbours below index `first` and at index `after` do not meet farther right,
+    /// except in a common end.
     fn stays_apart(&self, first: usize, after: usize) -> bool {
         let below = first.checked_sub(1).is_none_or(|k| self.is_below(k));
         below && (first == after || self.is_below(after - 1))
     }
 
-    /// Return whether the edge at an index stays below the next one.
+    /// Return whether the edge at an index stays below the next edge of the sweep line; true if there is no
+    /// next one.
     fn is_below(&self, at: usize) -> bool {
         let Some(pair) = self.above.get(at..at + 2) else {
             return true;
@@ -163,7 +168,7 @@ impl Sweep<'_> {
     }
 }
 
-/// The order in which a sweep to the right stops at points; upwards at equal x.
+/// The order in which a sweep to the right stops at points: by x, then by y.
 fn compare(a: &Place, b: &Place) -> Ordering {
     let order = |i: usize| a[i].partial_cmp(&b[i]).unwrap_or(Ordering::Equal);
     order(0).then_with(|| order(1))
@@ -206,7 +211,7 @@ mod tests {
         assert!(!winds_at_most_once(&[left, edge].concat()));
     }
 
-    /// The winding number around a point that lies on no edge.
+    /// The winding number of edges around a point that lies on none of them.
     fn winding(edges: &[[Place; 2]], p: Place) -> i32 {
         let crossed = |[a, b]: &[Place; 2]| {
             let up = a[1] <= p[1] && p[1] < b[1];
@@ -218,7 +223,7 @@ mod tests {
     }
 
     proptest! {
-        /// If the test succeeds, the outlines wind around each point of a fine grid at most once.
+        /// Wherever the test returns true, the outlines wind around each point of a fine grid at most once.
         #[test]
         fn yes_is_right(corners in prop::collection::vec(prop::array::uniform2(0..6i32), 3..9)) {
             let edges = outline(&corners);
@@ -232,7 +237,7 @@ mod tests {
             }
         }
 
-        /// A star around a point winds once; the order of its corners must not matter.
+        /// A star-shaped outline winds once around its centre; the order of its edges must not matter.
         #[test]
         fn stars_wind_once(radii in prop::collection::vec(1..40i32, 3..40), turned in 0..9i32) {
             let count = f64::from(u32::try_from(radii.len()).unwrap());

@@ -1,7 +1,7 @@
-//! Changes of the winding number along an axis-parallel segment between cell corners.
+//! Changes of the winding number along an axis-parallel segment between corners of cells.
 //!
-//! Corners are shifted by one vector (ε, ε², ε³), so that no sign is ever zero and each count is the
-//! crossing number of one generic path.
+//! All corners are shifted by one vector (ε, ε², ε³) for an infinitely small ε, so that no sign is ever zero
+//! and each count is the crossing number of one generic path.
 
 use crate::arith::convert::as_double;
 use crate::arith::{Int, Sign};
@@ -9,14 +9,14 @@ use crate::geometry::plane::{first_sign, normal, Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon};
 use crate::geometry::side::Half;
 
-/// A segment from one cell corner to another along an axis, in half steps.
+/// An axis-parallel segment from one corner of a cell to another, in half lattice steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Segment {
-    /// The start.
+    /// The start, in half steps.
     pub from: Lattice,
-    /// The axis.
+    /// The axis to which the segment is parallel.
     pub axis: usize,
-    /// The end's coordinate on the axis; larger than the start's.
+    /// The end's coordinate on the axis, in half steps; larger than the start's.
     pub to: i64,
 }
 
@@ -32,14 +32,16 @@ impl Segment {
     }
 }
 
-/// The change of the winding number across a plane with the inside on its minus side.
+/// The change of the winding number along a segment where it crosses a plane with the inside on its minus
+/// side: 1, 0 or −1.
 pub fn plane_change(plane: &Plane, segment: &Segment) -> i32 {
     let before = plane.side_of_corner(&segment.from);
     let after = plane.side_of_corner(&segment.end());
     change_between(before, after)
 }
 
-/// The change of the winding number from one half-space of a surface to another.
+/// The change of the winding number on the way from one half-space of a surface's plane to another: 1 when
+/// entering the minus side, −1 when leaving it, else 0.
 pub fn change_between(before: Half, after: Half) -> i32 {
     match (before, after) {
         (Half::Minus, Half::Plus) => -1,
@@ -48,7 +50,7 @@ pub fn change_between(before: Half, after: Half) -> i32 {
     }
 }
 
-/// The change of the winding number across a lattice triangle.
+/// The change of the winding number along a segment where it crosses a lattice triangle: 1, 0 or −1.
 pub fn triangle_change(corners: &[Lattice; 3], segment: &Segment) -> i32 {
     let (u, v) = segment.across();
     let mut sign = Sign::Zero;
@@ -75,7 +77,8 @@ pub fn triangle_change(corners: &[Lattice; 3], segment: &Segment) -> i32 {
     change_between(before, after)
 }
 
-/// The half-space, by the sign of n·(q + δ − a) for a corner q in half steps.
+/// The half-space of the plane n·(x − a) = 0 in which a corner q, in half steps, shifted by δ = (ε, ε², ε³),
+/// lies.
 fn side_of_corner(n: &[i128; 3], a: &Lattice, q: &Lattice) -> Half {
     let term = |i: usize| -> Int<3> { Int::<2>::from_i128(n[i]).mul_i64(q[i] - 2 * a[i]) };
     Half::from_sign(match (term(0) + term(1) + term(2)).sign() {
@@ -84,7 +87,8 @@ fn side_of_corner(n: &[i128; 3], a: &Lattice, q: &Lattice) -> Half {
     })
 }
 
-/// Sign of the turn a → b → q + δ projected along the third axis; zero only if a and b coincide there.
+/// The sign of the turn a → b → q + δ projected to the axes u and v, for a corner q in half steps and δ = (ε,
+/// ε², ε³); zero only if a and b coincide in the projection.
 fn turn_at_corner(a: &Lattice, b: &Lattice, q: &Lattice, u: usize, v: usize) -> Sign {
     let (du, dv) = (b[u] - a[u], b[v] - a[v]);
     let (eu, ev) = (q[u] - 2 * a[u], q[v] - 2 * a[v]);
@@ -101,7 +105,7 @@ fn turn_at_corner(a: &Lattice, b: &Lattice, q: &Lattice, u: usize, v: usize) -> 
     Sign::first(if u < v { [by_u, by_v] } else { [by_v, by_u] })
 }
 
-/// The change of the winding number across a convex polygon.
+/// The change of the winding number along a segment where it crosses a convex polygon: 1, 0 or −1.
 pub fn polygon_change(polygon: &Polygon, segment: &Segment) -> i32 {
     let support = polygon.support();
     let change = plane_change(support, segment);
@@ -132,7 +136,8 @@ pub fn polygon_change(polygon: &Polygon, segment: &Segment) -> i32 {
     }
 }
 
-/// Sign of `plane` where the segment's line meets `support`, times the sign of the support's slope.
+/// The sign of `plane` where the line through the segment meets `support`, times the sign of `support`'s
+/// normal along the segment's axis.
 fn side_where_met(support: &Plane, plane: &Plane, segment: &Segment) -> Sign {
     let (p, e) = (support.normal(), plane.normal());
     let a = segment.axis;

@@ -1,4 +1,4 @@
-//! Winding numbers: changes along segments and paths, and numbers of outlines.
+//! Winding numbers: how they change along segments and paths, and tests of outlines by them.
 
 pub mod covering;
 pub mod crossing;

@@ -1,8 +1,8 @@
 //! Changes of the winding number along a straight path from a cell's corner to an exact point.
 //!
-//! The path ends at a point of one surface, to find its side of others. Unlike the segments between
-//! corners, it is not made generic: where it runs through an edge, or ends on the other surface, the answer
-//! is doubtful.
+//! The path ends at a point of one surface, to find on which side of other surfaces it lies. Unlike the
+//! segments between corners, the path is not made generic: where it runs through an edge, or ends on another
+//! surface, the answer is doubtful.
 
 use super::crossing::change_between;
 use crate::arith::convert::{as_double, as_whole};
@@ -12,32 +12,32 @@ use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::side::{Half, Side};
 use crate::geometry::vertex::Vertex;
 
-/// Relative error bound of a determinant of three rows of rounded differences of integers.
+/// The relative error bound of a determinant of three rows, each of rounded differences of integers.
 ///
 /// A product of three has 3 roundings of factors and 2 of products, a sum of six at most 5: 10u relative to
 /// the sum of magnitudes, u = 2^-53; 16u leaves room for the bound's own rounding.
 const DETERMINANT_FILTER: f64 = 16.0 / 9_007_199_254_740_992.0;
 
-/// The padding of boxes, as a share of the largest coordinate.
+/// The padding of boxes around a path, as a fraction of the largest coordinate.
 ///
 /// Ends and differences are rounded by a few units in the last place of a coordinate, quotients by as much
 /// of the extent: together below 2^-48 of the largest coordinate.
 const WAY_SLACK: f64 = 1e-14;
 
-/// A straight path in doubles, to test against boxes.
+/// A straight path from one point to another in doubles, to test against boxes.
 pub struct Way {
     from: [f64; 3],
-    /// For each axis the inverse of the extent; infinite across the path.
+    /// For each axis, one over the path's extent along it; infinite if the path is perpendicular to the axis.
     inverse: [f64; 3],
-    /// The padding of boxes.
+    /// The padding of boxes, in lattice steps.
     slack: f64,
-    /// A box around the path, padded too.
+    /// The lowest corner of a padded box around the path; `high` is the highest.
     low: Lattice,
     high: Lattice,
 }
 
 impl Way {
-    /// A path between points rounded by less than a step.
+    /// The path between two points, each rounded by less than a lattice step.
     pub fn new(from: [f64; 3], to: [f64; 3]) -> Self {
         let sizes = from.iter().chain(&to).map(|x| x.abs());
         let slack = 2.0 + sizes.fold(0.0, f64::max) * WAY_SLACK;
@@ -50,7 +50,8 @@ impl Way {
         }
     }
 
-    /// Return whether the path may meet a box; may return false positives.
+    /// Return whether the path may meet a lattice box, given by its lowest and highest point; may return
+    /// false positives.
     #[inline]
     pub fn may_meet(&self, low: &Lattice, high: &Lattice) -> bool {
         let beyond = |i: usize| low[i] > self.high[i] || high[i] < self.low[i];
@@ -76,8 +77,8 @@ impl Way {
     }
 }
 
-/// The change of the winding number across a lattice triangle, from a doubled corner to a lattice
-/// point; doubtful if the path is not generic.
+/// The change of the winding number across a lattice triangle, along a path from the corner of a cell, in
+/// half steps, to a lattice point; doubtful if the path meets an edge or ends in the plane.
 pub fn triangle_on_path(corners: &[Lattice; 3], from: &Lattice, to: &Lattice) -> Filtered<i32> {
     let doubled = |p: &Lattice| each_axis(|i| 2 * p[i] - from[i]);
     let [a, b, c] = [&corners[0], &corners[1], &corners[2]].map(doubled);
@@ -103,27 +104,27 @@ pub fn triangle_on_path(corners: &[Lattice; 3], from: &Lattice, to: &Lattice) ->
     ))
 }
 
-/// Sign of the determinant of three rows, by doubles.
+/// The sign of the determinant of three rows, where doubles decide it.
 pub fn near_determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> Filtered<Sign> {
     NearCross::of(b, c).sign_with(a)
 }
 
-/// A cross product in doubles, for many determinants.
+/// A cross product in doubles, with the error bound that determinants with further rows need.
 #[derive(Clone, Copy, Debug)]
 pub struct NearCross {
     value: [f64; 3],
-    /// The magnitudes of the products it is made of.
+    /// For each component, the sum of the magnitudes of its two products.
     size: [f64; 3],
 }
 
 impl NearCross {
-    /// Its sign with any row is doubtful.
+    /// The cross product of unknown rows: a determinant with it always has a doubtful sign.
     pub const UNKNOWN: Self = Self {
         value: [f64::NAN; 3],
         size: [f64::NAN; 3],
     };
 
-    /// The cross product of two rows.
+    /// The cross product of two integer rows.
     #[inline]
     pub fn of(b: &Lattice, c: &Lattice) -> Self {
         Self::of_rounded(&rounded(b), &rounded(c))
@@ -140,13 +141,15 @@ impl NearCross {
         }
     }
 
-    /// The sign of its product with a row, where doubles decide it.
+    /// The sign of the determinant of an integer row and the two rows of the product, where doubles decide
+    /// it.
     #[inline]
     pub fn sign_with(&self, a: &Lattice) -> Filtered<Sign> {
         self.sign_with_rounded(&rounded(a))
     }
 
-    /// The sign of its product with a row of rounded differences, where doubles decide it.
+    /// The sign of the determinant of a row of rounded differences and the two rows of the product, where
+    /// doubles decide it.
     #[inline]
     pub fn sign_with_rounded(&self, p: &[f64; 3]) -> Filtered<Sign> {
         let value = p[0] * self.value[0] + p[1] * self.value[1] + p[2] * self.value[2];
@@ -162,7 +165,7 @@ fn rounded(row: &Lattice) -> [f64; 3] {
     each_axis(|i| as_double(row[i]))
 }
 
-/// Sign of the determinant of three rows.
+/// The exact sign of the determinant of three rows.
 pub fn determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> Sign {
     near_determinant(a, b, c).or_exact(|| exact_determinant(a, b, c))
 }
@@ -175,10 +178,11 @@ fn exact_determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> Sign {
     (term(0, minor(1, 2)) + term(1, minor(2, 0)) + term(2, minor(0, 1))).sign()
 }
 
-/// The change of the winding number across a convex polygon, from a doubled corner to an exact
-/// point; doubtful if the path is not generic.
+/// The change of the winding number across a convex polygon, along a path from the corner of a cell, in half
+/// steps, to an exact point; doubtful if the path meets an edge or ends in the polygon's plane.
 ///
-/// The polygon is given by its plane and the planes that bound it within that.
+/// `support` is the polygon's plane, and `rims` are planes through its edges with the polygon on their minus
+/// sides.
 pub fn polygon_on_path<'a>(
     support: &Plane,
     rims: impl FnOnce() -> &'a [Plane],
@@ -204,8 +208,8 @@ pub fn polygon_on_path<'a>(
     Filtered::Certain(change_between(before, after))
 }
 
-/// Sign of b(c) e(x) − e(c) b(x): the sign of `e` where the path from c to x meets the plane `b`, times the
-/// sign of b(c).
+/// The sign of b(c) e(x) − e(c) b(x): the sign of plane `e` where the path from c to x meets plane `b`, times
+/// the sign of b(c).
 fn cross(b: &Plane, e: &Plane, c: &Lattice, x: &Vertex) -> Sign {
     let (bc, ec) = (b.near_value_at_doubled(c), e.near_value_at_doubled(c));
     let (bx, ex) = (x.near_value(b), x.near_value(e));

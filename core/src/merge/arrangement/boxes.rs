@@ -1,7 +1,7 @@
-//! A tree of boxes around triangles, and the pairs of boxes of two such trees that may meet.
+//! A tree of boxes around triangles, and a search for the pairs of triangles of two such trees that may meet.
 //!
-//! Boxes are sorted along a space-filling curve and grouped by four, level by level. At the leaves, six
-//! diagonal slabs separate triangles that boxes do not.
+//! Boxes are sorted along a space-filling curve and grouped by four, level by level. At the leaves, slabs in
+//! six diagonal directions separate triangles whose boxes meet.
 //!
 //! # Source
 //! Morton 1966 (the curve).
@@ -13,16 +13,16 @@ use crate::geometry::doubles::{Point, Triangle};
 use crate::interrupt::{poll, spend};
 use crate::mesh::tasks::{each, Worth};
 
-/// Children of a node.
+/// The number of children of a node of the tree.
 const CHILDREN_PER_NODE: usize = 4;
 
-/// Steps of the curve along each axis, numbered by ten bits.
+/// The number of steps of the space-filling curve along each axis, numbered by ten bits.
 const CURVE_STEPS: u16 = 1 << 10;
 
-/// The number of pairs of nodes at which the search for pairs is split into tasks.
+/// The least number of pairs of nodes into which the search is split, to share it among threads.
 const MIN_TASKS: usize = 64;
 
-/// The size of a block of pairs.
+/// The least number of pairs in a full block, which is processed at once.
 const PAIRS_PER_BLOCK: usize = 1 << 9;
 
 /// A box in single precision, rounded outwards.
@@ -32,23 +32,24 @@ pub(super) struct Bounds {
     pub(super) high: [f32; 3],
 }
 
-/// Boxes in the order of the curve, and levels of boxes around every four of the level below.
+/// The boxes of triangles in the order of a space-filling curve, and levels of boxes around every four boxes
+/// of the level below.
 #[derive(Debug)]
 pub(super) struct BoxTree {
     bounds: Vec<Bounds>,
     slabs: Vec<Slabs>,
-    /// The root's level comes last.
+    /// The levels from the lowest to the root.
     levels: Vec<Vec<Bounds>>,
 }
 
-/// A node: its level and its index there.
+/// A node of a tree of boxes: its level, and its index in this level.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     level: usize,
     place: usize,
 }
 
-/// A number in single precision that is not larger: the margin exceeds the rounding.
+/// Returns a number in single precision that is at most x: the margin exceeds the rounding.
 #[allow(clippy::cast_possible_truncation, reason = "rounded down on purpose")]
 fn down(x: f64) -> f32 {
     (x - x.abs() * f64::from(f32::EPSILON)) as f32
@@ -64,7 +65,7 @@ impl Bounds {
         high: [f32::NEG_INFINITY; 3],
     };
 
-    /// The box around two points, the lower one first.
+    /// Returns the box from a low to a high corner, rounded outwards.
     pub(super) fn between(low: &Point, high: &Point) -> Self {
         Self {
             low: low.map(down),
@@ -72,7 +73,7 @@ impl Bounds {
         }
     }
 
-    /// The box around a triangle.
+    /// Returns the box around a triangle, rounded outwards.
     pub(super) fn around([a, b, c]: &Triangle) -> Self {
         let low = each_axis(|i| a[i].min(b[i]).min(c[i]));
         Self::between(&low, &each_axis(|i| a[i].max(b[i]).max(c[i])))
@@ -100,7 +101,7 @@ impl Bounds {
     }
 }
 
-/// For each index along the curve, the number of the triangle there.
+/// Returns the indices of triangles in the order of their boxes' centres along a space-filling curve.
 pub(super) fn order(triangles: &[Triangle]) -> Vec<u32> {
     let bounds: Vec<Bounds> = triangles.iter().map(Bounds::around).collect();
     let all = Bounds::around_all(&bounds);
@@ -135,7 +136,7 @@ fn low_half(key: u64) -> u32 {
     key as u32
 }
 
-/// The bits of a number of ten bits, two zeros after each.
+/// Spreads the ten low bits of x, with two zero bits after each.
 fn spread(x: u32) -> u32 {
     let x = (x | x << 16) & 0x0300_00ff;
     let x = (x | x << 8) & 0x0300_f00f;
@@ -144,7 +145,7 @@ fn spread(x: u32) -> u32 {
 }
 
 impl BoxTree {
-    /// The tree of triangles in the order of the curve.
+    /// Makes the tree of triangles, which must be sorted along a space-filling curve.
     pub(super) fn new(triangles: &[Triangle]) -> Self {
         spend(triangles.len());
         let bounds: Vec<Bounds> = triangles.iter().map(Bounds::around).collect();
@@ -166,7 +167,7 @@ impl BoxTree {
         }
     }
 
-    /// The tree with slabs, to search for pairs with trees of the same origin.
+    /// Adds the slabs of the triangles, which a search for pairs needs; both trees must use the same origin.
     pub(super) fn with_slabs(self, triangles: &[Triangle], origin: &Point) -> Self {
         let slabs = triangles.iter().map(|t| Slabs::of(t, origin)).collect();
         Self { slabs, ..self }
@@ -187,13 +188,13 @@ impl BoxTree {
         (CHILDREN_PER_NODE * node.place..end).map(move |place| Node { level, place })
     }
 
-    /// The indices of a lowest node's boxes.
+    /// Returns the indices of the triangles' boxes in a node of the lowest level.
     fn leaves(&self, node: Node) -> std::ops::Range<usize> {
         CHILDREN_PER_NODE * node.place
             ..(CHILDREN_PER_NODE * (node.place + 1)).min(self.bounds.len())
     }
 
-    /// Calls `visit` with the indices of all boxes that meet another one.
+    /// Calls `visit` with the index of each triangle's box that meets `bounds`.
     pub(super) fn each_meeting(&self, bounds: &Bounds, mut visit: impl FnMut(usize)) {
         let mut open = if self.bounds.is_empty() {
             Vec::new()
@@ -212,8 +213,9 @@ impl BoxTree {
         }
     }
 
-    /// Calls `visit` with blocks of index pairs whose boxes and slabs meet in both trees; returns its
-    /// results, in an order that depends only on the trees. The first error ends a task.
+    /// Calls `visit` with blocks of pairs of triangles, one index in each tree, whose boxes and slabs meet.
+    /// Returns the results in an order that depends only on the trees, or the first error, which ends a task
+    /// early.
     pub(super) fn each_block<T: Send, E: Send>(
         &self,
         other: &Self,
@@ -230,7 +232,8 @@ impl BoxTree {
         Ok(found?.into_iter().flatten().collect())
     }
 
-    /// Pairs of nodes with all pairs below them: about one for each task.
+    /// Returns pairs of nodes that contain all pairs of triangles to be found: at least `MIN_TASKS`, if there
+    /// are so many.
     fn starts(&self, other: &Self) -> Vec<[Node; 2]> {
         let mut open = vec![[self.root(), other.root()]];
         while open.len() < MIN_TASKS && open.iter().any(|p| p[0].level + p[1].level > 0) {
@@ -246,7 +249,7 @@ impl BoxTree {
         open
     }
 
-    /// Adds the meeting pairs one level below a pair, opening the larger node.
+    /// Replaces the larger node of a pair by its children, and adds to `found` the pairs whose boxes meet.
     fn descend(&self, other: &Self, [a, b]: [Node; 2], found: &mut Vec<[Node; 2]>) {
         let (ours, theirs) = (self.at(a), other.at(b));
         if a.level == 0 && b.level == 0 {

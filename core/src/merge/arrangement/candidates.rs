@@ -1,4 +1,4 @@
-//! The faces of two meshes that may meet: those that reach into the intersection of both boxes.
+//! The faces of a mesh that may meet faces of another mesh.
 
 use std::sync::Arc;
 
@@ -13,24 +13,25 @@ use crate::mesh::source::Source;
 use crate::mesh::tasks::each_chunk;
 use crate::mesh::triangles::TriangleMesh;
 
-/// A mesh that is an operand.
+/// A mesh as an operand, with its source and its index (slot) in the table of sources.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Operand<'a> {
     pub(super) slot: Slot,
     pub(super) source: &'a Arc<Source>,
     pub(super) mesh: &'a TriangleMesh,
-    /// The lattice box around all vertices.
+    /// The low and the high corner of the box around all vertices.
     pub(super) bounds: [Lattice; 2],
 }
 
-/// Faces of an operand in the window, with their boxes.
+/// The faces of an operand that reach into the window (the intersection of both meshes' boxes), each with its
+/// box.
 #[derive(Debug, Default)]
 pub(super) struct Within {
     pub(super) faces: Vec<FaceId>,
     pub(super) boxes: Vec<Bounds>,
 }
 
-/// The faces of an operand that may meet the other one, in spatial order.
+/// The faces of an operand that may meet faces of the other operand, sorted along a space-filling curve.
 #[derive(Debug)]
 pub(super) struct Candidates {
     pub(super) faces: Vec<FaceId>,
@@ -39,7 +40,7 @@ pub(super) struct Candidates {
 }
 
 impl<'a> Operand<'a> {
-    /// The operand of a source; `None` if it is not a mesh, or has no vertices.
+    /// Makes an operand of a source; `None` if the source is not a mesh, or has no vertices.
     pub(super) fn new(slot: Slot, source: &'a Arc<Source>) -> Option<Self> {
         let mesh = source.mesh()?;
         let (low, high) = mesh.bounds()?;
@@ -51,12 +52,12 @@ impl<'a> Operand<'a> {
         })
     }
 
-    /// The corners of a face.
+    /// Returns the corners of a face in doubles.
     pub(super) fn triangle(&self, face: FaceId) -> Triangle {
         self.mesh.corners(face).map(|corner| corner.map(as_double))
     }
 
-    /// The faces that reach into a window, ascending, with their boxes.
+    /// Returns the faces whose boxes meet the given box, ascending.
     pub(super) fn within(&self, [low, high]: &[Point; 2]) -> Within {
         let found = each_chunk(&self.mesh.faces, |first, chunk| {
             let mut some = Within::default();
@@ -74,7 +75,8 @@ impl<'a> Operand<'a> {
         found.into_iter().reduce(Within::with).unwrap_or_default()
     }
 
-    /// The faces that may meet others; slabs of both operands use one origin.
+    /// Returns the faces that reach into cells of the coarse grid `others` that the other operand's faces
+    /// reach into; the slabs of both operands must have the same `origin`.
     pub(super) fn candidates(
         &self,
         within: &Within,
@@ -89,7 +91,7 @@ impl<'a> Operand<'a> {
         made
     }
 
-    /// All faces, in spatial order.
+    /// Returns all faces of the mesh, sorted along a space-filling curve.
     pub(super) fn tree(&self) -> Candidates {
         Candidates::of(self, &self.mesh.face_ids().collect::<Vec<_>>())
     }

@@ -1,7 +1,7 @@
-//! The narrow phase: the intersection of two triangles, by signs alone.
+//! Intersects two triangles by signs of determinants alone (the narrow phase).
 //!
-//! No coordinates of common points are computed or compared. Each point is named by what contains it: a
-//! corner, an edge and a face, or two edges.
+//! No coordinates of common points are computed or compared. Each point is named by what defines it: a
+//! corner, an edge and a triangle, or two edges.
 //!
 //! # Source
 //! Guigue and Devillers 2003 (the signs and their order).
@@ -13,61 +13,64 @@ use crate::arith::Sign;
 use crate::geometry::doubles::{seen_along, side, turn, Facing, Point, Triangle};
 use crate::geometry::side::Side;
 
-/// How two triangles meet.
+/// The kind of intersection of two triangles.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Contact {
-    /// They have no point in common.
+    /// The triangles have no point in common.
     Apart,
-    /// They cross in a segment inside both. It is directed so that, seen from in front of the first
-    /// triangle, the points behind the second one are on its left.
+    /// The triangles cross in a segment whose inner points are inside both. Seen from in front of the first
+    /// triangle, the points behind the second one are on the left of the directed segment.
     Crossing([End; 2]),
-    /// They meet in any other way.
+    /// The triangles have common points in another configuration.
     Touching(Box<Touching>),
 }
 
-/// The end of a segment: an edge of one triangle goes through the other.
+/// A point in which an edge of one triangle passes through the inside of the other triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct End {
-    /// The triangle with the edge: 0 for the first.
+    /// The triangle that has the edge: 0 for the first, 1 for the second.
     pub(super) of: usize,
-    /// The corners at the ends of the edge.
+    /// The indices of the corners at the ends of the edge.
     pub(super) edge: [usize; 2],
 }
 
-/// A point that two triangles have in common.
+/// A common point of two triangles, named by the corners or edges that define it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Spot {
-    /// A corner of one of them; of coincident corners, the first triangle's.
+    /// A corner: its triangle (0 or 1) and its index there; if two corners coincide, the corner of triangle
+    /// 0.
     Corner(usize, usize),
-    /// An edge of one goes through the inside of the other.
+    /// An edge of one triangle passes through the inside of the other.
     Through(End),
-    /// An edge of the first and one of the second cross; given by the corners where these start.
+    /// An edge of the first triangle and an edge of the second cross; each is given by the index of its first
+    /// corner.
     Edges(usize, usize),
 }
 
-/// A segment that two triangles have in common.
+/// A common segment of two triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Stretch {
-    /// The ends.
+    /// The points at the ends of the segment.
     pub(super) ends: [Spot; 2],
-    /// For triangles in one plane, the edge that contains it: its triangle, and the corner where it starts.
+    /// For triangles in one plane, the edge that contains the segment: its triangle (0 or 1) and the index of
+    /// its first corner; otherwise `None`.
     pub(super) along: Option<(usize, usize)>,
 }
 
-/// The intersection of two triangles that touch, or cross in corners or edges.
+/// The intersection of two triangles that touch, or whose crossing segment ends at a corner or at two edges.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Touching {
-    /// For each triangle, the sides of the other's plane on which its corners lie.
+    /// For each triangle, the sides of the other triangle's plane on which its corners lie.
     pub(super) sides: [[Side; 3]; 2],
-    /// The points at which an edge or a corner of one meets the other.
+    /// The points at which an edge or a corner of one triangle meets the other triangle.
     pub(super) spots: SmallVec<[Spot; 6]>,
-    /// The segments: one at most, except for triangles in one plane.
+    /// The common segments: one at most, except for triangles in one plane.
     pub(super) stretches: SmallVec<[Stretch; 6]>,
     /// True if the triangles have an area in common.
     pub(super) overlap: bool,
 }
 
-/// Return how two triangles with integer corners meet; exact.
+/// Returns the intersection of two triangles with integer corners, exactly.
 pub(super) fn contact(f: &Facing, g: &Facing) -> Contact {
     let ours = sides(f, g);
     if is_apart(ours) {
@@ -107,7 +110,7 @@ impl Touching {
     }
 }
 
-/// The sides of a triangle's plane on which the corners of another one lie.
+/// Returns the sides of the plane of triangle `plane` on which the corners of triangle `of` lie.
 fn sides(of: &Facing, plane: &Facing) -> [Side; 3] {
     of.triangle().each_ref().map(|corner| plane.side(corner))
 }
@@ -116,7 +119,8 @@ fn is_apart(sides: [Side; 3]) -> bool {
     sides[0] != Side::On && sides[1] == sides[0] && sides[2] == sides[0]
 }
 
-/// The edge at which a triangle's border leaves a side; starts on that side.
+/// Returns the edge (the indices of its corners) at which a triangle's border leaves the given side of a
+/// plane; its first corner is on that side.
 fn leaving(sides: [Side; 3], side: Side) -> [usize; 2] {
     let next = |i: usize| (i + 1) % 3;
     let leaves = |i: &usize| sides[*i] == side && sides[next(*i)] != side;
@@ -124,8 +128,8 @@ fn leaving(sides: [Side; 3], side: Side) -> [usize; 2] {
     [i, next(i)]
 }
 
-/// The contact of triangles that each have corners strictly on both sides of the other's plane; `None` if
-/// two edges meet.
+/// Returns the intersection of two triangles, each of which has all corners off the other's plane and on both
+/// sides of it; `None` if two edges meet.
 fn crossing(f: &Triangle, g: &Triangle, ours: [Side; 3], theirs: [Side; 3]) -> Option<Contact> {
     let [end, start] = leaving(ours, Side::Plus);
     let (f_first, f_last) = (leaving(ours, Side::Minus), [start, end]);
@@ -150,7 +154,8 @@ fn crossing(f: &Triangle, g: &Triangle, ours: [Side; 3], theirs: [Side; 3]) -> O
     Some(Contact::Crossing(ends))
 }
 
-/// The intersection of triangles in different planes.
+/// Returns the intersection of two triangles in different planes; `both` has the sides of the other's plane
+/// on which their corners lie.
 fn across(f: &Facing, g: &Facing, both: [[Side; 3]; 2]) -> Touching {
     let mut found = Touching::new(both);
     for (of, t, other) in [(0, f, g), (1, g, f)] {
@@ -182,7 +187,7 @@ fn add(spots: &mut SmallVec<[Spot; 6]>, spot: Spot) {
     }
 }
 
-/// A corner of a triangle; the first triangle's if they coincide.
+/// Names a corner of a triangle; if it coincides with a corner of the first triangle, by that corner.
 fn corner_spot<P: PartialEq>(of: usize, corner: usize, place: &P, others: &[P; 3]) -> Spot {
     match others.iter().position(|p| p == place).filter(|_| of == 1) {
         Some(twin) => Spot::Corner(0, twin),
@@ -190,8 +195,8 @@ fn corner_spot<P: PartialEq>(of: usize, corner: usize, place: &P, others: &[P; 3
     }
 }
 
-/// The point where an edge from one side of a triangle's plane to the other meets the triangle, unless it
-/// is a corner.
+/// Returns the point in which an edge that crosses the plane of triangle `other` meets this triangle; `None`
+/// if it misses the triangle or meets it at a corner.
 fn spot_inside(of: usize, edge: [usize; 2], t: &Triangle, other: &Triangle) -> Option<Spot> {
     let [p, q] = edge.map(|i| t[i]);
     let beside = |k: usize| side(&[p, q, other[k]], &other[(k + 1) % 3]);
@@ -208,7 +213,7 @@ fn spot_inside(of: usize, edge: [usize; 2], t: &Triangle, other: &Triangle) -> O
     }
 }
 
-/// Return whether a triangle contains a point of its plane.
+/// Returns true if a triangle contains a point of its plane, inside or on the border.
 fn holds(g: &Facing, p: &Point) -> bool {
     let axis = g.main_axis();
     let corners = seen_along(g.triangle(), axis);
@@ -217,7 +222,7 @@ fn holds(g: &Facing, p: &Point) -> bool {
     (0..3).all(|i| turn([corners[i], corners[(i + 1) % 3], at]) != -turned)
 }
 
-/// The intersection of triangles in one plane.
+/// Returns the intersection of two triangles in one plane.
 fn in_one_plane(f: &Facing, g: &Facing, sides: [[Side; 3]; 2]) -> Touching {
     let axis = f.main_axis();
     let both = [f, g].map(|t| seen_along(t.triangle(), axis));
@@ -247,9 +252,9 @@ fn in_one_plane(f: &Facing, g: &Facing, sides: [[Side; 3]; 2]) -> Touching {
     found
 }
 
-/// The turns from the edges of one triangle to the corners of another in its plane.
+/// The sides of a triangle's edges on which the corners of another triangle of its plane lie.
 struct CornerSides {
-    /// By edge and corner: negative outside.
+    /// The sign for each edge and each corner: negative if the corner is outside the edge, zero on its line.
     turns: [[Sign; 3]; 3],
 }
 
@@ -269,7 +274,7 @@ impl CornerSides {
         self.turns.contains(&[Sign::Negative; 3])
     }
 
-    /// Return whether an edge separates the triangles' interiors.
+    /// Returns true if an edge separates the insides of the two triangles.
     fn is_outside(&self) -> bool {
         self.turns.iter().any(|t| !t.contains(&Sign::Positive))
     }
@@ -278,14 +283,16 @@ impl CornerSides {
         (0..3).all(|k| self.turns[k][corner] != Sign::Negative)
     }
 
-    /// Return whether the ends of an edge lie strictly on both sides of another one.
+    /// Returns true if the ends of edge number `edge` lie strictly on different sides of the line of edge
+    /// number `by`.
     fn are_divided(&self, by: usize, edge: usize) -> bool {
         let [a, b] = [edge, (edge + 1) % 3].map(|i| self.turns[by][i]);
         a != Sign::Zero && b == -a
     }
 }
 
-/// The ends of the intersection of an edge of one triangle with the other one, in one plane.
+/// Returns the ends of the intersection of an edge of triangle `of` with the other triangle, in one plane:
+/// no, one or two points.
 fn spots_along(
     of: usize,
     edge: usize,
@@ -314,7 +321,7 @@ fn spots_along(
     spots
 }
 
-/// Return whether a point of a line lies strictly between two others.
+/// Returns true if the point p lies strictly between the points a and b of the same line.
 fn is_between(a: [f64; 2], p: [f64; 2], b: [f64; 2]) -> bool {
     (0..2).any(|i| a[i] < p[i] && p[i] < b[i] || b[i] < p[i] && p[i] < a[i])
 }
@@ -327,12 +334,12 @@ mod tests {
         Facing::of(&corners.map(|c| c.map(f64::from)))
     }
 
-    /// The floor, seen from above.
+    /// A horizontal triangle whose front is above.
     const FLOOR: [[i32; 3]; 3] = [[0, 0, 0], [8, 0, 0], [0, 8, 0]];
 
     #[test]
     fn triangles_that_cross_have_a_segment_with_the_back_on_its_left() {
-        // The normal points to smaller x, so larger x is behind: on the left of the direction -y.
+        // The normal points to smaller x, so larger x is behind, on the left of the direction -y.
         let wall = [[2, 1, -4], [2, 1, 4], [2, 3, 1]];
         let Contact::Crossing([from, to]) = contact(&of(FLOOR), &of(wall)) else {
             panic!("they cross");
@@ -382,7 +389,7 @@ mod tests {
         }
     }
 
-    /// A name for a spot that is independent of the order of the triangles.
+    /// Returns a name for a common point that does not depend on the order of the triangles.
     fn name(spot: Spot, pair: [&[[i32; 3]; 3]; 2]) -> Vec<[i32; 3]> {
         let edge = |of: usize, i: usize, j: usize| {
             let mut ends = [pair[of][i], pair[of][j]];
@@ -400,7 +407,8 @@ mod tests {
         }
     }
 
-    /// A sample of all triangles in a small cube: their intersection does not depend on their order.
+    /// Intersects all pairs of a sample of the triangles in a small cube: the result does not depend on their
+    /// order.
     #[test]
     fn common_points_are_named_alike_from_both_sides() {
         let place = |k: i32| [k % 3, k / 3 % 3, k / 9 % 3];

@@ -1,4 +1,4 @@
-//! The arrangement in one face: the cells into which other faces divide it.
+//! Divides a face into cells along the segments in which other faces meet it.
 
 use std::sync::Arc;
 
@@ -20,21 +20,21 @@ use crate::merge::division::{axes, Defect, Division, Spot, Triangulation};
 use crate::merge::profile::Declined;
 use crate::mesh::handle::VertexId;
 
-/// The points and planes that the arrangements of all faces share.
+/// The exact points and planes that the divisions of all faces share.
 #[derive(Debug)]
 pub(super) struct Shared<'a> {
     pub(super) surfaces: &'a Surfaces<'a>,
     pub(super) points: &'a [Point],
-    /// The exact points.
+    /// For each point its exact position.
     pub(super) vertices: Vec<Arc<Vertex>>,
-    /// The planes of the divided faces.
+    /// The planes of the divided faces, by joint number.
     pub(super) planes: Planes,
 }
 
-/// The planes of faces.
+/// Planes of faces, by the faces' joint numbers.
 pub(super) type Planes = HashMap<u32, Arc<Plane>>;
 
-/// A face to divide, and what divides it.
+/// A face to be divided, with the segments that divide it and the coplanar faces that cover it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face<'a> {
     pub(super) number: u32,
@@ -46,7 +46,7 @@ pub(super) struct Face<'a> {
     pub(super) covers: &'a [Cover],
 }
 
-/// A face divided into cells.
+/// A face divided into triangular cells, with the winding numbers around each.
 #[derive(Debug)]
 pub(super) struct Arrangement<'a> {
     pub(super) face: Face<'a>,
@@ -54,21 +54,22 @@ pub(super) struct Arrangement<'a> {
     pub(super) cells: Vec<CellNumbers>,
 }
 
-/// The winding numbers around a cell: of the other operand, or of the mesh itself if compared with itself.
+/// The winding numbers in front of and behind a cell of a face: the other operand's, or for one mesh its own.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CellNumbers {
-    /// The number in front, minus the number in front of the first cell.
+    /// The winding number in front of the cell, minus the number in front of the face's first cell.
     pub(super) in_front: i32,
-    /// The number behind minus the number in front, without the face itself.
+    /// The winding number behind the cell, minus the number in front of it, without the contribution of the
+    /// face itself.
     pub(super) behind: i32,
-    /// How many other faces in the same plane cover the cell.
+    /// The number of other faces of the same plane that cover the cell.
     pub(super) covers: u32,
-    /// Whether one of these comes before the face.
+    /// Whether a covering face has a lower joint number than the face.
     pub(super) is_of_earlier: bool,
 }
 
 impl<'a> Arrangement<'a> {
-    /// The arrangement in a face.
+    /// Divides a face along its segments and computes the winding numbers of its cells.
     ///
     /// # Errors
     /// `Defect` if a segment leaves the face.
@@ -83,12 +84,14 @@ impl<'a> Arrangement<'a> {
         Ok(made)
     }
 
-    /// The number in front at a corner of the face, minus the number in front of the first cell.
+    /// Returns the winding number in front of the face at one of its corners, minus the number in front of
+    /// its first cell.
     pub(super) fn at_corner(&self, corner: u32) -> i32 {
         self.cells[self.division.cell_at_corner(corner as usize)].in_front
     }
 
-    /// A cell, and the number counted at a point inside it.
+    /// Returns a cell for which `count` finds a winding number at a point inside it, with this number; `None`
+    /// if there is none.
     pub(super) fn counted(
         &mut self,
         count: impl FnMut(&Probe) -> Option<i32>,
@@ -96,7 +99,7 @@ impl<'a> Arrangement<'a> {
         counted(self.division.triangulation(), self.face.plane, count)
     }
 
-    /// The cells, with the numbers in front of them.
+    /// Returns for each cell the winding number in front of it, relative to the first cell.
     fn numbered(&self) -> Vec<CellNumbers> {
         let numbers = self
             .division
@@ -108,8 +111,8 @@ impl<'a> Arrangement<'a> {
         numbers.into_iter().map(cell).collect()
     }
 
-    /// The number in front of a cell, minus the number across an edge: the left of a segment is behind the
-    /// other face.
+    /// Returns the winding number in front of a cell minus the number in front of its neighbour across an
+    /// edge: the left of a segment is behind the other face, where the number is larger.
     fn change(&self, cell: usize, edge: usize) -> i32 {
         let change = |(segment, is_along): (usize, bool)| match self.face.segments[segment].line {
             Line::Directed | Line::Touching { in_front: true, .. } => {
@@ -124,7 +127,8 @@ impl<'a> Arrangement<'a> {
         self.division.along_edge(cell, edge).map(change).sum()
     }
 
-    /// Notes which cells are covered by other faces in the same plane.
+    /// Records which cells are covered by other faces of the same plane, and how these change the number
+    /// behind.
     fn cover(&mut self, shared: &Shared) {
         let axis = self.face.plane.main_axis();
         let is_up = self.face.plane.normal()[axis] > 0;
@@ -133,7 +137,8 @@ impl<'a> Arrangement<'a> {
             let outer =
                 [0, 1, 2].map(|i| Plane::beside_edge(&corners[i], &corners[(i + 1) % 3], axis));
             let turn = LatticeEdge::new(corners[0], corners[1]).sign_beside(&corners[2], axis);
-            // The third corner is inside, and so is its side of the first edge.
+            // The third corner lies inside the other face, and shows on which side of its first edge the
+            // inside is.
             let is_same = (turn == Sign::Negative) == is_up;
             let outside = Side::from_sign(-turn);
             for cell in 0..self.cells.len() {
@@ -148,14 +153,14 @@ impl<'a> Arrangement<'a> {
         }
     }
 
-    /// The outline of some cells; no two of its edges continue each other.
+    /// Returns the outline of the cells for which `holds` is true; collinear consecutive edges are merged.
     pub(super) fn outline(&mut self, holds: impl Fn(&CellNumbers) -> bool) -> Vec<BareEdge> {
         let holds: Vec<bool> = self.cells.iter().map(holds).collect();
         self.division.outline(&holds)
     }
 }
 
-/// A face divided by its segments.
+/// Divides a face along its segments.
 fn divided(face: &Face, shared: &Shared) -> Result<Division, Defect> {
     let ring = Arc::new(Ring::from_slice(&face.corners));
     let corner = |(i, at): (u32, &Lattice)| {
@@ -174,7 +179,8 @@ fn divided(face: &Face, shared: &Shared) -> Result<Division, Defect> {
     Ok(division)
 }
 
-/// The number counted at a point inside a face; `None` if it is too thin.
+/// Returns the winding number that `count` finds at a point inside a face; `None` if the face is too thin for
+/// such a point.
 pub(super) fn counted_in_face(
     corners: &[Lattice; 3],
     plane: &Arc<Plane>,
@@ -185,8 +191,8 @@ pub(super) fn counted_in_face(
     counted(&mut face, plane, count).map(|(_, number)| number)
 }
 
-/// A cell and the number counted at a point inside it. Tries the widest cells first, and several points of
-/// each: another surface may touch the cell in one of them.
+/// Returns a cell for which `count` finds a winding number at a point inside it, with this number. Tries the
+/// widest cells first, and several points of each, because another surface may touch the cell at a point.
 fn counted(
     cells: &mut Triangulation,
     plane: &Arc<Plane>,
@@ -211,7 +217,7 @@ fn counted(
     })
 }
 
-/// The plane that cuts a face along a segment.
+/// Returns a plane that cuts a face along a segment.
 fn cut(segment: &Segment, face: &Face, shared: &Shared) -> Arc<Plane> {
     match segment.line {
         Line::Directed | Line::Touching { .. } => Arc::clone(&shared.planes[&segment.other]),
@@ -224,7 +230,8 @@ fn cut(segment: &Segment, face: &Face, shared: &Shared) -> Arc<Plane> {
     }
 }
 
-/// The ends of a segment, ordered so that its left is on the minus side of its cut.
+/// Returns the ends of a segment, ordered so that its left in the face is on the minus side of the plane
+/// `cut`.
 fn directed(
     cells: &mut Triangulation,
     [from, to]: [u32; 2],
@@ -249,7 +256,7 @@ fn directed(
     }
 }
 
-/// A face's points in its triangulation, by number.
+/// The numbers in a face's triangulation of the points in which faces meet, by the index of the point.
 struct Places(SmallVec<[(u32, u32); 16]>);
 
 impl Places {
@@ -259,7 +266,7 @@ impl Places {
     }
 }
 
-/// Inserts the ends of a face's segments.
+/// Inserts the ends of a face's segments into its triangulation, and returns their numbers there.
 fn insert(division: &mut Division, face: &Face, shared: &Shared) -> Result<Places, Defect> {
     let mut points: SmallVec<[u32; 16]> = face.segments.iter().flat_map(|s| s.ends).collect();
     points.sort_unstable();
@@ -274,7 +281,8 @@ fn insert(division: &mut Division, face: &Face, shared: &Shared) -> Result<Place
 }
 
 impl Face<'_> {
-    /// A point's spot on the face, as far as its name tells.
+    /// Returns whether a point is a corner of the face, lies on one of its sides, or is not known to lie on
+    /// its border, as its name tells.
     fn spot(&self, point: &Point) -> Spot {
         let side = |(operand, ends): &(usize, [VertexId; 2])| {
             let is_it = |i: &usize| {

@@ -1,4 +1,4 @@
-//! Which faces stay, by the winding numbers in front of and behind them.
+//! Decides which faces stay, by the winding numbers in front of and behind them.
 
 use super::faces::CellNumbers;
 use crate::geometry::side::Orientation;
@@ -6,22 +6,22 @@ use crate::merge::expression::Expression;
 use crate::merge::profile::Declined;
 use crate::merge::rule::Rule;
 
-/// The orientation in which faces stay, by the numbers of the mesh they are compared with.
+/// The rule by which faces stay, and in which orientation, given winding numbers in front of and behind them.
 #[derive(Debug)]
 pub(super) enum KeepRule {
-    /// For two operands, by the other one's numbers.
+    /// For two operands: a face of one stays by the winding numbers of the other.
     Pair(Pair),
-    /// For a mesh compared with itself, by its own numbers.
+    /// For a mesh united with itself: a face stays by the mesh's own winding numbers.
     Single(Rule),
 }
 
-/// Which faces of two operands stay.
+/// A table of which faces of two operands stay, and in which orientation.
 #[derive(Debug)]
 pub(super) struct Pair {
-    /// By operand, and by whether the front and the back of a face are inside the other one. Of faces in
-    /// one plane, only the owner's stays.
+    /// The orientation in which a face stays, by its operand, by whether its front is inside the other
+    /// operand, and by whether its back is. Of coinciding faces of both operands, only one stays.
     of: [[[Option<Orientation>; 2]; 2]; 2],
-    /// The value outside both operands.
+    /// Whether points outside both operands are inside the result.
     outside: bool,
 }
 
@@ -56,18 +56,19 @@ impl Pair {
     }
 }
 
-/// The orientation of a face, by whether its front and its back are inside.
+/// Returns the orientation in which a face bounds the result, given whether the result is inside in front of
+/// the face and behind it; `None` if both are equal.
 fn between(in_front: bool, behind: bool) -> Option<Orientation> {
     (behind != in_front).then(|| Orientation::turned_around(in_front))
 }
 
 impl KeepRule {
-    /// The rule for the value of an expression over two operands.
+    /// Makes the rule for an expression over two operands.
     pub(super) fn of(expression: &Expression) -> Self {
         Self::Pair(Pair::of(expression))
     }
 
-    /// The value far outside.
+    /// Returns whether points far outside all meshes are inside the result.
     pub(super) fn outside(&self) -> bool {
         match self {
             Self::Pair(pair) => pair.outside,
@@ -75,7 +76,7 @@ impl KeepRule {
         }
     }
 
-    /// Return whether the fate of an operand's faces depends on winding numbers.
+    /// Returns true if it depends on winding numbers whether a face of this operand stays.
     pub(super) fn is_divided(&self, operand: usize) -> bool {
         match self {
             Self::Pair(Pair { of, .. }) => {
@@ -86,10 +87,11 @@ impl KeepRule {
         }
     }
 
-    /// The orientation in which an uncovered face stays, by the number in front of it.
+    /// Returns the orientation in which a face stays that no coplanar face covers, given the winding number
+    /// in front of it; `None` if it does not stay.
     ///
     /// # Errors
-    /// `Overlap` where the other operand's winding number is neither 0 nor 1.
+    /// `Overlap` if the other operand's winding number is neither 0 nor 1.
     pub(super) fn at(
         &self,
         operand: usize,
@@ -101,7 +103,8 @@ impl KeepRule {
         }
     }
 
-    /// The orientation for a cell of a face, given the number in front of the face's first cell.
+    /// Returns the orientation in which a cell of a divided face stays, given the winding number in front of
+    /// the face's first cell; `None` if it does not stay.
     ///
     /// # Errors
     /// As for [`Self::at`], and where two faces of the other operand cover the cell.

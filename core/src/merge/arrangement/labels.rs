@@ -1,7 +1,7 @@
-//! The winding numbers of each operand around the vertices of the other.
+//! Finds the winding numbers of one operand around the vertices of the other.
 //!
-//! The number is the same at all corners of an undivided face; for divided faces the differences are known.
-//! So one count settles all connected vertices.
+//! The winding number is the same at all corners of an undivided face, and for divided faces the differences
+//! are known. So one counted number determines the numbers at all connected vertices.
 
 use std::cmp::Ordering;
 
@@ -18,25 +18,26 @@ use crate::interrupt::poll;
 use crate::merge::profile::Declined;
 use crate::mesh::handle::{FaceId, VertexId};
 
-/// The winding numbers around the vertices of one mesh, as far as known: classes of vertices with
-/// differences in between.
+/// The known winding numbers around the vertices of one mesh, as classes of vertices between which the
+/// differences of numbers are known (disjoint sets).
 #[derive(Debug)]
 pub(super) struct Labels<'a> {
     of: Operand<'a>,
-    /// The operand whose winding numbers these are.
+    /// The index of the operand whose winding numbers are stored.
     around: usize,
     windings: Windings<'a>,
     parents: Vec<u32>,
-    /// The number at each vertex, minus the number at its parent.
+    /// For each vertex, the winding number at it minus the number at its parent.
     above: Vec<i32>,
-    /// The number at the root of a class.
+    /// For each vertex that is the root of a class, the winding number at it, if known.
     known: Vec<Option<i32>>,
-    /// For each vertex, whether it lies on the other operand; empty if none does.
+    /// For each vertex, whether it lies on another face; empty if none does.
     touching: &'a [bool],
 }
 
 impl<'a> Labels<'a> {
-    /// Numbers of another operand, given with its index, around the vertices of one; none is known yet.
+    /// Starts with no known winding number: numbers of the operand `operand`, whose index is `around`, around
+    /// the vertices of the mesh `of`.
     pub(super) fn new(
         of: Operand<'a>,
         (around, operand): (usize, Operand<'a>),
@@ -54,7 +55,8 @@ impl<'a> Labels<'a> {
         }
     }
 
-    /// The root of a vertex's class, and the number at the vertex minus the root's.
+    /// Returns the root of a vertex's class, and the winding number at the vertex minus the number at the
+    /// root.
     fn root(&mut self, vertex: VertexId) -> (usize, i32) {
         let (mut at, mut sum) = (vertex.place(), 0);
         loop {
@@ -62,7 +64,7 @@ impl<'a> Labels<'a> {
             if parent == at {
                 return (at, sum);
             }
-            // Path halving: each second vertex gets its parent's parent. At a root `above` is zero.
+            // Path halving: every second vertex gets its grandparent as parent. At a root `above` is zero.
             self.above[at] += self.above[parent];
             self.parents[at] = self.parents[parent];
             sum += self.above[at];
@@ -70,16 +72,16 @@ impl<'a> Labels<'a> {
         }
     }
 
-    /// Notes the number at `a` minus the number at `b`.
+    /// Records that the winding number at vertex `a` minus the number at vertex `b` is `more`.
     ///
     /// # Errors
-    /// `Overlap` on a contradiction: the mesh that is wound around overlaps itself.
+    /// `Overlap` on a contradiction: the operand whose winding numbers are stored overlaps itself.
     pub(super) fn join(&mut self, a: VertexId, b: VertexId, more: i32) -> Result<(), Declined> {
         let (of_a, of_b) = (self.root(a), self.root(b));
         self.join_roots(of_a, of_b, more).map(|_| ())
     }
 
-    /// Notes that the number is equal at all corners of a face that do not lie on the other operand.
+    /// Records that the winding number is equal at all corners of a face that do not lie on other faces.
     ///
     /// # Errors
     /// As for [`Self::join`].
@@ -95,7 +97,7 @@ impl<'a> Labels<'a> {
         }
         let [a, b, c] = corners.map(|v| self.root(v));
         let joined = self.join_roots(a, b, 0)?;
-        // The old root of c may be the one that just got a parent.
+        // The old root of c may be the root that just got a parent.
         let c = if c.0 == a.0 || c.0 == b.0 {
             self.root(corners[2])
         } else {
@@ -104,12 +106,12 @@ impl<'a> Labels<'a> {
         self.join_roots(joined, c, 0).map(|_| ())
     }
 
-    /// Return whether a vertex lies on the other operand, where its number is undefined.
+    /// Returns true if a vertex lies on another face, where the winding number is undefined.
     pub(super) fn is_touching(&self, vertex: VertexId) -> bool {
         self.touching.get(vertex.place()).is_some_and(|t| *t)
     }
 
-    /// Notes the differences between the numbers at the corners of a divided face.
+    /// Records the differences between the winding numbers at the corners of a divided face.
     ///
     /// # Errors
     /// As for [`Self::join`].
@@ -121,10 +123,11 @@ impl<'a> Labels<'a> {
             .try_for_each(|pair| self.join(pair[1].0, pair[0].0, pair[1].1 - pair[0].1))
     }
 
-    /// The number in front of the first cell of a face.
+    /// Returns the winding number in front of the first cell of a divided face.
     ///
     /// # Errors
-    /// `Thin` if no corner has a known number, and all cells are too thin to count it.
+    /// `Thin` if all corners lie on other faces, and all cells are too thin to count the number at a point
+    /// inside.
     pub(super) fn in_front_of(&mut self, face: &mut Arrangement) -> Result<i32, Declined> {
         let mut corners = (0..).zip(face.face.vertices);
         match corners.find(|(_, v)| !self.is_touching(*v)) {
@@ -133,7 +136,7 @@ impl<'a> Labels<'a> {
         }
     }
 
-    /// The number in front of the first cell of a face, counted along a ray.
+    /// Returns the winding number in front of the first cell of a divided face, counted along a ray.
     fn counted(&mut self, face: &mut Arrangement) -> Result<i32, Declined> {
         let plane = face.face.plane;
         let count = |probe: &Probe| self.windings.in_front(plane, probe);
@@ -141,20 +144,22 @@ impl<'a> Labels<'a> {
         Ok(number - face.cells[cell].in_front)
     }
 
-    /// The number at the corners of an undivided face; `None` if all lie on other faces.
+    /// Returns the winding number at the corners of an undivided face; `None` if all corners lie on other
+    /// faces.
     pub(super) fn at_corners(&mut self, corners: [VertexId; 3]) -> Option<i32> {
         let free = corners.into_iter().find(|v| !self.is_touching(*v));
         free.map(|vertex| self.at(vertex))
     }
 
-    /// Joins two classes, given as roots and differences to them; returns the first vertex's.
+    /// Joins the classes of two vertices, each given by its root and the difference to it; `more` is the
+    /// difference of their numbers. Returns the root and the difference of the first vertex.
     fn join_roots(
         &mut self,
         (a, above_a): (usize, i32),
         (b, above_b): (usize, i32),
         more: i32,
     ) -> Result<(usize, i32), Declined> {
-        // The number at a's root is the number at b's root plus this.
+        // The number at the root of a minus the number at the root of b.
         let between = above_b + more - above_a;
         match a.cmp(&b) {
             Ordering::Equal if between != 0 => Err(Declined::Overlap(self.around)),
@@ -172,7 +177,7 @@ impl<'a> Labels<'a> {
         }
     }
 
-    /// Notes the vertices outside the box around the other operand, where the number is zero.
+    /// Records that the winding number is zero at vertices outside the other operand's box.
     pub(super) fn note_beyond(&mut self) {
         for (vertex, place) in VertexId::all().zip(&self.of.mesh.vertices) {
             poll();
@@ -183,7 +188,7 @@ impl<'a> Labels<'a> {
         }
     }
 
-    /// The number at a vertex; counts it for the first of its class.
+    /// Returns the winding number at a vertex; counts it if the number of no vertex of its class is known.
     pub(super) fn at(&mut self, vertex: VertexId) -> i32 {
         let (root, above) = self.root(vertex);
         if let Some(known) = self.known[root] {
@@ -194,10 +199,10 @@ impl<'a> Labels<'a> {
         number
     }
 
-    /// Counts the number in front of the widest face of each class.
+    /// Counts the winding number in front of the widest face of each class of vertices.
     ///
     /// # Errors
-    /// `Thin` if a face is too thin for that.
+    /// `Thin` if the widest face of a class is too thin for this.
     pub(super) fn note_widest<'b>(
         &mut self,
         arranged: &mut [Arrangement],
@@ -235,7 +240,7 @@ impl<'a> Labels<'a> {
         Ok(())
     }
 
-    /// The number in front of an undivided face, counted along a ray.
+    /// Returns the winding number in front of an undivided face, counted along a ray.
     fn in_front_of_whole(&mut self, face: FaceId) -> Result<i32, Declined> {
         let plane = self.of.source.plane(face);
         let count = |probe: &Probe| self.windings.in_front(&plane, probe);
@@ -243,14 +248,14 @@ impl<'a> Labels<'a> {
     }
 }
 
-/// The widest face of a class.
+/// The widest face of a class of vertices: an undivided face, or the index of a divided one.
 #[derive(Clone, Copy)]
 enum Widest {
     Whole(FaceId),
     Divided(usize),
 }
 
-/// Roughly the square of a triangle's area.
+/// Returns about four times the square of a triangle's area.
 fn width([a, b, c]: &Triangle) -> f64 {
     let (u, v) = (each_axis(|i| b[i] - a[i]), each_axis(|i| c[i] - a[i]));
     let minor = |i: usize, j: usize| u[i] * v[j] - u[j] * v[i];

@@ -1,9 +1,10 @@
-//! Arrangements: each face is cut once, by everything that meets it.
+//! Combines two meshes, or unites one mesh with itself, by cutting each face once along all segments in which
+//! other faces meet it.
 //!
-//! The stages, each in its own file: faces that may meet (`pair` with `sample`, `occupancy` and
-//! `candidates`; `self_union`), pairs of faces whose boxes meet (`boxes`), their intersections (`contact`,
-//! `segments`), the cells into which these divide a face (`faces`), winding numbers (`labels`), and the
-//! leaf of the faces that stay (`keep_rule`, `scene`).
+//! The stages are in files of their own. `pair` (with `sample`, `occupancy` and `candidates`) or `self_union`
+//! finds faces that may meet, and `boxes` pairs of faces whose boxes meet. `contact` and `segments` intersect
+//! these, and `faces` divides each face into cells along the segments. `labels` finds winding numbers, and
+//! `keep_rule` and `scene` make the leaf of the faces that stay.
 
 mod boxes;
 mod candidates;
@@ -27,9 +28,9 @@ mod windings;
 pub use pair::{arranged, Arranged};
 pub use self_union::{is_simple_mesh, united, United};
 
-/// The number of faces in one box that is worth waking a pool: they take some milliseconds.
+/// The number of faces from which it pays to wake the thread pool: they take several milliseconds.
 pub const MIN_FACES_FOR_POOL: usize = 4096;
 
-/// The number of pairs for each face beyond which faces are crowded: boxes do not separate them, and the
-/// descent divides space instead.
+/// The most pairs of faces with meeting boxes, on average for each face; with more, boxes do not separate the
+/// faces, and the descent divides space instead.
 const MAX_PAIRS_PER_FACE: usize = 24;

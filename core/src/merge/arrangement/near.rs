@@ -1,5 +1,5 @@
-//! The pairs of faces of one mesh that may overlap: boxes find near pairs, and a quick test clears most of
-//! them.
+//! Finds the pairs of faces of one mesh that may overlap: boxes find near pairs, and a quick test excludes
+//! nearly all of them.
 
 use rustc_hash::FxHashMap as HashMap;
 
@@ -19,38 +19,39 @@ use crate::mesh::terrains::terrains;
 use crate::mesh::topology::NONE;
 use crate::mesh::triangles::TriangleMesh;
 
-/// The number of pairs tested together, by several threads if there are any.
+/// The number of pairs of faces that are tested together, by several threads if there are any.
 const PAIRS_PER_BATCH: usize = 8 * CHUNK;
 
-/// The first batch of a search that may end early; the batch then doubles each time.
+/// The number of pairs in the first batch of a search that may end early; each batch has twice as many pairs
+/// as the last one.
 const PAIRS_IN_FIRST_BATCH: usize = 256;
 
-/// A mesh prepared for quick tests of its faces.
+/// A mesh prepared for quick tests of pairs of its faces.
 pub(super) struct View<'a> {
     mesh: &'a TriangleMesh,
-    /// For each vertex, whether surfaces may meet there in ways that pairs of faces do not show.
+    /// For each vertex, whether surfaces may cross there although no two faces cross.
     irregular: &'a [bool],
-    /// The terrain of each face.
+    /// For each face the number of its terrain: a set of faces that are known not to overlap each other.
     terrains: Vec<u32>,
-    /// The lowest corner of the box around all vertices.
+    /// The low corner of the box around all vertices.
     origin: Lattice,
-    /// The number of low bits dropped for comparing boxes.
+    /// The number of low bits dropped from coordinates of boxes.
     shift: u32,
 }
 
-/// The pairs of some faces.
+/// The result of a search for pairs of faces that may overlap.
 #[derive(Debug)]
 pub(super) enum Pairs {
-    /// The pairs that may share more than corners and edges, each once, ascending.
+    /// The pairs of faces that may share more than corners and edges, each once, ascending.
     Few(Vec<[u32; 2]>),
-    /// There are too many.
+    /// There are more than `MAX_PAIRS_PER_FACE` pairs for each face.
     Many,
     /// Two faces certainly overlap; the search stopped there.
     Overlap,
 }
 
 impl<'a> View<'a> {
-    /// `None` if it is not a mesh, or has no vertices.
+    /// Prepares a mesh; `None` if the source is not a mesh, or has no vertices.
     pub(super) fn new(source: &'a Source, irregular: &'a [bool]) -> Option<Self> {
         let mesh = source.mesh()?;
         let (origin, high) = mesh.bounds()?;
@@ -64,12 +65,13 @@ impl<'a> View<'a> {
         })
     }
 
-    /// The pairs among some faces, unless there are too many.
+    /// Returns the pairs among these faces that may overlap, unless there are too many.
     pub(super) fn pairs(&self, faces: &[FaceId]) -> Pairs {
         self.search(faces, false)
     }
 
-    /// The pairs among some faces, unless there are too many or two faces certainly overlap.
+    /// Returns the pairs among these faces that may overlap, unless there are too many; ends at the first two
+    /// faces that certainly overlap.
     pub(super) fn pairs_unless_overlapping(&self, faces: &[FaceId]) -> Pairs {
         self.search(faces, true)
     }
@@ -113,13 +115,14 @@ impl<'a> View<'a> {
 }
 
 impl View<'_> {
-    /// A face prepared for quick tests.
+    /// Prepares a face for quick tests.
     fn of(&self, face: FaceId) -> PreparedFace {
         let terrain = self.terrains[face.place()];
         PreparedFace::at(self.mesh, face, self.irregular, terrain)
     }
 
-    /// The party of a face: faces of one terrain are not compared.
+    /// Returns a number that is equal for two faces only if they belong to one terrain, so that they need not
+    /// be compared.
     fn party(&self, face: FaceId) -> usize {
         match self.terrains[face.place()] {
             NONE => self.mesh.faces.len() + face.place(),
@@ -127,7 +130,7 @@ impl View<'_> {
         }
     }
 
-    /// The box around a face, relative to the origin.
+    /// Returns the box around a face, relative to the low corner of the mesh's box.
     fn box_of(&self, face: FaceId) -> [Lattice; 2] {
         let (low, high) = self.mesh.face_box(face);
         [low, high].map(|end| each_axis(|i| end[i] - self.origin[i]))
@@ -145,21 +148,22 @@ impl View<'_> {
     }
 }
 
-/// A search for pairs.
+/// A running search for the pairs of faces that may overlap.
 struct Search<'a> {
     view: &'a View<'a>,
     until_overlap: bool,
-    /// The number of pairs to test together; small at first if the search may end early.
+    /// The number of pairs that are tested together; small at first if the search may end early.
     batch: usize,
-    /// Near pairs, not tested yet.
+    /// Pairs of near faces that are not tested yet.
     waiting: Vec<[FaceId; 2]>,
     found: Vec<[u32; 2]>,
-    /// Whether two faces certainly overlap, which ended the search.
+    /// True if the search ended because two faces certainly overlap.
     overlap: bool,
 }
 
 impl Search<'_> {
-    /// Adds a pair; `None` if the search ends.
+    /// Adds a pair of near faces, and tests the waiting pairs if they fill a batch; `None` if the search
+    /// ends.
     fn add(&mut self, pair: [FaceId; 2]) -> Option<()> {
         self.waiting.push(pair);
         if self.waiting.len() < self.batch {
@@ -169,7 +173,8 @@ impl Search<'_> {
         self.test_waiting()
     }
 
-    /// Tests the waiting pairs; `None` if the search ends.
+    /// Tests the waiting pairs of faces; `None` if the search ends because two faces overlap or pairs are too
+    /// many.
     fn test_waiting(&mut self) -> Option<()> {
         let found = each_chunk(&self.waiting, |_, pairs| unclear(self.view, pairs));
         self.waiting.clear();
@@ -185,7 +190,8 @@ impl Search<'_> {
     }
 }
 
-/// The terrain of each face; `NONE` if it has none, or if the mesh is not closed by index.
+/// Returns for each face the number of its terrain, a set of faces that are known not to overlap each other;
+/// `NONE` if the face belongs to no terrain, or if an edge of the mesh has no opposite by vertex index.
 fn all_terrains(source: &Source, mesh: &TriangleMesh) -> Vec<u32> {
     let all: Vec<u32> = (0..as_number(mesh.faces.len())).collect();
     if !source.open_vertices().is_empty() {
@@ -199,7 +205,7 @@ fn all_terrains(source: &Source, mesh: &TriangleMesh) -> Vec<u32> {
     terrains(&faces, &all)
 }
 
-/// The pairs that a quick test does not clear.
+/// Returns the pairs of faces that a quick test does not prove to share only corners and edges.
 fn unclear(view: &View, pairs: &[[FaceId; 2]]) -> Vec<[FaceId; 2]> {
     let mut prepared = PreparedFaces {
         view,
@@ -214,7 +220,7 @@ fn unclear(view: &View, pairs: &[[FaceId; 2]]) -> Vec<[FaceId; 2]> {
     pairs.iter().filter(is_unclear).copied().collect()
 }
 
-/// The prepared faces: pairs found in succession have few faces.
+/// Faces already prepared for quick tests, so that a face of several pairs is prepared once.
 struct PreparedFaces<'a> {
     view: &'a View<'a>,
     places: HashMap<FaceId, usize>,
@@ -222,7 +228,7 @@ struct PreparedFaces<'a> {
 }
 
 impl PreparedFaces<'_> {
-    /// The index of a face.
+    /// Returns the index of a face in `faces`, and prepares it first if it is new.
     fn at(&mut self, face: FaceId) -> usize {
         *self.places.entry(face).or_insert_with(|| {
             self.faces.push(self.view.of(face));
@@ -237,7 +243,7 @@ mod tests {
     use crate::merge::scenes::cuboids;
     use crate::mesh::handle::Slot;
 
-    /// The pairs among all faces of some boxes.
+    /// Returns the pairs of faces of these boxes that may overlap; `None` if there are too many.
     fn pairs_of(boxes: &[[Lattice; 2]]) -> Option<Vec<[u32; 2]>> {
         let solid = cuboids(boxes.iter().copied());
         let source = solid.sources().get(Slot(0));
@@ -272,7 +278,7 @@ mod tests {
         assert!(pairs_of(&boxes).is_none());
     }
 
-    /// Twice as many boxes in a row, each crossing the next, have twice as many pairs.
+    /// In a row in which each box crosses the next, twice as many boxes have about twice as many pairs.
     #[test]
     fn pairs_follow_what_overlaps() {
         let row = |count: i64| {

@@ -1,48 +1,50 @@
-//! A coarse grid of the cells that faces reach into: faces of two meshes meet only where both do.
+//! A coarse grid that marks the cells into which a mesh's faces reach: faces of two meshes can meet only in
+//! cells that both meshes mark.
 
 use super::boxes::Bounds;
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::{Point, Triangle};
 use crate::interrupt::poll;
 
-/// The most cells along each axis: a row of them is one word.
+/// The most cells of the grid along each axis: a row of cells is one 64-bit word.
 const MAX_CELLS_PER_AXIS: usize = 64;
 
-/// Fewer cells along each axis would hardly separate any faces.
+/// The least number of cells along each axis: fewer would hardly exclude any face.
 const MIN_CELLS_PER_AXIS: usize = 8;
 
-/// The most rows to mark for each face of both meshes: a row costs up to two hundred instructions, and a
-/// face excluded from the search for pairs saves a thousand.
+/// The most rows of cells to mark, on average for each face of both meshes: a row costs up to two hundred
+/// instructions, and a face excluded from the search for pairs saves a thousand.
 const MAX_ROWS_PER_FACE: usize = 8;
 
-/// A face that extends over more cells than this on all axes is clipped to its plane.
+/// A face whose box extends over more cells than this on all axes marks only cells that its plane may meet.
 const MAX_CELLS_UNCLIPPED: usize = 2;
 
-/// The cells of a window that faces may reach into.
+/// A grid over a window that marks the cells into which a mesh's faces may reach.
 #[derive(Debug)]
 pub(super) struct Occupancy {
-    /// Cells along each axis.
+    /// The number of cells along each axis.
     cells: usize,
     low: Point,
-    /// Cells per step of the lattice.
+    /// The number of cells per lattice step on each axis.
     scale: Point,
-    /// The bits of the cells in each row along the first axis; empty if all count as occupied.
+    /// For each row of cells along the first axis, one bit for each cell; empty if all cells count as marked.
     rows: Vec<u64>,
 }
 
-/// The first and the last cell on each axis.
+/// The indices of the first and the last cell on each axis.
 type Cells = [[usize; 2]; 3];
 
-/// A plane through a corner of a face, in coordinates relative to that corner.
+/// The plane of a face, by one corner and a normal in doubles.
 struct Plane {
     corner: Point,
     normal: Point,
-    /// A bound on the error of its value at a point of the window.
+    /// A bound on the error of normal · (point − corner) for points of the window.
     error: f64,
 }
 
 impl Occupancy {
-    /// The cells that faces with these boxes reach into, for comparing `faces` in all.
+    /// Marks the cells that faces with these boxes may reach into; `faces` is the number of faces of both
+    /// meshes, which the work must suit.
     pub(super) fn of(
         window: &[Point; 2],
         boxes: &[Bounds],
@@ -67,7 +69,7 @@ impl Occupancy {
         made
     }
 
-    /// A grid as fine as this many faces pay for: a large face may reach into all rows.
+    /// Makes an empty grid; with more faces it has more cells, because a large face may reach into all rows.
     fn new(window: &[Point; 2], faces: usize) -> Self {
         let mut cells = MAX_CELLS_PER_AXIS;
         while cells >= MIN_CELLS_PER_AXIS && 2 * cells * cells > faces {
@@ -88,7 +90,8 @@ impl Occupancy {
         }
     }
 
-    /// Marks the cells of a box, or only those that a plane may meet.
+    /// Marks the cells from the first to the last of `around`; if a plane is given, only those that it may
+    /// meet.
     fn mark(&mut self, around: &Cells, plane: Option<&Plane>) {
         poll();
         let [x, y, z] = *around;
@@ -104,8 +107,9 @@ impl Occupancy {
         }
     }
 
-    /// The cells of a row that a plane may meet: along its normal, a cell's centre is no farther from it
-    /// than from a corner.
+    /// Returns the first and the last cell of a row that a plane may meet, between `first` and `last`; `None`
+    /// if it meets none. The plane meets a cell only if the cell's centre is no farther from it than a corner
+    /// is from the centre, along the normal.
     fn met(
         &self,
         plane: &Plane,
@@ -126,7 +130,7 @@ impl Occupancy {
         let at = |value: f64| (value / n[0] - middle(0, 0)) * self.scale[0];
         let ends = [at(-value - reach), at(-value + reach)];
         let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-        // One more cell on each side: division may round across a cell's border.
+        // One cell is added on each side, because division may round across a cell's border.
         let (low, high) = (
             self.clamped(low - 1.0).max(first),
             self.clamped(high + 2.0).min(last),
@@ -134,7 +138,7 @@ impl Occupancy {
         (low <= high).then_some([low, high])
     }
 
-    /// Return whether a box may reach into an occupied cell.
+    /// Returns true if a box may reach into a marked cell.
     pub(super) fn meets(&self, bounds: &Bounds) -> bool {
         if self.rows.is_empty() {
             return true;
@@ -148,15 +152,16 @@ impl Occupancy {
         })
     }
 
-    /// The cells that a box reaches into.
+    /// Returns the first and the last cell that a box reaches into on each axis.
     ///
-    /// The same rounding maps all numbers to cells and keeps their order: boxes that meet share a cell.
+    /// All numbers are mapped to cells by the same rounding, which keeps their order; so boxes that meet
+    /// share a cell.
     fn cells(&self, bounds: &Bounds) -> Cells {
         let cell = |x: f32, i: usize| self.clamped((f64::from(x) - self.low[i]) * self.scale[i]);
         each_axis(|i| [cell(bounds.low[i], i), cell(bounds.high[i], i)])
     }
 
-    /// The cell at a coordinate, clamped to the grid.
+    /// Returns the index of the cell at a coordinate in units of cells, clamped to the grid.
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -179,13 +184,13 @@ impl Plane {
         Self {
             corner: *a,
             normal: minors.map(|(p, q)| p - q),
-            // About ten roundings, each below an epsilon of the sizes.
+            // There are about ten roundings, each below an epsilon times the sizes.
             error: 16.0 * f64::EPSILON * size * reach,
         }
     }
 }
 
-/// The bits of a range of cells.
+/// Returns a word with the bits of the cells from `first` to `last` set.
 fn mask([first, last]: [usize; 2]) -> u64 {
     (u64::MAX >> (MAX_CELLS_PER_AXIS - 1 - (last - first))) << first
 }
@@ -201,7 +206,7 @@ mod tests {
         f64::from(k.wrapping_mul(2_654_435_761) >> 20) / 4096.0
     }
 
-    /// A triangle in the window or slightly outside.
+    /// Returns a triangle in the window or slightly outside it.
     fn triangle(k: u32, size: f64) -> Triangle {
         let at = |c: u32, i: usize| next(12 * k + 3 * c + as_number(i));
         [1, 2, 3]
@@ -214,7 +219,7 @@ mod tests {
             let [large, small] = [triangle(k, 1.0), triangle(k + 5000, 0.02)];
             let bounds = Bounds::around(&large);
             let cells = Occupancy::of(&WINDOW, &[bounds], |_| large, 10_000);
-            // Corners of the triangle, and points inside it.
+            // Corners of the triangle, and points inside it, by their barycentric coordinates.
             for [s, t] in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.3, 0.3], [0.1, 0.7]] {
                 let [a, b, c] = large;
                 let p = each_axis(|i| a[i] + s * (b[i] - a[i]) + t * (c[i] - a[i]));

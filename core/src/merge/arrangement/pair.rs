@@ -1,4 +1,4 @@
-//! Two unchanged meshes: which of their faces may meet.
+//! Evaluates an expression over two meshes as they were imported, by comparing their faces.
 
 use super::candidates::{Candidates, Operand, Within};
 use super::keep_rule::KeepRule;
@@ -19,19 +19,19 @@ use crate::mesh::tasks::{both, Worth};
 use crate::tree::node::{Branch, Node};
 use crate::tree::solid::Solid;
 
-/// The result of two operands, and how many faces were compared.
+/// The result of an expression over two meshes, and how many faces were compared.
 #[derive(Debug)]
 pub struct Arranged {
-    /// The root of the result.
+    /// The root of the resulting tree.
     pub root: Branch,
-    /// The number of faces in the intersection of both boxes.
+    /// The number of faces of both meshes that reach into the intersection of their bounding boxes.
     pub compared: usize,
 }
 
-/// The value of an expression over two unchanged meshes; records its stages.
+/// Evaluates an expression over two meshes as they were imported, and records its stages in `profile`.
 ///
 /// # Errors
-/// The reason why it leaves the work to the descent.
+/// The reason why the expression must be evaluated by a descent instead.
 pub fn arranged(
     expression: &Expression,
     solids: &[Solid],
@@ -65,7 +65,7 @@ pub fn arranged(
     Ok(Arranged { root, compared })
 }
 
-/// The number of elements in a leaf.
+/// Returns the number of elements (whole faces and parts) if the root is a deferred leaf; otherwise 0.
 pub(super) fn leaf_len(root: &Result<Branch, Declined>) -> usize {
     match root.as_ref().map(|branch| &*branch.node) {
         Ok(Node::Deferred(leaf)) => leaf.len(),
@@ -73,7 +73,8 @@ pub(super) fn leaf_len(root: &Result<Branch, Declined>) -> usize {
     }
 }
 
-/// The faces in the window, and the candidates among them.
+/// For each mesh, the faces in the window (the intersection of both bounding boxes), and the candidates:
+/// faces that may meet faces of the other mesh.
 struct Near {
     within: [Within; 2],
     candidates: [Candidates; 2],
@@ -99,12 +100,13 @@ fn near(operands: &[Operand; 2], window: &[Point; 2], worth: Worth) -> Result<Ne
     Ok(Near { within, candidates })
 }
 
-/// A value for each operand, computed in parallel where that pays.
+/// Computes a value for operand 0 and one for operand 1, in parallel if `worth` says so.
 fn for_both<T: Send>(worth: Worth, value: impl Fn(usize) -> T + Sync) -> [T; 2] {
     both(worth, || value(0), || value(1)).into()
 }
 
-/// The operands, if they are two different unchanged meshes.
+/// Returns the operands if they are two different meshes as they were imported, and the expression depends on
+/// both; otherwise `None`.
 fn operands<'a>(
     expression: &Expression,
     solids: &'a [Solid],
@@ -122,7 +124,7 @@ fn operands<'a>(
     (are_in_order && expression.operands() == [0, 1]).then_some(operands)
 }
 
-/// The intersection of two boxes.
+/// Returns the intersection of two boxes as its low and its high corner; `None` if they are disjoint.
 fn window([[low, high], [others_low, others_high]]: [[Lattice; 2]; 2]) -> Option<[Point; 2]> {
     let low = each_axis(|i| low[i].max(others_low[i]));
     let high = each_axis(|i| high[i].min(others_high[i]));
@@ -140,7 +142,8 @@ mod tests {
         Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect())
     }
 
-    /// The number of whole faces and of parts in the result of an arrangement.
+    /// Returns how many whole faces and how many parts of faces the result of `arranged` lists; `None` if it
+    /// declines.
     fn counts(solids: &[Solid; 2], term: fn(Vec<u32>) -> Term) -> Option<[usize; 2]> {
         let sources = sources(solids);
         let expression = expression_of_both(term);

@@ -1,4 +1,4 @@
-//! Quick tests of pairs of faces: most share a vertex or lie beyond each other's planes.
+//! Quick tests that two faces of a mesh share no more than corners and edges.
 
 use crate::arith::convert::as_double;
 use crate::arith::{Filtered, Sign};
@@ -11,22 +11,23 @@ use crate::mesh::handle::{FaceId, VertexId};
 use crate::mesh::topology::NONE;
 use crate::mesh::triangles::TriangleMesh;
 
-/// A face prepared for quick tests of pairs.
+/// A face prepared for quick tests against other faces.
 pub(super) struct PreparedFace {
     vertices: [VertexId; 3],
     low: Lattice,
     high: Lattice,
-    /// The corners that are irregular vertices.
+    /// For each corner, whether surfaces may cross at its vertex although no two faces cross.
     irregular: [bool; 3],
-    /// The normal in doubles, relative to the first corner.
+    /// The normal of the face in doubles, from its edges at the first corner.
     normal: [f64; 3],
-    /// A bound on the rounding of the normal's components relative to the edges' lengths.
+    /// The product of the largest components of the two edges, to which the rounding errors of the normal are
+    /// proportional.
     size: f64,
-    /// True if the face has area.
+    /// True if the face has a positive area.
     has_area: bool,
     /// The corners, whose coordinates are exact in doubles.
     doubles: Triangle,
-    /// The terrain of the face, or `NONE`.
+    /// The number of the face's terrain (a set of faces known not to overlap each other), or `NONE`.
     terrain: u32,
 }
 
@@ -56,7 +57,7 @@ impl PreparedFace {
         }
     }
 
-    /// Return whether two faces certainly share only corners and edges.
+    /// Returns true if two faces certainly share only corners and edges; false proves nothing.
     pub(super) fn is_clear_of(&self, other: &Self) -> bool {
         if (0..3).any(|i| self.high[i] < other.low[i] || other.high[i] < self.low[i]) {
             return true;
@@ -79,43 +80,44 @@ impl PreparedFace {
         }
     }
 
-    /// Return whether two faces certainly cross or overlap.
+    /// Returns true if two faces certainly cross or overlap; false proves nothing.
     pub(super) fn overlaps(&self, other: &Self) -> bool {
         let meet = || meeting(&self.doubles, &other.doubles);
         let have_area = self.has_area && other.has_area;
         have_area && matches!(meet(), Meeting::Crossing | Meeting::Overlap)
     }
 
-    /// Return which corners of another face are corners of this one.
+    /// Returns for each corner of another face whether it is a corner of this face.
     #[allow(clippy::float_cmp, reason = "doubles hold the coordinates")]
     fn shared_with(&self, other: &Self) -> [bool; 3] {
         let [a, b, c] = &self.doubles;
         other.doubles.map(|p| p == *a || p == *b || p == *c)
     }
 
-    /// Return whether two faces certainly share only points. Surfaces cross along lines, so points are no
-    /// overlap.
+    /// Returns true if two faces certainly share only points. Surfaces cross along lines, so common points
+    /// are no overlap.
     fn meets_in_points(&self, other: &Self) -> bool {
         let exact = || meeting(&self.doubles, &other.doubles) == Meeting::Clear;
         self.has_area && other.has_area && exact()
     }
 
-    /// Return whether two faces with a common edge certainly share nothing else.
+    /// Returns true if two faces with a common edge certainly share nothing else.
     fn meets_in_edges(&self, other: &Self) -> bool {
         let meets = || meeting(&self.doubles, &other.doubles);
         let are_clear = || matches!(meets(), Meeting::Clear | Meeting::Edges(..));
         self.has_area && other.has_area && are_clear()
     }
 
-    /// Return whether more than two faces may meet in the common edge: surfaces can cross there although no
-    /// two faces do. An edge between other vertices at the same places has two faces of its own.
+    /// Returns true if more than two faces may meet in the common edge of two faces, so that surfaces can
+    /// cross there although no two faces do: both ends are irregular, or an end is two vertices at one point.
     fn shares_irregular_edge(&self, other: &Self) -> bool {
         let common = || (0..3).filter(|i| other.doubles.contains(&self.doubles[*i]));
         let is_twin = |i: usize| !other.vertices.contains(&self.vertices[i]);
         common().any(is_twin) || common().all(|i| self.irregular[i])
     }
 
-    /// Return whether the other face's unshared corners lie strictly on one side of this plane.
+    /// Returns true if the corners of the other face that are not marked in `shared` certainly lie strictly
+    /// on one side of this face's plane.
     fn has_beyond(&self, other: &Self, shared: [bool; 3]) -> bool {
         let corners = other.doubles.iter().zip(shared);
         let mut sides = corners.filter(|c| !c.1).map(|(p, _)| self.side(p));
@@ -125,7 +127,8 @@ impl PreparedFace {
         first.is_certain() && sides.all(|s| s == first)
     }
 
-    /// Return whether two faces with a common edge clearly lie in different planes, or side by side in one.
+    /// Returns true if two faces with a common edge certainly lie in different planes, or side by side in one
+    /// plane.
     fn folds_away(&self, other: &Self) -> bool {
         let apex = other.doubles.iter().find(|p| !self.doubles.contains(p));
         let cosine: f64 = (0..3).map(|i| self.normal[i] * other.normal[i]).sum();
@@ -134,7 +137,7 @@ impl PreparedFace {
             || (cosine > bound && self.runs_against(other))
     }
 
-    /// Return whether an edge of one face is the reverse of an edge of the other.
+    /// Returns true if an edge of one face is the reverse of an edge of the other, by coordinates.
     fn runs_against(&self, other: &Self) -> bool {
         let edge = |c: &Triangle, i: usize| (c[i], c[(i + 1) % 3]);
         (0..3).any(|i| {
@@ -143,7 +146,7 @@ impl PreparedFace {
         })
     }
 
-    /// The side of the face's plane on which a point lies, where doubles decide it.
+    /// Returns the side of the face's plane on which a point lies, or that doubles do not decide it.
     fn side(&self, p: &Point) -> Filtered<Side> {
         let w = difference(p, &self.doubles[0]);
         let value: f64 = (0..3).map(|i| self.normal[i] * w[i]).sum();
@@ -153,7 +156,7 @@ impl PreparedFace {
     }
 }
 
-/// a − b, rounded at most once: the difference may have 54 bits.
+/// Returns a − b, rounded once, because the exact difference may have 54 bits.
 fn difference(a: &Point, b: &Point) -> [f64; 3] {
     each_axis(|i| a[i] - b[i])
 }
@@ -162,7 +165,8 @@ fn difference(a: &Point, b: &Point) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    /// Faces over these corners, elongated by a shear: volumes and common planes stay.
+    /// Returns faces over these corners after a shear that makes them long and thin; it keeps volumes and
+    /// common planes.
     fn sheared(corners: &[Lattice], faces: &[[u32; 3]]) -> Vec<PreparedFace> {
         let shear = |[x, y, z]: Lattice| [x + (y << 22) + (z << 43), y + (z << 22), z];
         let mesh = TriangleMesh {
@@ -188,7 +192,7 @@ mod tests {
     #[test]
     fn slivers_that_are_folded_onto_each_other_are_not() {
         let corners = [[0, 0, 0], [1, 2, 1], [3, 1, 2], [4, 3, 3], [-2, 1, -1]];
-        // All lie in one plane, the last corner beyond the common edge.
+        // All faces lie in one plane; the last corner lies on the other side of the common edge.
         let faces = sheared(&corners, &[[0, 1, 2], [1, 0, 3], [1, 0, 4]]);
         assert!(!faces[0].is_clear_of(&faces[1]));
         assert!(faces[0].is_clear_of(&faces[2]));

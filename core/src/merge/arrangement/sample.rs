@@ -1,7 +1,7 @@
-//! A sample of faces, to detect meshes that touch or are crowded all over.
+//! Samples faces, to detect pairs of meshes that touch nearly everywhere or whose boxes separate little.
 //!
-//! Copies of a mesh, or its revisions, touch nearly everywhere, and in bundles of needles nearly all boxes
-//! meet. The arrangement would find this out only after most of its work.
+//! Copies and revisions of a mesh touch it nearly everywhere, and in bundles of needles nearly all boxes
+//! meet. Without the sample the arrangement would detect this only after most of its work.
 
 use super::candidates::{Operand, Within};
 use super::contact::{contact, Contact};
@@ -9,19 +9,20 @@ use crate::geometry::doubles::Facing;
 use crate::interrupt::spend;
 use crate::merge::profile::Declined;
 
-/// The number of faces compared with all faces of the other mesh.
+/// The number of sampled faces, each of which is compared with all faces of the other mesh.
 const FACES_SAMPLED: usize = 16;
 
-/// With fewer faces than this, all the work costs less than a sample is worth.
+/// The least number of faces in each mesh for which a sample pays.
 const SAMPLED_FROM: usize = 256;
 
-/// In a crowd a box meets this many faces of the other mesh on average; in real meshes about twenty.
+/// The most boxes of the other mesh that a sampled face's box may meet on average; in real meshes it meets
+/// about twenty.
 const CROWDED_FROM: usize = 128;
 
-/// Samples faces of the first mesh.
+/// Compares about `FACES_SAMPLED` faces of the first mesh with all faces of the second one in the window.
 ///
 /// # Errors
-/// `AllOver` if one of them touches another face, `Crowded` if boxes do not separate faces.
+/// `AllOver` if a sampled face touches a face without crossing it, `Crowded` if too many boxes meet.
 pub(super) fn sample(operands: &[Operand; 2], within: &[Within; 2]) -> Result<(), Declined> {
     let [first, second] = within;
     if first.faces.len().min(second.faces.len()) < SAMPLED_FROM {

@@ -1,4 +1,4 @@
-//! What stays of meshes, from the contacts of their faces.
+//! Builds the leaf that results from one or two meshes, from the contacts of their faces.
 
 use std::sync::Arc;
 
@@ -20,26 +20,26 @@ use crate::mesh::handle::{FaceId, VertexId};
 use crate::mesh::tasks::{each, Worth};
 use crate::tree::node::{Branch, Deferred, Group, Node, Part, PartElement};
 
-/// The number of items in a task for other threads.
+/// The number of faces or points in a task for another thread.
 const ITEMS_PER_TASK: usize = 32;
 
-/// Two meshes, or one compared with itself.
+/// Two meshes to be combined, or one to be united with itself.
 #[derive(Debug)]
 pub(super) struct Scene<'a> {
     pub(super) surfaces: Surfaces<'a>,
-    /// For each operand, the faces that may have others in front of them.
+    /// For each operand, the faces in front of which the winding number may differ from 0.
     pub(super) near: Vec<Vec<FaceId>>,
-    /// The cell of the result.
+    /// The cell of the resulting leaf.
     pub(super) cell: Cell,
     pub(super) kept: KeepRule,
     pub(super) worth: Worth,
 }
 
-/// The fate of a face.
+/// Whether a face is left out, whole or cut in the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
     Gone,
-    /// It stays unchanged; true if it touches others.
+    /// It stays whole in this orientation; true if other faces may touch it anywhere.
     Whole(Orientation, bool),
     Cut,
 }
@@ -49,7 +49,7 @@ impl Fate {
         stays.map_or(Self::Gone, |orientation| Self::Whole(orientation, touches))
     }
 
-    /// Notes that the face touches others.
+    /// Records that other faces may touch the face, if it stays whole.
     fn touch(&mut self) {
         if let Self::Whole(_, touches) = self {
             *touches = true;
@@ -57,17 +57,19 @@ impl Fate {
     }
 }
 
-/// What stays of an arranged face: all of it in one orientation, or a part in each.
+/// The parts of a divided face that bound the result: none or the whole face in one orientation, or a part in
+/// each orientation.
 enum Remainder {
     Whole(Option<Orientation>),
     Parts([Option<PartElement>; 2]),
 }
 
 impl<'a> Scene<'a> {
-    /// The leaf of everything that stays, from the contacts of faces.
+    /// Returns the branch with the leaf of all faces and parts of faces that bound the result, given the
+    /// contacts of faces.
     ///
     /// # Errors
-    /// The reason why the faces do not determine the result.
+    /// The reason why the contacts do not determine the result.
     pub(super) fn root(&self, found: &Contacts) -> Result<Branch, Declined> {
         let shared = self.shared(found);
         let mut leaf = Deferred {
@@ -92,7 +94,7 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// The points and planes of all contacts.
+    /// Computes the exact points of all contacts, and the planes of the faces that meet others.
     fn shared<'b>(&'b self, found: &'b Contacts) -> Shared<'b> {
         let planes = self.planes(found);
         let blocks = found.points.chunks(ITEMS_PER_TASK).collect();
@@ -108,7 +110,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The planes of the faces that meet others.
+    /// Computes the planes of the faces that have to be divided or examined singly.
     fn planes(&self, found: &Contacts) -> Planes {
         let faces = self.arranged_faces(found);
         let planes = each(
@@ -124,7 +126,8 @@ impl<'a> Scene<'a> {
         faces.into_iter().zip(planes.concat()).collect()
     }
 
-    /// The faces that others divide or cover, and faces whose corners all lie on others; ascending.
+    /// Returns the faces that other faces divide or cover, and the faces whose corners all lie on other
+    /// faces; ascending joint numbers.
     fn arranged_faces(&self, found: &Contacts) -> Vec<u32> {
         let segments = found.segments.iter().map(|s| s.face);
         let covered = found.covers.iter().map(|c| c.face);
@@ -155,7 +158,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The arrangements in all faces of an operand that meet the other.
+    /// Divides each face of an operand that meets other faces into cells.
     fn arrangements<'b>(
         &self,
         operand: usize,
@@ -189,7 +192,8 @@ impl<'a> Scene<'a> {
         Ok(found?.into_iter().flatten().collect())
     }
 
-    /// What stays of an operand: whole faces, and parts of divided ones.
+    /// Returns the faces of an operand that bound the result: groups of whole faces, and parts of divided
+    /// faces.
     fn remainder(
         &self,
         operand: usize,
@@ -218,7 +222,7 @@ impl<'a> Scene<'a> {
         Ok((self.groups(operand, &fates), parts))
     }
 
-    /// Decides the faces of an operand near others, except arranged ones.
+    /// Decides whether each face of an operand in `near` stays, except faces that are divided.
     fn decide(
         &self,
         operand: usize,
@@ -238,7 +242,8 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// The winding numbers around the vertices of an operand.
+    /// Relates the winding numbers around all vertices of an operand, and counts those from which all others
+    /// follow, as far as they must be counted in advance.
     fn labels<'b>(
         &self,
         operand: usize,
@@ -272,7 +277,8 @@ impl<'a> Scene<'a> {
         Ok(labels)
     }
 
-    /// The faces of an operand that stay whole.
+    /// Returns the faces of an operand that stay whole, grouped by orientation and by whether others touch
+    /// them.
     fn groups(&self, operand: usize, fates: &[Fate]) -> Vec<Group> {
         let Operand { mesh, source, .. } = self.surfaces.operands[operand];
         let group = |(touching, orientation)| Group {
@@ -298,7 +304,8 @@ impl<'a> Scene<'a> {
         groups
     }
 
-    /// The parts that stay of an operand's arranged faces, in the order of a leaf.
+    /// Returns the parts that stay of an operand's divided faces, in the order of a leaf: by orientation,
+    /// then by face. Records in `fates` the divided faces that stay or go as a whole.
     fn parts(
         &self,
         operand: usize,
@@ -338,7 +345,8 @@ impl<'a> Scene<'a> {
         Ok(parts.concat())
     }
 
-    /// What stays of a face, from the number in front of its first cell.
+    /// Returns the parts of a divided face that bound the result, given the winding number in front of its
+    /// first cell.
     fn left_of(
         &self,
         operand: usize,
@@ -367,7 +375,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// The rows of a face, among sorted rows.
+/// Returns the rows that belong to a face, among rows sorted by face; `of` returns the face of a row.
 fn run<T>(rows: &[T], face: u32, of: impl Fn(&T) -> u32) -> &[T] {
     let first = rows.partition_point(|row| of(row) < face);
     let count = rows[first..]
@@ -377,7 +385,7 @@ fn run<T>(rows: &[T], face: u32, of: impl Fn(&T) -> u32) -> &[T] {
     &rows[first..first + count]
 }
 
-/// The crossing of two edges.
+/// Returns the point in which two edges of one plane cross.
 fn crossing(first: &LatticeEdge, second: &LatticeEdge) -> Vertex {
     let ((a, b), (c, d)) = (first.ends(), second.ends());
     let place = each_axis(|i| a[i] + d[i] - c[i]);

@@ -1,4 +1,4 @@
-//! The segments in which faces meet, and their end points.
+//! Finds the segments in which faces meet, and the ends of these segments.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -17,81 +17,83 @@ use crate::merge::profile::Declined;
 use crate::mesh::handle::{FaceId, VertexId};
 use crate::mesh::tasks::{each, Worth};
 
-/// The number of pairs of one operand tested together.
+/// The number of pairs of faces of one mesh that are intersected in one task.
 const PAIRS_PER_BLOCK: usize = 1 << 9;
 
-/// An edge: the operand, and its end vertices there, the lower first.
+/// An edge: its operand (0 or 1), and the vertex numbers of its ends, the lower first.
 pub(super) type Edge = (usize, [VertexId; 2]);
 
-/// A point in which faces meet, by what contains it.
+/// A point in which faces meet, named by the corner, the edge and face, or the edges that define it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Point {
-    /// A corner of a face.
+    /// A corner of a face, at this lattice point.
     Corner(Lattice),
-    /// An edge goes through the inside of a face.
+    /// The point in which an edge passes through the inside of a face, given by its joint number.
     Through(Edge, u32),
-    /// Two edges cross.
+    /// The point in which two edges cross.
     Edges([Edge; 2]),
 }
 
-/// A segment shared by a face and another one.
+/// A segment in which a face meets another face.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Segment {
-    /// The face.
+    /// The joint number of the face that the segment divides.
     pub(super) face: u32,
-    /// The other face.
+    /// The joint number of the face that it meets.
     pub(super) other: u32,
-    /// The points at the ends.
+    /// The indices of the points at the ends of the segment.
     pub(super) ends: [u32; 2],
-    /// The line that it lies on.
+    /// The line that contains the segment, and how the other face lies to it.
     pub(super) line: Line,
 }
 
-/// The line of a segment in a face.
+/// The line that contains a segment in which a face meets another face.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Line {
-    /// The line of both planes, directed so that, in front of the face, its left is behind the other face.
+    /// The common line of both faces' planes. The segment is directed so that, seen from in front of the
+    /// face, its left is behind the other face.
     Directed,
-    /// The line of both planes.
+    /// The common line of both faces' planes, for faces that touch; the segment has no particular direction.
     Touching {
-        /// A corner of the face off the line.
+        /// The index of a corner of the face that does not lie on the line.
         corner: usize,
-        /// The side of the other face's plane on which that corner lies.
+        /// The side of the other face's plane on which this corner lies.
         side: Side,
-        /// Whether some of the other face lies in front of the face.
+        /// Whether a part of the other face lies in front of the face.
         in_front: bool,
     },
-    /// An edge of the other face, which lies in the same plane; given by its first corner.
+    /// The line of an edge of the other face, which lies in the same plane; the edge is given by the index of
+    /// its first corner.
     Edge(usize),
 }
 
-/// Faces in one plane that have an area in common.
+/// A pair of faces in one plane that have an area in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Cover {
-    /// The face.
+    /// The joint number of the first face.
     pub(super) face: u32,
-    /// The other face.
+    /// The joint number of the second face.
     pub(super) other: u32,
 }
 
-/// The contacts of faces.
+/// The points, segments and areas in which faces meet.
 #[derive(Debug, Default)]
 pub(super) struct Contacts {
-    /// The points, each once per name.
+    /// The points in which faces meet; each name occurs once.
     pub(super) points: Vec<Point>,
-    /// The segments, grouped by face.
+    /// The segments, sorted by face; a segment is listed once for each face that it divides.
     pub(super) segments: Vec<Segment>,
-    /// Pairs of faces in one plane, both ways, ascending.
+    /// The pairs of coplanar faces with a common area, ascending, each in both orders.
     pub(super) covers: Vec<Cover>,
-    /// Faces that touch others without crossing them; ascending.
+    /// The joint numbers of the faces that touch others without simply crossing them; ascending.
     pub(super) touched: Vec<u32>,
-    /// For each operand and vertex, whether faces without that corner may reach it; empty if there are
-    /// none.
+    /// For each operand and each of its vertices, whether a face without this vertex may reach its point;
+    /// empty if no vertex is reached.
     pub(super) touching: [Vec<bool>; 2],
     numbers: HashMap<Point, u32>,
 }
 
-/// Two faces that meet.
+/// Two faces that meet, by their joint numbers, and how they meet.
 struct MeetingFaces {
     pair: [u32; 2],
     kind: MeetingKind,
@@ -102,10 +104,10 @@ enum MeetingKind {
     Touching(Box<Touching>),
 }
 
-/// The contacts of the candidates of two operands.
+/// Finds the contacts between the candidate faces of two operands.
 ///
 /// # Errors
-/// `Crowded` if they are crowded.
+/// `Crowded` if more than `MAX_PAIRS_PER_FACE` pairs of boxes meet for each face.
 pub(super) fn contacts_of(
     surfaces: &Surfaces,
     candidates: &[Candidates; 2],
@@ -125,7 +127,7 @@ pub(super) fn contacts_of(
     Ok(Contacts::new(surfaces, met))
 }
 
-/// The contacts of the given pairs of faces of one operand.
+/// Finds the contacts of the given pairs of faces of one mesh.
 pub(super) fn contacts_among(surfaces: &Surfaces, pairs: &[[u32; 2]], worth: Worth) -> Contacts {
     let blocks = pairs.chunks(PAIRS_PER_BLOCK).collect();
     let operand = &surfaces.operands[0];
@@ -160,12 +162,12 @@ fn met(
 }
 
 impl Contacts {
-    /// The number of segments over all faces.
+    /// Returns the number of segments, counted once for each face that they divide.
     pub(super) fn len(&self) -> usize {
         self.segments.len()
     }
 
-    /// Marks some vertices of the first operand as touching.
+    /// Marks the vertices of the first operand for which `some` is true as reached by other faces.
     pub(super) fn touching_at(mut self, some: &[bool]) -> Self {
         self.touching[0].resize(some.len(), false);
         for (touches, more) in self.touching[0].iter_mut().zip(some) {
@@ -174,7 +176,7 @@ impl Contacts {
         self
     }
 
-    /// Return whether no face divides or covers another one.
+    /// Returns true if no face divides or covers another one.
     pub(super) fn divide_nothing(&self) -> bool {
         self.segments.is_empty() && self.covers.is_empty()
     }
@@ -251,7 +253,7 @@ impl Contacts {
         }
     }
 
-    /// Marks the vertices at a point: other faces reach them.
+    /// Marks the vertices of both faces at a common corner as reached by other faces.
     fn note_corners(&mut self, surfaces: &Surfaces, pair: [u32; 2], spot: Spot) {
         let Spot::Corner(of, corner) = spot else {
             return;
@@ -267,7 +269,8 @@ impl Contacts {
         }
     }
 
-    /// The number of a point, the same for all faces that meet there.
+    /// Returns the index of a common point of two faces, the same for all pairs of faces for which it has the
+    /// same name.
     fn point(&mut self, surfaces: &Surfaces, pair: [u32; 2], spot: Spot) -> u32 {
         let edge = |of: usize, ends: [usize; 2]| {
             let corners = surfaces.vertices(pair[of]);
@@ -299,7 +302,8 @@ impl Contacts {
     }
 }
 
-/// Return whether a point is one vertex of both faces by number: faces of one operand are connected there.
+/// Returns true if a common point of two faces of one mesh is a vertex that both share by number, so that the
+/// faces are connected there.
 fn is_common_vertex(surfaces: &Surfaces, pair: [u32; 2], spot: Spot) -> bool {
     let Spot::Corner(of, corner) = spot else {
         return false;
@@ -310,8 +314,8 @@ fn is_common_vertex(surfaces: &Surfaces, pair: [u32; 2], spot: Spot) -> bool {
     is_one && surfaces.vertices(others).contains(&vertex)
 }
 
-/// The common line of two faces' planes as one of them sees it, by the sides of the other's plane on which
-/// corners lie.
+/// Describes the common line of two faces' planes for one of the faces; `ours` has the sides of the other
+/// plane on which its corners lie, `theirs` the sides of its own plane on which the other face's corners lie.
 fn line(ours: &[Side], theirs: &[Side]) -> Line {
     let corner = ours.iter().position(|s| *s != Side::On).unwrap_or(0);
     Line::Touching {

@@ -1,4 +1,4 @@
-//! A mesh compared with itself: whether it overlaps itself, and what its winding numbers enclose.
+//! Tests whether a mesh overlaps itself, and unites it with itself, by comparing its own faces.
 
 use std::sync::Arc;
 
@@ -20,19 +20,21 @@ use crate::mesh::tasks::Worth;
 use crate::tree::node::{Branch, Node};
 use crate::tree::solid::Solid;
 
-/// A mesh united with itself.
+/// The result of uniting a mesh with itself.
 #[derive(Debug)]
 pub enum United {
-    /// It is the reduced boundary of what it encloses.
+    /// The mesh itself: it does not overlap itself, and has no inner walls.
     Same,
-    /// It is not: the root of the reduced solid.
+    /// The root of another tree, because the mesh overlaps itself or has inner walls.
     Other(Branch),
-    /// It is the union of these shells, and some of them overlap.
+    /// The connected components (shells) of the mesh, none of which overlaps itself; their union is still to
+    /// be computed.
     Shells(Vec<Branch>),
 }
 
-/// The union of an unchanged mesh with itself: the points that a rule calls inside. `None` if the solid is
-/// no such mesh, if faces are crowded, or if they are too thin to count winding numbers.
+/// Unites a mesh as it was imported with itself: the result bounds the points that `rule` calls inside.
+/// `None` if the solid is no such mesh, if too many boxes of faces overlap, or if faces are too thin to count
+/// winding numbers at them.
 ///
 /// # Example
 /// ```
@@ -79,8 +81,8 @@ pub fn united(solid: &Solid, rule: Rule) -> Option<United> {
     }
 }
 
-/// Return whether an unchanged mesh is the reduced boundary of what it encloses; stops at the first two
-/// faces that certainly overlap. `None` as in [`united`].
+/// Returns whether a mesh as it was imported neither overlaps itself nor has inner walls; stops at the first
+/// two faces that certainly overlap. `None` in the same cases as [`united`].
 pub fn is_simple_mesh(solid: &Solid) -> Option<bool> {
     let operand = whole_mesh(solid)?;
     if is_star(&operand) {
@@ -97,7 +99,7 @@ pub fn is_simple_mesh(solid: &Solid) -> Option<bool> {
     }
 }
 
-/// The mesh of a solid that is an unchanged mesh.
+/// Returns the mesh of a solid that is a mesh as it was imported; otherwise `None`.
 fn whole_mesh(solid: &Solid) -> Option<Operand<'_>> {
     let root = solid.root();
     let is_plain = !root.complement && root.outside == 0;
@@ -108,7 +110,7 @@ fn is_star(operand: &Operand) -> bool {
     operand.source.open_vertices().is_empty() && is_star_shaped(operand.mesh)
 }
 
-/// A mesh to compare with itself.
+/// The data for comparing the faces of a mesh with each other.
 struct SelfComparison<'a> {
     scene: Scene<'a>,
     view: View<'a>,
@@ -128,7 +130,8 @@ impl<'a> SelfComparison<'a> {
         self.view.pairs(&self.scene.near[0])
     }
 
-    /// The mesh united with itself, given the pairs of faces that may overlap.
+    /// Unites the mesh with itself, given the pairs of its faces that may overlap; `None` if these are too
+    /// many, or if faces do not determine the result.
     fn united(&self, pairs: Pairs) -> Option<United> {
         let found = self.contacts(pairs)?.touching_at(self.irregular);
         let root = self.scene.root(&found).ok()?;
@@ -141,7 +144,7 @@ impl<'a> SelfComparison<'a> {
         )
     }
 
-    /// The contacts of faces; `None` if they are crowded.
+    /// Intersects the given pairs of faces; `None` if there are too many pairs.
     fn contacts(&self, pairs: Pairs) -> Option<Contacts> {
         let Pairs::Few(pairs) = pairs else {
             return None;
@@ -152,7 +155,7 @@ impl<'a> SelfComparison<'a> {
         Some(contacts_among(surfaces, &pairs, *worth))
     }
 
-    /// Return whether each shell is the reduced boundary of what it encloses.
+    /// Returns true if each shell has its inside behind its faces and certainly does not overlap itself.
     fn are_simple(&self, shells: &[Shell]) -> bool {
         let mesh = self.scene.surfaces.operands[0].mesh;
         let is_closed = !self.irregular.contains(&true);
@@ -167,7 +170,7 @@ impl<'a> SelfComparison<'a> {
 }
 
 impl<'a> Scene<'a> {
-    /// A mesh to compare with itself.
+    /// Makes the scene for comparing all faces of one mesh with each other.
     fn of_one(operand: Operand<'a>, cell: Cell, rule: Rule) -> Self {
         let all: Vec<FaceId> = operand.mesh.face_ids().collect();
         Self {
@@ -180,7 +183,8 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// For each vertex, whether surfaces may meet there in ways that pairs of faces do not show.
+/// Returns for each vertex whether surfaces may cross there although no two faces cross: the vertex is
+/// irregular, or the mesh is not closed there.
 fn irregular(source: &Source) -> Vec<bool> {
     let count = source.mesh().map_or(0, |mesh| mesh.vertices.len());
     let mut irregular = vec![false; count];
@@ -194,7 +198,7 @@ fn irregular(source: &Source) -> Vec<bool> {
     irregular
 }
 
-/// Return whether a leaf lists all faces of a mesh unchanged, and nothing else.
+/// Returns true if a leaf lists all faces of a mesh, whole and in their orientation, and nothing else.
 fn is_all_of(root: &Branch, source: &Arc<Source>) -> bool {
     let Node::Deferred(leaf) = &*root.node else {
         return false;

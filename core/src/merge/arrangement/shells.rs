@@ -1,4 +1,4 @@
-//! The shells of a mesh: its connected components.
+//! Divides a mesh into its shells: its connected components.
 
 use std::sync::Arc;
 
@@ -15,14 +15,14 @@ use crate::mesh::source::Source;
 use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node};
 
-/// Faces connected by vertices, ascending.
+/// The ascending numbers of faces that are connected by common vertices.
 #[derive(Debug, Default)]
 pub(super) struct Shell {
     pub(super) faces: Vec<FaceId>,
 }
 
 impl Shell {
-    /// The shell as a subtree of its own.
+    /// Returns the shell as a branch with one deferred leaf.
     pub(super) fn branch(self, source: &Arc<Source>) -> Branch {
         let around = source.box_around(&self.faces);
         let cell = around.map_or(Cell::UNIVERSE, |(low, high)| Cell::around(&low, &high));
@@ -40,7 +40,7 @@ impl Shell {
     }
 }
 
-/// The shells of a mesh, in the order of their first faces.
+/// Returns the connected components of a mesh, in the order of their first faces.
 pub(super) fn shells(mesh: &TriangleMesh) -> Vec<Shell> {
     let mut parents: Vec<usize> = (0..mesh.vertices.len()).collect();
     for face in mesh.face_ids() {
@@ -66,7 +66,7 @@ pub(super) fn shells(mesh: &TriangleMesh) -> Vec<Shell> {
     shells
 }
 
-/// The shells except those that repeat an earlier one with the same faces in the same order.
+/// Returns the shells without those that have the same triangles in the same order as an earlier shell.
 pub(super) fn distinct(mesh: &TriangleMesh, shells: Vec<Shell>) -> Vec<Shell> {
     let mut seen: HashSet<Vec<[Lattice; 3]>> = HashSet::default();
     let mut is_first = |shell: &Shell| {
@@ -76,7 +76,7 @@ pub(super) fn distinct(mesh: &TriangleMesh, shells: Vec<Shell>) -> Vec<Shell> {
     shells.into_iter().filter(|s| is_first(s)).collect()
 }
 
-/// The root of a class; halves the path to it.
+/// Returns the root of an element in a forest of disjoint sets, and halves the path to it.
 fn root(parents: &mut [usize], mut at: usize) -> usize {
     while parents[at] != at {
         parents[at] = parents[parents[at]];
@@ -85,7 +85,7 @@ fn root(parents: &mut [usize], mut at: usize) -> usize {
     at
 }
 
-/// Return whether the volume that faces enclose is positive.
+/// Returns true if the signed volume that the faces enclose is positive.
 pub(super) fn is_outward(mesh: &TriangleMesh, faces: &[FaceId]) -> bool {
     let mut volume = Int::<4>::ZERO;
     for face in faces {

@@ -1,13 +1,14 @@
-//! Tests whether a closed mesh is star-shaped: a point sees all its faces from behind, each once.
+//! Tests whether a closed mesh is star-shaped: a point inside sees all of its faces from behind, and no face
+//! hides another.
 //!
-//! Let a point lie strictly behind the planes of all faces. Seen from there, each face covers its part of
-//! the sphere of directions once, and all turn the same way. The surface has no border, so both sides of an
-//! edge are covered by the same number of faces. Hence a ray from the point meets the same number of faces
-//! in every direction, if it meets no edge. If one ray meets a single face, all do: no two faces overlap or
-//! cross, and the winding number is 1 up to them and 0 beyond.
+//! Let a point lie strictly behind the planes of all faces. Seen from it, each face covers its part of the
+//! sphere of directions once, and all faces have the same orientation. The surface has no border, so both
+//! sides of an edge are covered by the same number of faces. Hence a ray from the point that meets no edge
+//! meets the same number of faces in every direction. If one ray meets a single face, all do: no two faces
+//! overlap or cross, and the winding number is 1 inside the faces and 0 outside.
 //!
-//! All convex meshes are star-shaped about the mean of their vertices, however their flat sides are
-//! divided, except slivers whose mean is rounded out of them.
+//! All convex meshes are star-shaped about the mean of their vertices, however their flat sides are divided,
+//! except slivers so thin that the rounded mean is not inside them.
 //!
 //! # Source
 //! Mehlhorn, Näher, Seel, Seidel, Schilz, Schirra, Uhrig: *Checking geometric programs or
@@ -21,8 +22,8 @@ use crate::geometry::winding::crossing::{triangle_change, Segment};
 use crate::geometry::winding::path::determinant;
 use crate::mesh::triangles::TriangleMesh;
 
-/// Return whether a mesh that closes by index is star-shaped about the mean of its vertices; may return
-/// false negatives.
+/// Returns true if a mesh is certainly star-shaped about the mean of its vertices; its edges must pair by
+/// vertex index.
 pub fn is_star_shaped(mesh: &TriangleMesh) -> bool {
     let Some(eye) = mean(&mesh.vertices) else {
         return false;
@@ -46,7 +47,7 @@ pub fn is_star_shaped(mesh: &TriangleMesh) -> bool {
     change == -1
 }
 
-/// The mean of points, each coordinate rounded down.
+/// Returns the mean of points, with each coordinate rounded down; `None` if there are no points.
 #[allow(clippy::cast_possible_truncation, reason = "a mean of coordinates")]
 fn mean(points: &[Lattice]) -> Option<Lattice> {
     let sum = points.iter().fold([0; 3], |sum: [i128; 3], p| {
@@ -56,15 +57,15 @@ fn mean(points: &[Lattice]) -> Option<Lattice> {
     Some(sum.map(|s| s.div_euclid(count) as i64))
 }
 
-/// Return whether the origin lies strictly behind a face's plane.
+/// Returns true if the origin lies strictly behind the plane of a face.
 fn is_ahead([a, b, c]: &[Lattice; 3]) -> bool {
     determinant(a, b, c) == Sign::Positive
 }
 
-/// Return whether all corners lie on one side of the origin along an axis.
+/// Returns true if the coordinates of all corners on an axis are positive, or all are negative.
 ///
-/// No line along the axis near the origin meets such a face. The signs are unpredictable, so their bits are
-/// combined without a branch.
+/// A ray from near the origin along another axis does not meet such a face. The signs are unpredictable, so
+/// their bits are combined without a branch.
 fn is_beside(corners: &[Lattice; 3], axis: usize) -> bool {
     let [a, b, c] = corners.map(|corner| corner[axis]);
     (a & b & c | -a & -b & -c) < 0
@@ -86,7 +87,8 @@ mod tests {
         }
     }
 
-    /// Double cones over a ring whose edges span `step` corners.
+    /// Double cones over a closed ring of `ring` corners, whose edges connect each corner with the one `step`
+    /// further on.
     fn cone(ring: u32, step: u32) -> TriangleMesh {
         let corner = |i: u32| {
             let turn = f64::from(i) * std::f64::consts::TAU / f64::from(ring);
@@ -146,7 +148,8 @@ mod tests {
         }
     }
 
-    /// Convex at every edge and around the eye, but winding two or three times around two vertices.
+    /// The surfaces are convex at every edge, with the eye behind all faces, but wind two or three times
+    /// around two vertices.
     #[test]
     fn surfaces_that_wind_around_the_eye_more_than_once_are_not() {
         assert!(!is_star_shaped(&cone(7, 2)));

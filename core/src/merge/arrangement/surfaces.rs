@@ -1,16 +1,17 @@
-//! The faces of all operands that may meet others, numbered together.
+//! The faces of one or two meshes that may meet other faces, with joint numbers.
 
 use super::candidates::Operand;
 use crate::arith::convert::as_number;
 use crate::geometry::plane::Lattice;
 use crate::mesh::handle::{FaceId, VertexId};
 
-/// One operand or two, and their faces that may meet others: the first operand's, then the second's.
+/// One or two operands, and their faces that may meet other faces. Joint numbers count the first operand's
+/// faces, then the second's.
 #[derive(Debug)]
 pub(super) struct Surfaces<'a> {
     pub(super) operands: Vec<Operand<'a>>,
     faces: Vec<Vec<FaceId>>,
-    /// The number of the second operand's first face.
+    /// The joint number of the second operand's first face.
     pub(super) second: u32,
 }
 
@@ -24,18 +25,18 @@ impl<'a> Surfaces<'a> {
         }
     }
 
-    /// The faces of an operand.
+    /// Returns the joint numbers of an operand's faces.
     pub(super) fn of_operand(&self, operand: usize) -> std::ops::Range<u32> {
         let first = if operand == 0 { 0 } else { self.second };
         first..first + as_number(self.faces[operand].len())
     }
 
-    /// The operand of a face.
+    /// Returns the operand (0 or 1) of the face with this joint number.
     pub(super) fn operand_of(&self, face: u32) -> usize {
         usize::from(face >= self.second)
     }
 
-    /// The index of a face among its operand's candidates.
+    /// Returns the index of a face, given by its joint number, among the listed faces of its operand.
     fn local(&self, face: u32) -> usize {
         (if face < self.second {
             face
@@ -44,27 +45,27 @@ impl<'a> Surfaces<'a> {
         }) as usize
     }
 
-    /// The mesh of a face.
+    /// Returns the operand that has the face with this joint number.
     pub(super) fn operand(&self, face: u32) -> &Operand<'a> {
         &self.operands[self.operand_of(face)]
     }
 
-    /// The number of a face in its mesh.
+    /// Returns the number in its mesh of the face with this joint number.
     pub(super) fn id(&self, face: u32) -> FaceId {
         self.faces[self.operand_of(face)][self.local(face)]
     }
 
-    /// The vertices of a face.
+    /// Returns the vertex numbers of the face with this joint number.
     pub(super) fn vertices(&self, face: u32) -> [VertexId; 3] {
         self.operand(face).mesh.vertices_of(self.id(face))
     }
 
-    /// The lattice points of a face's corners.
+    /// Returns the corners, as lattice points, of the face with this joint number.
     pub(super) fn corners(&self, face: u32) -> [Lattice; 3] {
         self.operand(face).mesh.corners(self.id(face))
     }
 
-    /// The lattice point of a corner of a face.
+    /// Returns one corner, as a lattice point, of the face with this joint number.
     pub(super) fn place(&self, face: u32, corner: usize) -> Lattice {
         self.operand(face).mesh.vertices[self.vertices(face)[corner].place()]
     }

@@ -1,4 +1,4 @@
-//! Winding numbers of a mesh, counted along rays.
+//! Counts winding numbers of a mesh along rays.
 
 use std::sync::Arc;
 
@@ -12,7 +12,8 @@ use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::geometry::winding::crossing::{triangle_change, Segment};
 
-/// A point of a face's plane, and its projection along the plane's main axis in half steps.
+/// A point in the plane of a face at which a winding number is counted, and its coordinates, in half lattice
+/// steps, on the two axes other than the plane's main axis.
 #[derive(Clone, Debug)]
 pub(super) struct Probe {
     pub(super) point: Arc<Vertex>,
@@ -20,7 +21,8 @@ pub(super) struct Probe {
 }
 
 impl Probe {
-    /// The point of a plane above half steps; `None` if the plane is parallel to its main axis, which never
+    /// Returns the point of a plane that has the coordinates `doubled`, in half lattice steps, on the two
+    /// axes other than the plane's main axis; `None` if the plane is parallel to the main axis, which never
     /// happens.
     pub(super) fn above(doubled: [i64; 2], plane: &Arc<Plane>) -> Option<Self> {
         let axis = plane.main_axis();
@@ -30,7 +32,7 @@ impl Probe {
     }
 }
 
-/// Winding numbers of a mesh around points; indexes its faces on first use.
+/// Counts winding numbers of a mesh around points; sorts its faces into a tree of boxes on first use.
 #[derive(Debug)]
 pub(super) struct Windings<'a> {
     operand: Operand<'a>,
@@ -45,13 +47,13 @@ impl<'a> Windings<'a> {
         }
     }
 
-    /// Return whether a point lies outside of the box around the mesh.
+    /// Returns true if a point lies outside the bounding box of the mesh, so that the winding number is zero.
     pub(super) fn are_zero_at(&self, place: &Lattice) -> bool {
         let [low, high] = &self.operand.bounds;
         (0..3).any(|i| place[i] < low[i] || place[i] > high[i])
     }
 
-    /// The winding number around a lattice point that lies on no face.
+    /// Returns the winding number of the mesh around a lattice point, which must lie on no face.
     pub(super) fn around(&mut self, place: &Lattice) -> i32 {
         let Operand { mesh, bounds, .. } = self.operand;
         let way = Segment {
@@ -75,8 +77,8 @@ impl<'a> Windings<'a> {
         -change
     }
 
-    /// The winding number in front of a plane at a point of it; `None` if a face in another plane touches
-    /// this plane there.
+    /// Returns the winding number of the mesh just in front of a plane at a point of it; `None` if a face in
+    /// another plane contains this point.
     pub(super) fn in_front(&mut self, plane: &Plane, probe: &Probe) -> Option<i32> {
         let Probe { point, doubled } = probe;
         let Operand { mesh, bounds, .. } = self.operand;
@@ -103,7 +105,8 @@ impl<'a> Windings<'a> {
             let Some(other) = Plane::through(a, b, c) else {
                 return;
             };
-            // Upwards the number grows where the ray passes from in front of the face to behind it.
+            // On a ray upwards, the winding number increases where the ray passes from in front of a face to
+            // behind it.
             let is_above = match point.side_of(&other) {
                 Side::On => {
                     touches |= other.coincides(plane).is_none();

@@ -1,4 +1,4 @@
-//! The choice of cells: some are for a kernel, and others are halved.
+//! Decides which cells of the descent a kernel solves, and which are halved.
 
 use super::state::{within, State, States};
 use crate::geometry::axes::each_axis;
@@ -7,80 +7,88 @@ use crate::geometry::plane::Lattice;
 use crate::geometry::side::Half;
 use crate::merge::kernels::general::MAX_OPERANDS;
 
-/// Lists that together hold at most this many elements are worked on by a leaf kernel, whatever
-/// their position: local trees cost the square, smaller cells cost halvings and cut faces.
+/// The most elements (faces or parts of faces) of a cell that kernels solve in any case. The cost of local
+/// trees is the square of this number; smaller cells cost more halvings and cut faces.
 pub const MAX_ELEMENTS_PER_LEAF: usize = 32;
 
-/// States that together hold at most this many are tried without local trees: in larger leaves the
-/// next operation has more to do again, in smaller ones more faces are cut by walls.
+/// The most elements of a cell for which the kernel for general position is asked. With a larger number the
+/// next operation has to process larger leaves again; with a smaller one, cell walls cut more faces.
 const MAX_ELEMENTS_GENERAL: usize = 64;
 
-/// The same, where no state is an operation's result, and the next operation may never come.
+/// The most elements of a cell for which the kernel for general position is asked if no operand is the result
+/// of an operation; then there may be no next operation, either.
 ///
-/// More are halved, to be shared among threads.
+/// Cells with more elements are halved, so that threads share the work.
 const MAX_ELEMENTS_FRESH: usize = 1 << 13;
 
-/// The same, for results of groups of operands in one place: the only step that takes one of them
-/// apart is the one that combines it with the other. Where they were halved, walls that both have
-/// would meet in special ways in a larger cell, and each wall makes parts of faces.
+/// The most elements of a cell for which the kernel for general position is asked if the operands are results
+/// of groups of overlapping operands. No later step divides these results again. If their cells had been
+/// halved before, faces cut at the same walls would meet in degenerate positions.
 const MAX_ELEMENTS_OF_GROUPS: usize = 1 << 13;
 
-/// States that together hold at most this many for each operand are worked on at once, if all faces
-/// are perpendicular to axes.
+/// The most elements for each operand of a cell that the orthogonal kernel solves, if all faces are
+/// perpendicular to axes.
 ///
-/// Few operands are as a rule a step of a chain: the next one cuts the leaf up again.
+/// An expression of few operands is usually a step of a chain, and the next step cuts the leaf again; so its
+/// leaves should be small.
 pub const MAX_ORTHOGONAL_PER_OPERAND: usize = 32;
 
-/// More elements than this are halved even so, to be shared among threads.
+/// The most elements of a cell for which the orthogonal kernel is asked, whatever the number of operands;
+/// larger cells are halved, so that threads share the work.
 pub const MAX_ELEMENTS_ORTHOGONAL: usize = 512;
 
-/// Three halvings are one round of the axes.
+/// The number of halvings in a round: one for each axis.
 const HALVINGS_PER_ROUND: u32 = 3;
 
-/// A round should leave at most so many eighths of the elements in a part.
+/// The most eighths of the elements that a round of three halvings may leave in one part; if more are left,
+/// halving separates too little.
 ///
-/// Of a surface it leaves a quarter, and half of what runs along a line. Layers thinner than the cell
-/// stay together: halved on, each is listed in ever more cells, before one is as small as they are thin.
+/// A round leaves a quarter of a surface, and half of the elements along a line. Layers thinner than the cell
+/// stay together: halving would list each of them in ever more cells, until a cell is as small as the layers
+/// are thin.
 const MAX_EIGHTHS_LEFT: usize = 5;
 
-/// Longer lists than this are halved on, stuck or not: the kernel's memory grows with their square, to
-/// a gigabyte for two fans of needles around one corner.
+/// The most elements of a cell that kernels solve because halving no longer separates them. The kernel's
+/// memory grows with the square of their number, to a gigabyte for two fans of needles around one corner.
 ///
-/// Of many needles near a line nearly all run through each of the small cells along it, so halving them
-/// on costs far more than the kernel.
+/// Nearly all of many needles near a line run through each of the small cells along it, so halving costs far
+/// more than the kernel.
 pub const MAX_ELEMENTS_STUCK: usize = 1 << 14;
 
-/// A kernel that refused a cell is asked again when one in so many elements is left: from `MAX_ELEMENTS_FRESH`
-/// down to `MAX_ELEMENTS_PER_LEAF` at most three times in vain.
+/// After the kernel for general position refused a cell, it is asked again when one in this many of the
+/// elements is left. So from `MAX_ELEMENTS_FRESH` down to `MAX_ELEMENTS_PER_LEAF` elements at most three
+/// requests are in vain.
 const RETRIED_IF_ONE_IN: usize = 8;
 
-/// As few operands as this can be evaluated in groups, where no kernel takes all of them.
+/// The least number of operands that can be evaluated in groups, if no kernel solves all of them at once.
 pub const MIN_OPERANDS_GROUPED: usize = 3;
 
-/// A group of so few operands is evaluated at once: each partial result is a boundary to be cut
-/// again, and of more operands most of what crosses lies inside of others.
+/// The most operands that are evaluated at once, not in groups. Smaller groups give more partial results,
+/// which are cut again; in larger groups most faces that cross lie inside other operands.
 pub const MAX_OPERANDS_AT_ONCE: usize = 8;
 
-/// Operands in one place from which groups are evaluated before a kernel is asked: what is left
-/// of a group's boundaries is less than all of them, and all of them cross each other.
+/// The number of operands with overlapping boxes from which on groups are evaluated before a kernel is asked:
+/// the boundary of a group's result is smaller than the operands' boundaries, which all cross each other.
 const GROUPS_FROM: usize = 16;
 
-/// The element count in the current round of three halvings.
+/// The progress of halving: how well the current and the last round of three halvings separate elements, and
+/// which kernels have refused.
 #[derive(Clone, Copy)]
 pub struct Round {
     depth: u32,
     start: usize,
     stuck: bool,
-    /// The number of elements that the kernel for general position refused.
+    /// The number of elements of the last cell that the kernel for general position refused.
     refused: usize,
-    /// True if operands are results of groups that the kernel did not refuse yet.
+    /// True if the operands are results of groups, and the kernel for general position has not refused them
+    /// yet.
     groups: bool,
-    /// True if the other half of the cell that was halved last is empty.
+    /// True if the other half of the last halved cell is empty.
     empty_sibling: bool,
 }
 
 impl Round {
-    /// Nothing was halved yet.
+    /// The state before the first halving.
     pub const START: Self = Self {
         depth: 0,
         start: usize::MAX / 8,
@@ -90,13 +98,13 @@ impl Round {
         empty_sibling: false,
     };
 
-    /// The same, where operands are results of groups that were in one place.
+    /// The state before the first halving if the operands are results of groups of overlapping operands.
     pub const OF_GROUPS: Self = Self {
         groups: true,
         ..Self::START
     };
 
-    /// After a halving of a cell with so many elements that may separate them.
+    /// Returns the progress after one more halving, of a cell with `total` elements.
     #[must_use]
     pub fn next(self, total: usize) -> Self {
         if self.depth + 1 < HALVINGS_PER_ROUND {
@@ -115,8 +123,9 @@ impl Round {
         }
     }
 
-    /// After a halving of a cell with so many elements that only cuts off what is empty: it tells
-    /// nothing about how the rest separates, if that is small.
+    /// Returns the progress after a halving of `cell`, with `total` elements, that only cut off empty space.
+    /// The halving counts only if the elements' box, whose longest side is `extent`, spans half of the cell
+    /// or is a point: otherwise smaller cells may still separate them.
     #[must_use]
     pub fn next_with_empty_sibling(self, cell: &Cell, extent: i64, total: usize) -> Self {
         let round = if fills(extent, cell) {
@@ -130,18 +139,20 @@ impl Round {
         }
     }
 
-    /// Return whether the other half of the cell that was halved last is empty.
+    /// Returns true if the other half of the last halved cell is empty.
     pub fn has_empty_sibling(&self) -> bool {
         self.empty_sibling
     }
 
-    /// Return whether the last three halvings left most elements in one part.
+    /// Returns true if the last full round of three halvings left more than `MAX_EIGHTHS_LEFT` eighths of the
+    /// elements in one part.
     pub fn kept_most(&self) -> bool {
         self.stuck
     }
 
-    /// After the halvings that lead from a cell with so many elements, in a box so long, to one around
-    /// all of them, or to the first one in between in which halving seems stuck; with that cell.
+    /// Performs the halvings from `cell` to `inner`, which contains all elements, and ends early at a cell in
+    /// which halving seems stuck. Returns the last cell and the progress. The cell has `total` elements in a
+    /// box whose longest side is `extent`.
     pub fn inward(self, cell: Cell, inner: &Cell, extent: i64, total: usize) -> (Cell, Self) {
         let (mut cell, mut round) = (cell, self);
         while let Some(cut) = cell.cut().filter(|_| cell != *inner) {
@@ -166,7 +177,7 @@ impl Round {
         )
     }
 
-    /// The kernel for general position refused so many elements.
+    /// Records that the kernel for general position refused a cell with `total` elements.
     pub fn refused(&mut self, total: usize) {
         if self.groups && total > MAX_ELEMENTS_GENERAL {
             self.groups = false;
@@ -175,8 +186,8 @@ impl Round {
         }
     }
 
-    /// Return whether halving has stopped separating: a round kept most elements, and nearly all of
-    /// them reach out of the cell, as around a vertex of many faces.
+    /// Returns true if halving no longer separates elements: the last round left most of them in one part,
+    /// and more than 7/8 of the `total` reach out of the cell, as around a vertex of many faces.
     pub fn is_stuck(&self, cell: &Cell, states: &States, total: usize) -> bool {
         let reaching = |s: &(u32, State)| match &s.1 {
             State::List(list) => list.reaching_out(cell),
@@ -185,7 +196,10 @@ impl Round {
         self.stuck && states.iter().map(reaching).sum::<usize>() * 8 > total * 7
     }
 
-    /// Return whether a cell of so many elements is for the kernel for general position.
+    /// Returns true if the kernel for general position should be asked about a cell with `total` elements: it
+    /// has at most `MAX_OPERANDS` operands, at most `MAX_ELEMENTS_FRESH`, `MAX_ELEMENTS_OF_GROUPS` or
+    /// `MAX_ELEMENTS_GENERAL` elements, depending on where the operands come from, and few enough since the
+    /// kernel last refused.
     pub fn suits_general_position(&self, states: &States, total: usize) -> bool {
         if states.len() > MAX_OPERANDS || total > self.refused / RETRIED_IF_ONE_IN {
             return false;
@@ -200,7 +214,8 @@ impl Round {
     }
 }
 
-/// The longest side of the box around what operands have in the cell; `None` if they have nothing.
+/// Returns the longest side, in lattice steps, of the box around all operands' surfaces in the cell; `None`
+/// if no operand has surface there.
 pub fn extent(cell: &Cell, states: &States) -> Option<i64> {
     let present = states.iter().filter(|s| s.1.has_surface());
     let boxes = present.map(|s| within(cell, s.1.bounds(cell)));
@@ -213,8 +228,8 @@ pub fn extent(cell: &Cell, states: &States) -> Option<i64> {
     boxes.reduce(joined).map(longest)
 }
 
-/// Return whether an occupied box is as large as its cell: it spans half of the cell or more, or is one
-/// lattice point.
+/// Returns true if a box whose longest side is `extent` spans at least half of the longest side of its cell,
+/// or is a single lattice point.
 pub fn fills(extent: i64, cell: &Cell) -> bool {
     extent == 0 || 2 * extent >= longest([*cell.low(), cell.high()])
 }
@@ -224,13 +239,14 @@ fn longest([low, high]: [Lattice; 2]) -> i64 {
     x.max(y).max(z)
 }
 
-/// Return whether so many operands are in one place that no kernel should be asked.
+/// Returns true if the cell has at least `GROUPS_FROM` operands, whose boxes overlap so often that groups of
+/// operands are evaluated before a kernel is asked.
 pub fn is_overcrowded(cell: &Cell, states: &States) -> bool {
     states.len() >= GROUPS_FROM && is_crowded(cell, states)
 }
 
-/// Return whether operands are in one place: one of three pairs of them has boxes that overlap in
-/// the cell, as far as a sample shows.
+/// Returns true if at least `MIN_OPERANDS_GROUPED` operands matter in the cell, and more than a third of the
+/// pairs in a sample of them have boxes that overlap there.
 pub fn is_crowded(cell: &Cell, states: &States) -> bool {
     if states.len() < MIN_OPERANDS_GROUPED {
         return false;
@@ -260,7 +276,7 @@ mod tests {
         };
         assert!(crowded(&cell, 1));
         assert!(!crowded(&cell, 10));
-        // Beyond the cell it does not matter.
+        // Boxes that overlap outside the cell do not count.
         assert!(!crowded(&Cell::around(&[0; 3], &[1; 3]), 3));
     }
 
@@ -273,7 +289,7 @@ mod tests {
         };
         assert!(filled(0, 15));
         assert!(!filled(0, 63));
-        // A corner alone.
+        // Only a corner of the box lies in the cell.
         assert!(filled(8, 15));
     }
 

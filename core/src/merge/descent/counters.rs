@@ -1,10 +1,10 @@
-//! Counters of a descent.
+//! Counters of the work of an evaluation.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::merge::profile::Profile;
 
-/// Counts of the work of an evaluation.
+/// Counts of the cells visited, faces sorted and cells solved by kernels in an evaluation.
 ///
 /// # Example
 /// ```
@@ -30,22 +30,23 @@ use crate::merge::profile::Profile;
 /// ```
 #[derive(Debug, Default)]
 pub struct Counters {
-    /// Visited cells.
+    /// The number of cells that the descent visited.
     pub cells: AtomicU64,
-    /// Faces sorted into bins.
+    /// The number of faces sorted into bins.
     pub binned: AtomicU64,
-    /// Elements of halved lists, once for each halving.
+    /// The number of elements (faces or parts of faces) in lists that were halved, counted once for each
+    /// halving.
     pub halved: AtomicU64,
-    /// Cells solved by leaf kernels.
+    /// The number of cells solved by kernels.
     pub leaves: AtomicU64,
-    /// Elements in these cells.
+    /// The number of elements (faces or parts of faces) in cells solved by kernels.
     pub leaf_elements: AtomicU64,
-    /// The stages of the evaluation, once it has ended.
+    /// The stages of the evaluation with their durations; empty until it has ended.
     pub profile: Profile,
 }
 
 impl Counters {
-    /// Adds the counts of another descent.
+    /// Adds the counts of another descent to these.
     pub(super) fn add(&self, other: &Self) {
         let pairs = [
             (&self.cells, &other.cells),
@@ -59,30 +60,30 @@ impl Counters {
         }
     }
 
-    /// The same counts, with the stages of the evaluation.
+    /// Returns these counts with the stages of the evaluation.
     #[must_use]
     pub(in crate::merge) fn with(self, profile: Profile) -> Self {
         Self { profile, ..self }
     }
 
-    /// Counts a cell solved by a kernel, and its elements.
+    /// Adds one cell solved by a kernel, with this number of elements.
     pub(in crate::merge) fn count_leaf(&self, elements: usize) {
         self.leaves.fetch_add(1, Ordering::Relaxed);
         self.leaf_elements
             .fetch_add(elements as u64, Ordering::Relaxed);
     }
 
-    /// The number of elements in cells solved by kernels.
+    /// Returns the number of elements (faces or parts of faces) in cells solved by kernels.
     pub fn taken(&self) -> u64 {
         self.leaf_elements.load(Ordering::Relaxed)
     }
 
-    /// The number of visited cells.
+    /// Returns the number of cells that the descent visited.
     pub(in crate::merge) fn visited(&self) -> usize {
         usize::try_from(self.cells.load(Ordering::Relaxed)).unwrap_or(usize::MAX)
     }
 
-    /// The counts with their names.
+    /// Returns the counts, each with its name.
     pub fn named(&self) -> [(&'static str, u64); 5] {
         [
             ("cells", &self.cells),

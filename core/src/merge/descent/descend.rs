@@ -1,4 +1,4 @@
-//! One descent for a whole expression: operands drop out cell by cell.
+//! Evaluates a whole expression in one descent through cells; operands without surface in a cell drop out.
 //!
 //! # Source
 //! Naylor, Amanatides, Thibault 1990 (merging: a leaf decides, a common cut is descended). The page
@@ -32,13 +32,13 @@ use crate::merge::rule::Rule;
 use crate::mesh::tasks::{both, in_pool, Worth};
 use crate::tree::node::Branch;
 
-/// Why a descent ended before all its cells were done.
+/// The reason why a descent ended before all cells were visited.
 pub(super) enum End {
-    /// It failed.
+    /// An error occurred.
     Failed(Error),
-    /// This operand overlaps itself, and has to be united with itself first.
+    /// The operand with this index overlaps itself and has to be united with itself first.
     Overlap(u32),
-    /// Cancelled: an earlier sibling ended the descent.
+    /// The descent had already ended in an earlier cell.
     Cancelled,
 }
 
@@ -48,10 +48,11 @@ impl From<Error> for End {
     }
 }
 
-/// The result in a cell, or the reason for the end of the descent.
+/// The result in a cell, or the reason why the descent ended.
 pub(super) type Visited = std::result::Result<Branch, End>;
 
-/// Two results, computed in parallel where that pays; the second is cancelled if the first ended before.
+/// Computes two results, in parallel if `worth` says so; the second is cancelled if the first ends the
+/// descent before the second begins.
 pub(super) fn both_in_turn(
     worth: Worth,
     first: impl FnOnce() -> Visited + Send,
@@ -73,29 +74,31 @@ pub(super) fn both_in_turn(
     Ok((first?, second?))
 }
 
-/// The data shared by all cells of an evaluation.
+/// The data of one descent, shared by all its cells.
 #[derive(Debug)]
 pub struct Descent<'a> {
-    /// The sources of all operands.
+    /// The meshes and half-spaces of all operands.
     pub sources: &'a Sources,
-    /// The rule for which winding numbers of an operand are inside.
+    /// The rule that says which winding numbers of an operand are inside.
     pub rule: Rule,
-    /// Whether to take a single operand's boundary unchanged instead of making it the reduced boundary.
+    /// True if a cell in which one operand alone matters takes its boundary unchanged; false if every cell
+    /// with surface is solved, to unite a solid with itself.
     pub share: bool,
-    /// Counts of the work.
+    /// Counts of the cells visited, faces sorted and cells solved by kernels.
     pub counters: Counters,
-    /// For each operand, whether a visited cell showed that it overlaps itself, or that the result of a
-    /// group with it does.
+    /// For each operand, whether a visited cell showed that it, or the result of a group of operands with it,
+    /// overlaps itself.
     pub overlaps: Vec<AtomicBool>,
-    /// The operands to unite with themselves if they overlap themselves, before everything is evaluated
-    /// again.
+    /// The indices of the operands not known to be free of self-overlaps. If one overlaps itself, the caller
+    /// unites it with itself and evaluates the expression again.
     pub doubted: Vec<usize>,
-    /// Whether the first of these found to overlap itself ends the descent.
+    /// True if the first doubted operand that turns out to overlap itself ends the descent.
     impatient: bool,
 }
 
 impl<'a> Descent<'a> {
-    /// A descent over this many operands.
+    /// Makes a descent over this many operands; `share` says whether a single operand's boundary is taken
+    /// unchanged.
     pub fn new(sources: &'a Sources, rule: Rule, share: bool, operands: usize) -> Self {
         Self {
             sources,
@@ -108,8 +111,8 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// The same, with the operands to unite with themselves if they overlap themselves; `impatient` says
-    /// whether the first found in the order of cells ends the descent.
+    /// Sets the operands not known to be free of self-overlaps; if `impatient` is true, the first of them, in
+    /// the order of cells, that turns out to overlap itself ends the descent.
     #[must_use]
     pub fn doubting(self, doubted: Vec<usize>, impatient: bool) -> Self {
         Self {
@@ -119,21 +122,23 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Return whether all doubted operands are known to overlap themselves: nothing more can be learnt, and
-    /// the result is not used.
+    /// Returns true if all doubted operands are known to overlap themselves, so that the result will not be
+    /// used; always false if the descent is impatient.
     fn is_moot(&self) -> bool {
         let seen = |k: &usize| self.overlaps[*k].load(Ordering::Relaxed);
-        // An impatient descent needs the first in cell order, whatever other threads found.
+        // An impatient descent needs the first such operand in the order of cells, whatever other threads
+        // found.
         !self.impatient && !self.doubted.is_empty() && self.doubted.iter().all(seen)
     }
 
-    /// The operands found to overlap themselves in a visited cell, or to be in a group whose result does.
+    /// Returns the indices of the operands that overlap themselves in a visited cell, or that are in a group
+    /// whose result does.
     pub fn overlapping(&self) -> Vec<usize> {
         let seen = |k: &usize| self.overlaps[*k].load(Ordering::Relaxed);
         (0..self.overlaps.len()).filter(seen).collect()
     }
 
-    /// The value of an expression over solids, from their root branches.
+    /// Evaluates an expression over solids, given by their root branches, and returns the root of the result.
     pub fn run(&self, expression: Expression, roots: Vec<Branch>) -> Result<Branch> {
         let cell = roots.iter().map(|r| r.cell).reduce(|a, b| a.join(&b));
         let Some(cell) = cell else {
@@ -167,7 +172,8 @@ impl<'a> Descent<'a> {
         })
     }
 
-    /// The result of a descent ended by an operand; clears what other threads saw, which depends on timing.
+    /// Returns a placeholder for the result of a descent that `operand` ended; marks only this operand as
+    /// overlapping, because what other threads found depends on timing.
     fn ended_by(&self, operand: u32, cell: Cell) -> Branch {
         for (k, seen) in (0..).zip(&self.overlaps) {
             seen.store(k == operand, Ordering::Relaxed);
@@ -182,7 +188,7 @@ impl<'a> Descent<'a> {
         })
     }
 
-    /// A cell below one in which several operands matter.
+    /// Visits a half of a cell in which several operands matter, and returns the result there.
     pub(super) fn cell(
         &self,
         cell: Cell,
@@ -237,12 +243,13 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Operands that are equal in a cell, unless each must be examined.
+    /// Returns the operands that are equal in a cell, if a single operand's boundary may be taken unchanged;
+    /// otherwise `None`.
     fn twins(&self, found: impl FnOnce() -> Option<TwinTable>) -> Option<TwinTable> {
         self.share.then(found).flatten()
     }
 
-    /// A cell in which the expression still depends on several operands.
+    /// Solves or divides a cell in which the expression depends on several operands.
     fn open_cell(
         &self,
         cell: Cell,
@@ -277,7 +284,7 @@ impl<'a> Descent<'a> {
         {
             return self.grouped(cell, parted, states, 0);
         }
-        // No level of bins separated these faces, so halving will not either.
+        // No level of bins separated these faces, so halving will not separate them, either.
         let long = listed && opening >= BINS_FROM;
         if long || listed && stuck || round.suits_general_position(&states, total) {
             if let Some(branch) =
@@ -295,7 +302,8 @@ impl<'a> Descent<'a> {
         self.halves(cell, cut, &expression, states, round, total)
     }
 
-    /// The result in a cell, from a smaller cell around all operands' boundaries.
+    /// Returns the result in a cell by visiting the smaller cell `inner`, which contains all operands'
+    /// boundaries.
     fn jump(
         &self,
         cell: Cell,
@@ -319,7 +327,8 @@ impl<'a> Descent<'a> {
         })
     }
 
-    /// The value of an expression in a cell outside a smaller one with all boundaries.
+    /// Returns whether the expression's value is inside in `cell` outside the smaller cell `inner`, which
+    /// contains all operands' boundaries.
     fn value_beside(
         &self,
         cell: &Cell,
@@ -335,7 +344,7 @@ impl<'a> Descent<'a> {
         expression.value(outside, &mut Vec::new())
     }
 
-    /// Records that operands overlap themselves; the first doubted one may end the descent.
+    /// Records that operands overlap themselves; if the descent is impatient, the first doubted one ends it.
     pub(super) fn note_overlaps(&self, operands: &[u32]) -> std::result::Result<(), End> {
         for k in operands {
             self.overlaps[*k as usize].store(true, Ordering::Relaxed);
@@ -347,7 +356,7 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Records operands whose winding number at the cell's corner is neither 0 nor 1.
+    /// Records as overlapping the operands whose winding number at the cell's corner is neither 0 nor 1.
     fn note_corners(&self, states: &States) -> std::result::Result<(), End> {
         let winds = |s: &&(u32, State)| match &s.1 {
             State::List(list) => !(0..=1).contains(&list.corner),
@@ -357,7 +366,8 @@ impl<'a> Descent<'a> {
         self.note_overlaps(&found)
     }
 
-    /// The states with the leaves of this cell opened; `opening` is their number of elements.
+    /// Opens each operand's deferred leaf of exactly this cell as a list or as bins; `opening` is the number
+    /// of elements in these leaves.
     fn opened(&self, cell: &Cell, states: States, opening: usize) -> States {
         let open =
             |(k, state): (u32, State)| (k, state.opened(cell, self.sources, &self.counters.binned));
@@ -407,7 +417,7 @@ impl<'a> Descent<'a> {
         Ok(join::branch(cell, cut, minus, plus, self.sources))
     }
 
-    /// All operands' elements as lists of the cell, if possible.
+    /// Lists the elements of all operands in the cell; `None` if an operand's elements cannot be listed.
     fn listed<'s>(&self, cell: &Cell, states: &'s States) -> Option<Vec<Listed<'s>>> {
         let listed = |(number, state): &'s (u32, State)| {
             let (number, list) = (*number, state.list_in(cell, self.sources)?);
@@ -416,8 +426,8 @@ impl<'a> Descent<'a> {
         states.iter().map(listed).collect()
     }
 
-    /// Return the result of the first kernel that takes the cell; `None` if none does, or an operand's
-    /// elements cannot be listed.
+    /// Returns the result of the first kernel that does not refuse the cell, after equal operands became one.
+    /// `None` if all kernels refuse, or if an operand's elements cannot be listed.
     fn solved(
         &self,
         cell: Cell,
@@ -446,7 +456,8 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Return the result for listed operands of the first kernel that takes the cell.
+    /// Returns the result, for listed operands, of the first kernel that does not refuse the cell; `None` if
+    /// all do.
     fn solved_by(
         &self,
         kernels: &[&dyn Kernel],
@@ -495,7 +506,7 @@ mod tests {
 
     #[test]
     fn what_is_far_apart_is_shared_and_costs_no_kernel() {
-        // More faces than a kernel takes.
+        // Each row has more faces than a kernel solves in any case.
         let row = |first: i64| cuboids((0..4).map(|i| [1, 3].map(|c| [first + c + 4 * i; 3])));
         let solids = [row(0), row(64)];
         let (common, _) = run(&solids, Term::And);
@@ -537,7 +548,7 @@ mod tests {
 
     #[test]
     fn a_descent_ends_where_all_that_is_doubted_overlaps_itself() {
-        // Rows of boxes that cross each other in pairs.
+        // Each operand is a row of pairs of boxes that cross each other.
         let pair = |low: Lattice| [0, 2].map(|by| [0, 5].map(|size| low.map(|x| x + by + size)));
         let row = |first: i64| cuboids((0..64).flat_map(|i| pair([first + 9 * i, first, first])));
         let solids = [row(0), row(1)];
@@ -554,7 +565,7 @@ mod tests {
 
     #[test]
     fn the_first_that_overlaps_itself_ends_an_impatient_descent() {
-        // Nested boxes: no faces meet, and a corner of a cell decides.
+        // No faces of nested boxes meet, so the winding number at a corner of a cell reveals the overlap.
         let nested = |first: i64| {
             let shells = (0..8).map(move |i| [[first + i; 3], [first + 99 - i; 3]]);
             cuboids(shells)

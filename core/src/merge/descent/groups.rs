@@ -1,5 +1,5 @@
-//! Operands in one place, evaluated in groups: the boundary of a group's result is smaller than all its
-//! operands' boundaries, which all cross each other.
+//! Evaluates many overlapping operands in groups: the boundary of a group's result is smaller than the
+//! boundaries of its operands, which all cross each other.
 
 use std::sync::atomic::Ordering;
 use std::sync::Arc;
@@ -12,16 +12,18 @@ use crate::interrupt::poll;
 use crate::merge::expression::{Expression, Parted};
 use crate::tree::node::Branch;
 
-/// The most levels of groups: 2³² operands in halves, and as many levels of alternating operations.
+/// The most nested levels of groups: 32 for halving 2³² operands, and 32 for changes of the operation.
 const MAX_DEPTH: u32 = 64;
 
 impl Descent<'_> {
-    /// The expression split in two, if results of operations need not be reduced.
+    /// Splits the expression into two groups of operands; `None` if it cannot be split, or if this descent
+    /// unites a solid with itself.
     pub(super) fn parted(&self, expression: &Expression) -> Option<Parted> {
         expression.parted().filter(|_| self.share)
     }
 
-    /// The result in a cell from two groups of operands.
+    /// Returns the result in a cell by evaluating two groups of operands and combining their results; `depth`
+    /// is the number of enclosing groups.
     pub(super) fn grouped(
         &self,
         cell: Cell,
@@ -46,7 +48,8 @@ impl Descent<'_> {
         self.united(cell, parted.whole, results.into(), [ours, theirs])
     }
 
-    /// The result in a cell, one operand after another; a loop, since there may be many.
+    /// Returns the result of a symmetric difference in a cell by adding its operands one after another; a
+    /// loop, because there may be too many for recursion.
     fn folded(&self, cell: Cell, mut parted: Parted, states: States, depth: u32) -> Visited {
         let mut first = states;
         let mut steps = Vec::new();
@@ -73,7 +76,8 @@ impl Descent<'_> {
         Ok(result)
     }
 
-    /// The result in a cell from two groups' results.
+    /// Combines the results of two groups in a cell by the expression `whole`; `operands` are the operands of
+    /// each group.
     fn united(
         &self,
         cell: Cell,
@@ -93,7 +97,8 @@ impl Descent<'_> {
         result
     }
 
-    /// The result of a group of operands in a cell.
+    /// Returns the result of one group of operands in a cell; splits it further if it has more than
+    /// `MAX_OPERANDS_AT_ONCE` operands.
     fn group(&self, cell: Cell, expression: &Expression, states: States, depth: u32) -> Visited {
         if states.len() > MAX_OPERANDS_AT_ONCE
             && depth < MAX_DEPTH

@@ -1,4 +1,4 @@
-//! Joining the two halves of a cell.
+//! Joins the results of the two halves of a cell.
 
 use std::sync::Arc;
 
@@ -14,15 +14,17 @@ use crate::mesh::handle::FaceId;
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Branch, Deferred, Group, Node};
 
-/// The most faces of two deferred leaves that are joined into one.
+/// The most faces that two deferred leaves together may list in order to become one leaf.
 ///
-/// Half the size of cells that kernels take, so that a joined leaf is not split again at once.
+/// This is half the number of elements of a cell that a kernel solves, so that a joined leaf is not split
+/// again at once.
 pub const MAX_FACES_JOINED: usize = 16;
 
-/// The branch for a cell from the branches for its halves.
+/// Returns the branch for a cell from the branches of its two halves.
 ///
-/// Omits a uniform half if the other half has the same value around its own cell (path compression). It may
-/// differ: a face may lie in a slab between two uniform ones.
+/// If one half is uniform and the other half has the same value around its own cell, the other half's branch
+/// stands for both (path compression). The values may differ, because a face may lie in a slab between two
+/// uniform halves.
 pub fn branch(cell: Cell, cut: Cut, minus: Branch, plus: Branch, sources: &Sources) -> Branch {
     let fits = |w: i32, other: &Branch, half: Half| {
         other.cell == cell.half(cut, half) || is_same(w, other.outside)
@@ -41,10 +43,10 @@ pub fn branch(cell: Cell, cut: Cut, minus: Branch, plus: Branch, sources: &Sourc
     }
 }
 
-/// The branch for a cell with `outside` around it.
+/// Returns the branch for a cell in which `branch` lies, with the winding number `outside` around it.
 ///
-/// The branch has the same value around its own cell, unless something unbounded crosses the border of both
-/// cells.
+/// Usually `branch` has the same value around its own cell. It differs if an unbounded surface crosses the
+/// border of both cells; then the result is a cut.
 pub fn around(cell: Cell, branch: Branch, outside: i32) -> Branch {
     let cut = cell
         .cut()
@@ -66,12 +68,12 @@ pub fn around(cell: Cell, branch: Branch, outside: i32) -> Branch {
     }
 }
 
-/// Return whether two winding numbers are both inside or both outside.
+/// Returns true if two winding numbers are both inside (positive) or both outside.
 fn is_same(w: i32, v: i32) -> bool {
     (w > 0) == (v > 0)
 }
 
-/// The branch of the two halves of a cell, or of one node for both.
+/// Returns the branch of a cell whose node is `joined`, or a cut into the two halves if that is `None`.
 fn divided(cell: Cell, minus: Branch, plus: Branch, joined: Option<Node>) -> Branch {
     Branch {
         cell,
@@ -81,7 +83,8 @@ fn divided(cell: Cell, minus: Branch, plus: Branch, joined: Option<Node>) -> Bra
     }
 }
 
-/// One deferred leaf for both halves, if they are small and list only whole faces.
+/// Joins two halves into one deferred leaf; `None` unless both list few faces, all of them whole, and agree
+/// on winding numbers.
 fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Sources) -> Option<Node> {
     let (a, b) = (small_leaf(minus)?, small_leaf(plus)?);
     if a.len() + b.len() > 2 * MAX_FACES_JOINED {
@@ -127,7 +130,7 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Source
     }))
 }
 
-/// The winding number at the low corner of the cell of a branch.
+/// Returns the winding number at the low corner of `cell`, in which the branch lies.
 fn corner_of(branch: &Branch, leaf: &Deferred, cell: &Cell) -> i32 {
     if branch.cell.low() == cell.low() {
         branch.oriented(leaf.corner)
@@ -136,10 +139,10 @@ fn corner_of(branch: &Branch, leaf: &Deferred, cell: &Cell) -> i32 {
     }
 }
 
-/// The change of the winding number from the cell's low corner to the plus half's.
+/// Returns the change of the winding number from the cell's low corner to the low corner of its plus half.
 ///
-/// An operand taken unchanged may have numbers above one where the leaf kernel says one: leaves that
-/// disagree across the cut must not be joined.
+/// An operand's unchanged boundary may have winding numbers above 1 where a kernel's result has 1. Leaves
+/// that disagree across the cut must not be joined.
 fn change_along_edge(faces: &[ListedFace], cell: &Cell, cut: Cut) -> i32 {
     let segment = Segment {
         from: cell.corner(),
@@ -197,7 +200,7 @@ impl ListedFace {
         })
     }
 
-    /// Return how much of the face's part in the cell the two leaves list.
+    /// Returns how much of the face's part inside `cell` is listed as surface in the two halves.
     fn extent_in(&self, cell: &Cell, halves: &[(&Branch, &Deferred, Cell); 2]) -> Extent {
         let (low, high) = self.source.face_box(self.face);
         let holders: Vec<_> = halves
@@ -224,7 +227,7 @@ impl ListedFace {
     }
 }
 
-/// The share of a face inside a cell that is boundary.
+/// The share of a face inside a cell that bounds the solid: all, a part, or nothing.
 enum Extent {
     All,
     Some,

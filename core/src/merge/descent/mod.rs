@@ -1,5 +1,5 @@
-//! The descent: one walk through space for a whole expression, which divides cells until a kernel takes
-//! them, and joins the results.
+//! The descent: one walk through space that evaluates a whole expression. It divides cells until a kernel
+//! solves them, and joins the results.
 
 pub mod choice;
 pub mod counters;

@@ -1,4 +1,4 @@
-//! The state of an operand in a cell of the descent.
+//! The form in which the descent stores one operand in a cell.
 
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -13,15 +13,15 @@ use crate::merge::lists::list::{List, PartRecord, Record, Sources};
 use crate::mesh::tasks::Worth;
 use crate::tree::node::{Branch, Node};
 
-/// The least number of elements of a cell that is worth a task: a kernel takes some 20 µs for half as many,
-/// and a task costs less than one.
+/// The least number of elements of a cell that is worth a task of its own: a kernel takes about 20 µs for
+/// half as many, and a task costs less than 1 µs.
 const MIN_ELEMENTS_PER_TASK: usize = 64;
 
-/// The least number of elements of a cell that is worth waking a pool, which takes some 50 µs: kernels
-/// alone take ten times as long.
+/// The least number of elements of a cell that is worth waking the thread pool, which takes about 50 µs:
+/// kernels alone take ten times as long.
 const MIN_ELEMENTS_FOR_POOL: usize = 256;
 
-/// The worth of sharing the work in a cell with this many elements.
+/// Returns how far the work in a cell with this number of elements is worth sharing among threads.
 pub const fn worth(elements: usize) -> Worth {
     match elements {
         ..MIN_ELEMENTS_PER_TASK => Worth::Nothing,
@@ -33,33 +33,34 @@ pub const fn worth(elements: usize) -> Worth {
 /// The number of faces from which a deferred leaf is sorted into bins instead of being halved.
 pub const BINS_FROM: usize = 1024;
 
-/// The most entries in a cell for which a list replaces the bins.
+/// The most entries of bins in a cell for which a list replaces the bins.
 const MAX_ENTRIES_LISTED: usize = 64;
 
-/// The state of an operand in a cell.
+/// The form in which the descent stores one operand in a cell.
 #[derive(Clone, Debug)]
 pub enum State {
-    /// One winding number.
+    /// One winding number in the whole cell: no surface.
     Constant(i32),
-    /// A subtree whose cell is inside the cell.
+    /// A subtree of the solid whose cell equals the cell or lies in it.
     Tree(Branch),
-    /// The elements that meet the cell.
+    /// A list of the elements (faces and parts of faces) that meet the cell.
     List(List),
-    /// Many faces, indexed by place.
+    /// Many faces, sorted into small cells.
     Bins(Arc<Bins>),
 }
 
-/// The operands that matter, by number, ascending.
+/// The operands that matter in a cell, with ascending indices.
 pub type States = Vec<(u32, State)>;
 
-/// Find the state of an operand.
+/// Returns the state of the operand with this index; `None` if it does not matter in the cell.
 pub fn find(states: &States, operand: u32) -> Option<&State> {
     let at = states.binary_search_by_key(&operand, |s| s.0).ok()?;
     Some(&states[at].1)
 }
 
-/// The smallest cell around all operands' boundaries, if it is smaller than `cell` and known without
-/// opening leaves. Considers lists only on demand, since it visits all their elements.
+/// Returns the smallest cell around all operands' boundaries, if it is smaller than `cell`; `None` if it is
+/// not, or if an operand's boundary is not known to lie in a smaller cell. Lists are examined, element by
+/// element, only if `lists` is true.
 pub fn nested(cell: &Cell, states: &States, lists: bool) -> Option<Cell> {
     let mut inner: Option<Cell> = None;
     for (_, state) in states {
@@ -76,25 +77,25 @@ pub fn nested(cell: &Cell, states: &States, lists: bool) -> Option<Cell> {
     inner.filter(|c| c != cell)
 }
 
-/// The part of a box in a cell.
+/// Returns the intersection of a box with a cell, as low and high corner.
 pub fn within(cell: &Cell, [low, high]: [Lattice; 2]) -> [Lattice; 2] {
     let (least, most) = (cell.low(), cell.high());
     let low = each_axis(|i| low[i].max(least[i]));
     [low, each_axis(|i| high[i].min(most[i]))]
 }
 
-/// Return whether there is an operand without boundary in the cell.
+/// Returns true if an operand is constant in the cell.
 pub fn has_constant(states: &States) -> bool {
     states.iter().any(|s| matches!(s.1, State::Constant(_)))
 }
 
-/// Return whether an operand has boundary in the cell, as far as its list or tree shows.
+/// Returns true if an operand may have boundary in the cell: it is not known to be constant.
 pub fn has_surface(states: &States) -> bool {
     states.iter().any(|s| s.1.has_surface())
 }
 
 impl State {
-    /// Return whether it has boundary in the cell, as far as its list or tree shows.
+    /// Returns true if the operand may have boundary in the cell: it is not known to be constant.
     pub fn has_surface(&self) -> bool {
         match self {
             Self::Constant(_) => false,
@@ -104,7 +105,7 @@ impl State {
         }
     }
 
-    /// The approximate number of its elements in the cell.
+    /// Returns the approximate number of the operand's elements (faces and parts of faces) in the cell.
     pub fn len_in(&self, cell: &Cell) -> usize {
         match self {
             Self::Constant(_) => 0,
@@ -118,7 +119,7 @@ impl State {
         }
     }
 
-    /// A box around its boundary in the cell.
+    /// Returns a box around the operand's boundary in the cell, as low and high corner.
     pub fn bounds(&self, cell: &Cell) -> [Lattice; 2] {
         match self {
             Self::List(list) => list.bounds(),
@@ -127,7 +128,7 @@ impl State {
         }
     }
 
-    /// Return whether it lists an operand's boundary unchanged.
+    /// Returns true if the operand's elements in the cell are listed, and no kernel made them.
     pub fn is_given(&self) -> bool {
         match self {
             Self::Constant(_) => false,
@@ -140,7 +141,7 @@ impl State {
         }
     }
 
-    /// Return whether all its boundary in the cell is in one list.
+    /// Returns true if all of the operand's boundary in the cell is in one list or one deferred leaf.
     pub fn is_undivided(&self) -> bool {
         match self {
             Self::List(_) => true,
@@ -149,7 +150,8 @@ impl State {
         }
     }
 
-    /// The number of elements in a deferred leaf of exactly this cell.
+    /// Returns the number of elements of the operand's deferred leaf, if that has exactly this cell;
+    /// otherwise 0.
     pub fn len_to_open(&self, cell: &Cell) -> usize {
         match self {
             Self::Tree(branch) if branch.cell == *cell => match &*branch.node {
@@ -160,7 +162,7 @@ impl State {
         }
     }
 
-    /// The number of elements that halving the state would move.
+    /// Returns the number of listed elements, each of which a halving of the cell visits.
     pub fn listed(&self) -> usize {
         match self {
             Self::List(list) => list.len(),
@@ -168,7 +170,7 @@ impl State {
         }
     }
 
-    /// Return whether all elements are known and perpendicular to axes.
+    /// Returns true if all of the operand's elements are listed, and their planes are perpendicular to axes.
     pub fn is_orthogonal(&self, sources: &Sources) -> bool {
         match self {
             Self::List(list) => {
@@ -185,7 +187,8 @@ impl State {
         }
     }
 
-    /// The elements as a list of the cell, if none extends beyond the part they are listed for.
+    /// Returns the operand's elements as a list of the cell; `None` if they cannot be listed, or if one
+    /// extends out of the smaller cell in which it is known to be surface.
     pub fn list_in(&self, cell: &Cell, sources: &Sources) -> Option<Cow<'_, List>> {
         match self {
             Self::List(list) => Some(Cow::Borrowed(list)),
@@ -195,7 +198,7 @@ impl State {
         }
     }
 
-    /// Becomes a constant if there is no boundary in the cell.
+    /// Makes the operand a constant if it has no boundary in the cell.
     pub fn settle(&mut self, cell: &Cell) {
         let constant = match self {
             Self::Constant(_) => None,
@@ -212,7 +215,8 @@ impl State {
         }
     }
 
-    /// The state with deferred leaves of this cell opened; adds the faces sorted into `binned`.
+    /// Opens a deferred leaf of exactly this cell as a list or as bins, and replaces bins by a list if few
+    /// faces are left; adds the number of faces sorted to `binned`.
     pub fn opened(self, cell: &Cell, sources: &Sources, binned: &AtomicU64) -> Self {
         match self {
             Self::Tree(branch) if branch.cell == *cell => opened_leaf(branch, sources, binned),
@@ -223,7 +227,7 @@ impl State {
         }
     }
 
-    /// The states in the two halves of the cell.
+    /// Returns the states of the operand in the minus and the plus half of the cell.
     pub fn divided(self, cell: &Cell, cut: Cut, sources: &Sources) -> (Self, Self) {
         match self {
             Self::Constant(w) => (Self::Constant(w), Self::Constant(w)),
@@ -236,14 +240,15 @@ impl State {
         }
     }
 
-    /// Restricts the state to a smaller cell; no boundary may meet the rest of the cell.
+    /// Restricts the state to a smaller cell; none of the operand's boundary may meet the rest of the larger
+    /// cell.
     pub fn shrink(&mut self, inner: &Cell, sources: &Sources) {
         if let Self::List(list) = self {
             list.shrink(inner, sources);
         }
     }
 
-    /// This operand as the result in the cell, complemented if `negate` is set.
+    /// Returns the operand itself as the result in the cell, complemented if `negate` is true.
     pub fn shared(self, cell: Cell, negate: bool, sources: &Sources) -> Branch {
         match self {
             Self::Constant(w) => Branch::uniform(cell, if negate { 1 - w } else { w }),
@@ -255,7 +260,7 @@ impl State {
     }
 }
 
-/// A box around the boundary of a branch: of its faces if they are few, else its cell.
+/// Returns a box around the boundary of a branch: around its faces if they are few, otherwise its cell.
 fn bounds_below(branch: &Branch) -> [Lattice; 2] {
     let whole = [*branch.cell.low(), branch.cell.high()];
     let Node::Deferred(leaf) = &*branch.node else {
@@ -270,7 +275,7 @@ fn bounds_below(branch: &Branch) -> [Lattice; 2] {
     }
 }
 
-/// A branch for this cell, opened: a deferred leaf becomes bins or a list.
+/// Opens a branch: a deferred leaf becomes bins or a list, and other nodes stay a tree.
 fn opened_leaf(branch: Branch, sources: &Sources, binned: &AtomicU64) -> State {
     let Node::Deferred(leaf) = &*branch.node else {
         return State::Tree(branch);

@@ -1,6 +1,6 @@
-//! Operands that are equal in a cell: one of them can stand for all.
+//! Finds operands that are equal in a cell, so that one of them can stand for all.
 //!
-//! Two revisions of a part differ in few places, and so do a solid and the steps that led to it.
+//! Revisions of one model differ in few cells, and so do a solid and the steps of the chain that led to it.
 
 use std::hash::BuildHasher;
 use std::sync::Arc;
@@ -16,24 +16,24 @@ use crate::merge::lists::list::{List, PartRecord, Record, Sources};
 use crate::merge::residual::Twin;
 use crate::tree::node::Part;
 
-/// Operands with the twin of each, ascending.
+/// For each operand of a cell, in ascending order, the first operand that is equal to it there (its twin).
 pub struct TwinTable(Vec<(u32, Twin)>);
 
 impl TwinTable {
-    /// The twin of an operand; its own if it has no other.
+    /// Returns the first operand that is equal to this one; itself if there is no earlier one.
     pub fn of(&self, operand: u32) -> Twin {
         let at = self.0.binary_search_by_key(&operand, |pair| pair.0);
         at.map_or(itself(operand), |at| self.0[at].1)
     }
 
-    /// `None` if each is its own twin.
+    /// Makes a table of operands and their twins; `None` if no operand equals an earlier one.
     fn found(pairs: Vec<(u32, Twin)>) -> Option<Self> {
         let is_other = |pair: &(u32, Twin)| pair.0 != pair.1.first;
         pairs.iter().any(is_other).then_some(Self(pairs))
     }
 }
 
-/// Return an operand as its own twin.
+/// Returns the operand as its own twin.
 fn itself(operand: u32) -> Twin {
     Twin {
         first: operand,
@@ -41,14 +41,15 @@ fn itself(operand: u32) -> Twin {
     }
 }
 
-/// The most subtrees to compare in a cell: more are rarely steps of one chain, and each costs a look-up in
-/// each cell.
+/// The most subtrees that are compared in a cell: more are rarely steps of one chain, and each costs a
+/// look-up in each cell.
 const MAX_SUBTREES_COMPARED: usize = 16;
 
-/// The operands whose subtrees in a cell are the same node; `None` if all differ, or there are too many.
+/// Finds operands whose subtrees in a cell are the same shared node; `None` if there are none, or if more
+/// than `MAX_SUBTREES_COMPARED` operands have subtrees.
 ///
 /// # Cost
-/// A look at each operand.
+/// One look-up for each operand.
 pub fn of_one_node(states: &States) -> Option<TwinTable> {
     let is_tree = |s: &&(u32, State)| matches!(s.1, State::Tree(_));
     if !(2..=MAX_SUBTREES_COMPARED).contains(&states.iter().filter(is_tree).count()) {
@@ -68,11 +69,11 @@ pub fn of_one_node(states: &States) -> Option<TwinTable> {
     TwinTable::found(states.iter().map(pair).collect())
 }
 
-/// The operands whose lists have the same elements and the same number at the cell's corner; `None` if all
-/// differ.
+/// Finds operands whose lists have the same elements, in any order, and the same winding number at the cell's
+/// corner; `None` if there are none.
 ///
 /// # Cost
-/// A pass over lists of equal length, and a sort of equal ones.
+/// One pass over lists of equal length, and a sort of lists with equal hashes.
 pub fn of_one_boundary<'a>(operands: &'a [Listed<'a>], sources: &Sources) -> Option<TwinTable> {
     let size = |listed: &Listed| (listed.list.len(), listed.list.corner);
     let mut sizes: SmallVec<[_; 8]> = operands.iter().map(size).collect();
@@ -104,7 +105,8 @@ pub fn of_one_boundary<'a>(operands: &'a [Listed<'a>], sources: &Sources) -> Opt
     TwinTable::found(own.zip(operands).map(pair).collect())
 }
 
-/// A hash that equal lists share, whatever the order of their elements; `None` if a face is not a triangle.
+/// Returns a hash that is the same for lists of the same elements in any order; `None` if a face is not a
+/// triangle.
 fn mark(list: &List, sources: &Sources) -> Option<u64> {
     spend(list.len());
     let mut sum = 0u64;
@@ -115,7 +117,7 @@ fn mark(list: &List, sources: &Sources) -> Option<u64> {
     Some(parts.fold(sum, u64::wrapping_add))
 }
 
-/// Return whether two lists have the same elements, comparing faces by a key.
+/// Returns true if two lists have the same elements in any order; faces are the same if their keys are equal.
 fn are_equal<K: Ord>(a: &List, b: &List, key_of: impl Fn(&Record) -> K) -> bool {
     let faces = |list: &List| {
         let mut faces: Vec<K> = list.records.iter().map(&key_of).collect();
@@ -130,7 +132,8 @@ fn are_equal<K: Ord>(a: &List, b: &List, key_of: impl Fn(&Record) -> K) -> bool 
     a.records.len() == b.records.len() && faces(a) == faces(b) && parts(a) == parts(b)
 }
 
-/// The corners of a face in its orientation, the least first.
+/// Returns the corners of a face in the order of its orientation, beginning with the least; `None` if it is
+/// not a triangle.
 fn corners(record: &Record, sources: &Sources) -> Option<[Lattice; 3]> {
     let mesh = sources.get(record.slot()).mesh()?;
     let [a, b, c] = mesh.corners(record.face);
@@ -148,7 +151,8 @@ fn corners(record: &Record, sources: &Sources) -> Option<[Lattice; 3]> {
     })
 }
 
-/// Steps of a chain share parts; equal parts of different solids are not detected.
+/// Returns the identity of a part by its address, which steps of a chain share; equal parts made separately
+/// have different keys.
 fn key(part: &PartRecord) -> (*const Part, bool) {
     let element = &part.element;
     (
@@ -167,7 +171,7 @@ mod tests {
 
     const BOXES: [[Lattice; 2]; 3] = [[[1; 3], [3; 3]], [[5; 3], [7; 3]], [[9; 3], [11; 3]]];
 
-    /// For each solid, the first with the same boundary in a cell around all.
+    /// Returns for each solid the index of the first one with the same boundary in a cell around all of them.
     fn firsts(solids: &[Solid]) -> Option<Vec<u32>> {
         let shared = Shared::of(solids);
         let firsts = of_one_boundary(&shared.operands(), &shared.sources)?;

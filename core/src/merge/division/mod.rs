@@ -1,7 +1,7 @@
-//! A convex polygon divided along segments into cells.
+//! Divides a convex polygon along segments into triangular cells.
 //!
-//! The arrangement divides whole faces here, and the kernel for general position divides the parts of
-//! elements inside a cell. Cells are triangles, so no caller has to know how segments are connected: values
+//! The arrangement divides whole faces, and the kernel for general position divides the elements of a cell of
+//! the descent. Since all cells are triangles, no caller needs to know how segments are connected: values
 //! that change across segments spread from cell to cell, and the outline of a set of cells is its border.
 
 mod triangulation;
@@ -19,14 +19,14 @@ use crate::geometry::vertex::Vertex;
 
 pub use triangulation::{Defect, Triangulation, NONE};
 
-/// Where a point of a polygon is known to lie.
+/// What is known in advance about the position of a point in a polygon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spot {
-    /// At the corner with this number.
+    /// The point is the corner with this index.
     Corner(usize),
-    /// Between the ends of the side with this number.
+    /// The point lies between the ends of the side with this index.
     Side(usize),
-    /// Inside or on the border.
+    /// The point lies inside the polygon or on its border.
     Inside,
 }
 
@@ -34,18 +34,19 @@ pub enum Spot {
 #[derive(Debug)]
 pub struct Division {
     support: Arc<Plane>,
-    /// The carriers of the polygon's sides.
+    /// For each side of the polygon, the edge or plane that it lies on.
     sides: SmallVec<[Carrier; 3]>,
     triangulation: Triangulation,
-    /// For each segment a plane through it; the left of the segment is on the minus side.
+    /// For each segment a plane that contains it; the left of the segment is on the minus side.
     cuts: Vec<Arc<Plane>>,
 }
 
 impl Division {
-    /// An undivided polygon.
+    /// Makes an undivided polygon of its plane and its counterclockwise corners, each with the carrier of the
+    /// side that begins there.
     ///
     /// # Errors
-    /// If three consecutive corners lie on one line.
+    /// If the polygon has more than three corners and is not strictly convex.
     pub fn of(
         support: &Arc<Plane>,
         corners: impl ExactSizeIterator<Item = (Arc<Vertex>, Carrier)>,
@@ -69,10 +70,10 @@ impl Division {
         })
     }
 
-    /// Adds points; returns their places.
+    /// Inserts points as vertices of the triangulation, and returns their numbers there.
     ///
     /// # Errors
-    /// If a point lies outside.
+    /// If a point lies outside the polygon.
     pub fn insert(&mut self, points: &[(&Arc<Vertex>, Spot)]) -> Result<Vec<u32>, Defect> {
         let mut places = vec![NONE; points.len()];
         let mut on_border: SmallVec<[(usize, usize); 16]> = SmallVec::new();
@@ -95,7 +96,7 @@ impl Division {
         Ok(places)
     }
 
-    /// Inserts points of one side, in their order along it.
+    /// Inserts the points of one side of the polygon, in their order along it.
     fn insert_on_side(
         &mut self,
         on_side: &mut [(usize, usize)],
@@ -129,7 +130,8 @@ impl Division {
         }
     }
 
-    /// Divides along the segment between two places. It lies in a plane; its left is on the minus side.
+    /// Divides the polygon along the segment between two inserted points. It lies in the plane `cut`, and its
+    /// left is on the minus side.
     ///
     /// # Errors
     /// If the segment leaves the polygon.
@@ -145,36 +147,38 @@ impl Division {
         self.triangulation.constrain(ends, (number, cut), meet)
     }
 
-    /// The triangulation.
+    /// Returns the triangulation of the polygon.
     pub fn triangulation(&mut self) -> &mut Triangulation {
         &mut self.triangulation
     }
 
-    /// The neighbours of a cell, with the edges across which they lie.
+    /// Returns for each neighbour of a cell the edge across which it lies, and its number.
     pub fn mates(&self, cell: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         let mates = self.triangulation.cells()[cell].mates.iter().enumerate();
         let mates = mates.filter(|(_, mate)| **mate != NONE);
         mates.map(|(edge, mate)| (edge, *mate as usize))
     }
 
-    /// The corners of a cell.
+    /// Returns the corners of a cell, counterclockwise.
     pub fn corners_of(&self, cell: usize) -> [&Vertex; 3] {
         let corners = self.triangulation.cells()[cell].corners;
         corners.map(|c| &**self.triangulation.vertex(c))
     }
 
-    /// A cell at a corner of the polygon.
+    /// Returns the number of a cell at a corner of the polygon.
     pub fn cell_at_corner(&self, corner: usize) -> usize {
         self.triangulation.cell_at(as_number(corner)) as usize
     }
 
-    /// The segments along an edge of a cell; true for those that have the direction of the edge.
+    /// Returns the segments that run along an edge of a cell, each with whether it has the direction of the
+    /// edge.
     pub fn along_edge(&self, cell: usize, edge: usize) -> impl Iterator<Item = (usize, bool)> + '_ {
         let along = self.triangulation.along_edge(as_number(cell), edge);
         along.map(|(segment, is_along)| (segment as usize, is_along))
     }
 
-    /// A value for each cell, given the value of the first cell and the change across an edge.
+    /// Computes a value for each cell: the first cell has `first`, and `across` returns the value of a
+    /// neighbour from the value of a cell, the cell and the edge.
     pub fn spread<T: Copy>(&self, first: T, across: impl Fn(T, usize, usize) -> T) -> Vec<T> {
         let cells = self.triangulation.cells();
         let mut values = vec![first; cells.len()];
@@ -192,7 +196,8 @@ impl Division {
         values
     }
 
-    /// The border of a set of cells. Collinear edges are merged.
+    /// Returns the border of the cells for which `holds` is true, as closed loops; collinear edges are
+    /// merged.
     pub fn outline(&mut self, holds: &[bool]) -> Vec<BareEdge> {
         let is_border = |this: &Self, (cell, edge): (u32, usize)| {
             let mate = this.triangulation.cells()[cell as usize].mates[edge];
@@ -222,7 +227,7 @@ impl Division {
         edges
     }
 
-    /// Adds a closed loop of border edges; merges collinear ones.
+    /// Adds a closed loop of border edges to `edges`; merges collinear ones.
     fn add_ring(&mut self, ring: &[(u32, usize)], edges: &mut Vec<BareEdge>) {
         let turns = |this: &mut Self, i: usize| {
             let before = ring[(i + ring.len() - 1) % ring.len()];
@@ -249,7 +254,7 @@ impl Division {
         }
     }
 
-    /// Return whether two edges of cells lie in the plane of one segment; may return false negatives.
+    /// Returns true if two edges of cells certainly lie in the plane of one segment.
     fn have_one_cut(&self, first: (u32, usize), second: (u32, usize)) -> bool {
         let cut = |(cell, edge)| self.triangulation.along_edge(cell, edge).next();
         let cuts = cut(first).zip(cut(second));
@@ -272,7 +277,7 @@ impl Division {
     }
 }
 
-/// The two axes along which a polygon is seen counterclockwise.
+/// Returns two axes such that the projection on them of a polygon of this plane is counterclockwise.
 pub fn axes(support: &Plane) -> [usize; 2] {
     let axis = support.main_axis();
     let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
@@ -302,7 +307,8 @@ mod tests {
 
     const SQUARE: [Lattice; 4] = [[0, 0, 0], [8, 0, 0], [8, 8, 0], [0, 8, 0]];
 
-    /// The square divided along a line from its lower side to its upper one, and along one across it.
+    /// Returns the square divided along a line from its lower to its upper side, and along a line across
+    /// this.
     fn quarters() -> Division {
         let mut made = division(&SQUARE).expect("a convex polygon");
         let at = |x, y| Arc::new(Vertex::lattice([x, y, 0]));
@@ -353,7 +359,7 @@ mod tests {
                 Carrier::Edge(_) => None,
             })
             .collect();
-        // The cut across it is no edge, and x < 3 is the minus side of x = 3.
+        // The cut y = 2 is no edge of the outline, and x < 3 is the minus side of x = 3.
         assert_eq!((edges.len(), cuts), (4, vec![false]));
     }
 

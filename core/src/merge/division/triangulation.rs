@@ -1,7 +1,8 @@
-//! A constrained triangulation of a convex polygon: given points are vertices, given segments are edges.
+//! A constrained triangulation of a convex polygon: given points are its vertices, and given segments are
+//! chains of its edges.
 //!
-//! Points are inserted one by one, border points first; `segments` inserts the segments. Orientation tests
-//! are exact. Circle tests only improve the shape of triangles, so doubles are enough.
+//! Points are inserted one by one, border points first; the module `segments` inserts segments. Orientation
+//! tests are exact. Circle tests only improve the shape of triangles, so doubles are precise enough.
 //!
 //! # Source
 //! Lawson 1977 (insertion and flips).
@@ -19,53 +20,54 @@ use crate::geometry::plane::Plane;
 use crate::geometry::vertex::{Homogeneous, Vertex};
 use crate::interrupt::poll;
 
-/// A point or a segment leaves the polygon, or segments that cross have no point in common.
+/// The error that a point or a segment leaves the polygon, that crossing segments have no common point, or
+/// that a polygon is not convex: a defect of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Defect;
 
-/// No triangle: beyond the border. No side: inside the polygon.
+/// The number that stands for no triangle (outside the border), and for no side (inside the polygon).
 pub const NONE: u32 = u32::MAX;
 
-/// A triangle: its corners counterclockwise. Edge `i` runs from corner `i` to the next one.
+/// A triangle of the triangulation, counterclockwise. Edge i runs from corner i to the next one.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell {
-    /// The corners.
+    /// The numbers of the points at the corners.
     pub corners: [u32; 3],
-    /// The triangles across the edges.
+    /// For each edge the number of the triangle across it, or `NONE`.
     pub mates: [u32; 3],
-    /// For each edge one more than the index of its last run; 0 without a run, negative if the runs have
-    /// the directions that the triangle across sees.
+    /// For each edge one more than the index of its last run (a segment along it), or 0 without a run. A
+    /// negative sign says that the runs' directions are given as seen from the triangle across the edge.
     marks: [i32; 3],
 }
 
-/// A segment that runs along an edge.
+/// A segment that runs along an edge of the triangulation.
 #[derive(Clone, Copy, Debug)]
 struct Run {
     segment: u32,
-    /// True if the segment has the direction of the edge in the triangle with the positive mark.
+    /// True if the segment has the direction of the edge as seen from the triangle with the positive mark.
     is_forward: bool,
-    /// The mark before this run was added.
+    /// The mark of the edge before this run was added.
     before: i32,
 }
 
-/// A point of the polygon, projected along an axis.
+/// A point of the triangulation, with its projection along an axis in doubles.
 #[derive(Clone, Debug)]
 struct Place {
     at: [f64; 2],
-    /// A bound on the error of each coordinate.
+    /// A bound on the error of each projected coordinate.
     error: f64,
-    /// The sides of the polygon on which the point lies.
+    /// The numbers of the polygon's sides on which the point lies, or `NONE`.
     sides: [u32; 2],
     vertex: Arc<Vertex>,
     exact: Option<Box<Homogeneous>>,
 }
 
-/// A triangulated polygon.
+/// A triangulated convex polygon.
 #[derive(Debug)]
 pub struct Triangulation {
     axes: [usize; 2],
     places: Vec<Place>,
-    /// A triangle at each point.
+    /// For each point the number of a triangle that has it as a corner.
     incident: Vec<u32>,
     cells: Vec<Cell>,
     runs: Vec<Run>,
@@ -74,7 +76,8 @@ pub struct Triangulation {
 }
 
 impl Triangulation {
-    /// A fan of triangles; the corners are strictly convex and counterclockwise along the axes.
+    /// Triangulates a polygon as a fan; its corners are strictly convex, and counterclockwise in the
+    /// projection on the two axes.
     pub fn new(corners: impl ExactSizeIterator<Item = Arc<Vertex>>, axes: [usize; 2]) -> Self {
         let count = as_number(corners.len());
         let mut made = Self {
@@ -103,17 +106,17 @@ impl Triangulation {
         made
     }
 
-    /// The triangles.
+    /// Returns the triangles.
     pub fn cells(&self) -> &[Cell] {
         &self.cells
     }
 
-    /// A point.
+    /// Returns the exact position of the point with this number.
     pub fn vertex(&self, place: u32) -> &Arc<Vertex> {
         &self.places[place as usize].vertex
     }
 
-    /// The common side of two border points.
+    /// Returns the number of a side of the polygon on which two border points lie.
     pub fn side(&self, ends: [u32; 2]) -> u32 {
         let [a, b] = ends.map(|p| self.places[p as usize].sides);
         if b.contains(&a[0]) {
@@ -123,13 +126,13 @@ impl Triangulation {
         }
     }
 
-    /// The ends of an edge of a triangle.
+    /// Returns the numbers of the points at the ends of an edge of a triangle.
     pub fn ends(&self, (cell, edge): (u32, usize)) -> (u32, u32) {
         let corners = self.cells[cell as usize].corners;
         (corners[edge], corners[(edge + 1) % 3])
     }
 
-    /// The same edge in the neighbouring triangle.
+    /// Returns the triangle across an edge, or `NONE`, and the index of the same edge in it.
     pub fn across(&self, (cell, edge): (u32, usize)) -> (u32, usize) {
         let mate = self.cells[cell as usize].mates[edge];
         let back = if mate == NONE {
@@ -140,7 +143,7 @@ impl Triangulation {
         (mate, back)
     }
 
-    /// Approximately twice the area of a triangle.
+    /// Returns about twice the area of the projection of a triangle.
     pub fn size(&self, cell: u32) -> f64 {
         let [a, b, c] = self.cells[cell as usize]
             .corners
@@ -149,8 +152,8 @@ impl Triangulation {
         ux * vy - uy * vx
     }
 
-    /// The weighted mean of a triangle's corners, rounded to half lattice steps and doubled, in the order of
-    /// the axes.
+    /// Returns the weighted mean of a triangle's projected corners, in half lattice steps rounded to
+    /// integers, in the cyclic order of the axes.
     pub fn mean(&self, cell: u32, weights: [f64; 3]) -> [i64; 2] {
         let corners = self.cells[cell as usize].corners;
         let at = |i: usize| {
@@ -165,7 +168,7 @@ impl Triangulation {
         }
     }
 
-    /// Return whether a point lies strictly inside a triangle.
+    /// Returns true if a point lies strictly inside a triangle.
     pub fn holds(&mut self, cell: u32, vertex: Arc<Vertex>) -> bool {
         let [a, b, c] = self.cells[cell as usize].corners;
         let point = self.add(vertex, [NONE; 2]);
@@ -176,7 +179,7 @@ impl Triangulation {
         is_inside
     }
 
-    /// A triangle that has a point as a corner.
+    /// Returns the number of a triangle that has the point with this number as a corner.
     pub fn cell_at(&self, place: u32) -> u32 {
         self.incident[place as usize]
     }
@@ -198,7 +201,7 @@ impl Triangulation {
         }
     }
 
-    /// Replaces one mate of a triangle by another.
+    /// Replaces the neighbour `from` of a triangle by `to`.
     fn relink(&mut self, neighbour: u32, from: u32, to: u32) {
         if neighbour != NONE {
             let mates = &mut self.cells[neighbour as usize].mates;
@@ -208,13 +211,13 @@ impl Triangulation {
         }
     }
 
-    /// The edge of a triangle across which another one lies.
+    /// Returns the index of the edge of a triangle across which the triangle `mate` lies.
     fn edge_to(&self, cell: u32, mate: u32) -> usize {
         let mates = &self.cells[cell as usize].mates;
         mates.iter().position(|m| *m == mate).unwrap_or(0)
     }
 
-    /// Sign of the turn at three points, positive to the left; exact.
+    /// Returns the exact sign of the turn along three projected points, positive to the left.
     pub fn turn(&mut self, points: [u32; 3]) -> Sign {
         match self.near_turn(points) {
             Filtered::Certain(sign) => sign,
@@ -222,8 +225,8 @@ impl Triangulation {
         }
     }
 
-    /// The same if the first two points lie in a plane whose minus side is on their left. Exact, and
-    /// cheaper than comparing three constructed points.
+    /// Returns the exact sign of the turn along three points, positive to the left, if the first two lie in
+    /// the plane `cut` whose minus side is on the left; cheaper than `Self::turn` for constructed points.
     fn turn_beside(&self, cut: &Plane, points: [u32; 3]) -> Sign {
         match self.near_turn(points) {
             Filtered::Certain(sign) => sign,
@@ -231,7 +234,8 @@ impl Triangulation {
         }
     }
 
-    /// The turn if doubles, or a common side of the polygon, decide it.
+    /// Returns the sign of the turn along three points, positive to the left, if doubles or a common side of
+    /// the polygon decide it.
     fn near_turn(&self, points: [u32; 3]) -> Filtered<Sign> {
         let [p, q, r] = points.map(|i| &self.places[i as usize]);
         let ([ux, uy], [vx, vy]) = (p.to(q), p.to(r));
@@ -268,7 +272,7 @@ impl Triangulation {
         }
     }
 
-    /// The triangles at a point, each with the index of the point among its corners.
+    /// Returns the triangles at a point, each with the index of the point among its corners.
     fn fan(&self, point: u32) -> impl Iterator<Item = (u32, usize)> + '_ {
         let place = move |cell: &Cell| cell.corners.iter().position(|c| *c == point).unwrap_or(0);
         let first = self.incident[point as usize];
@@ -290,14 +294,16 @@ impl Triangulation {
         })
     }
 
-    /// The triangle and the edge from one point to another, if there is one.
+    /// Returns the triangle that has an edge from one point to another, and the index of this edge; `None` if
+    /// there is none.
     fn edge_between(&self, from: u32, to: u32) -> Option<(u32, usize)> {
         let leads =
             |(cell, k): &(u32, usize)| self.cells[*cell as usize].corners[(k + 1) % 3] == to;
         self.fan(from).find(leads)
     }
 
-    /// The edge between two points in the triangles on both sides, if there is one.
+    /// Returns the edge between two points, as seen from the triangles on its left and on its right, or on
+    /// one side at the border; `None` if no edge connects the points.
     fn edges_between(&self, from: u32, to: u32) -> Option<[Option<(u32, usize)>; 2]> {
         let across = |at| Some(self.across(at)).filter(|(mate, _)| *mate != NONE);
         if let Some(at) = self.edge_between(from, to) {
@@ -307,7 +313,7 @@ impl Triangulation {
         Some([None, Some(back)])
     }
 
-    /// Adds a border point between two consecutive ones; returns its number.
+    /// Adds a border point between two consecutive border points, and returns its number.
     pub fn divide_border(&mut self, ends: [u32; 2], vertex: Arc<Vertex>) -> u32 {
         let side = self.side(ends);
         let point = self.add(vertex, [side; 2]);
@@ -318,10 +324,11 @@ impl Triangulation {
         point
     }
 
-    /// Adds a point; returns its number, or the number of an equal point.
+    /// Adds a point of the polygon, and returns its number, or the number of an equal point that is already a
+    /// vertex.
     ///
     /// # Errors
-    /// If it lies outside.
+    /// If the point lies outside the polygon.
     pub fn insert(&mut self, vertex: Arc<Vertex>) -> Result<u32, Defect> {
         let point = self.add(vertex, [NONE; 2]);
         let (cell, on) = self.locate(point)?;
@@ -347,9 +354,10 @@ impl Triangulation {
         Ok(point)
     }
 
-    /// The triangle that holds a point, and the edges on which it lies.
+    /// Returns a triangle that contains a point, and the indices of its edges on which the point lies.
     ///
-    /// Tries edges in random order: with a fixed order a walk may not end.
+    /// The walk from triangle to triangle tests edges in pseudo-random order: with a fixed order it might not
+    /// end.
     fn locate(&mut self, point: u32) -> Result<(u32, SmallVec<[usize; 3]>), Defect> {
         let mut at = self.last;
         'walk: loop {
@@ -377,7 +385,7 @@ impl Triangulation {
         }
     }
 
-    /// Divides a triangle at an inner point; returns the triangles at it.
+    /// Divides a triangle at an inner point, and returns the triangles at this point.
     fn split_cell(&mut self, number: u32, m: u32) -> SmallVec<[u32; 4]> {
         let Cell {
             corners: [a, b, c],
@@ -398,7 +406,7 @@ impl Triangulation {
         SmallVec::from_slice(&[number, second, third])
     }
 
-    /// Divides an edge at a point; returns the triangles at it.
+    /// Divides an edge, and the triangles on both sides, at a point; returns the triangles at this point.
     fn split_edge(&mut self, number: u32, edge: usize, m: u32) -> SmallVec<[u32; 4]> {
         let across = self.cells[number as usize].mates[edge];
         let second = as_number(self.cells.len());
@@ -411,15 +419,15 @@ impl Triangulation {
         self.split_side(number, edge, m, [second, fourth, across]);
         let mut changed = SmallVec::from_slice(&[number, second]);
         if across != NONE {
-            // Seen from across, the halves of the edge come in the other order.
+            // Seen from the triangle across, the halves of the edge come in the opposite order.
             self.split_side(across, back, m, [fourth, second, number]);
             changed.extend([across, fourth]);
         }
         changed
     }
 
-    /// Divides one side of an edge at a point: `second` is the new triangle, `first_mate` and
-    /// `second_mate` those across the halves of the edge.
+    /// Divides the triangle on one side of an edge at a point m of the edge: `second` is the number of the
+    /// new triangle, and `first_mate` and `second_mate` are the triangles across the two halves of the edge.
     fn split_side(
         &mut self,
         number: u32,
@@ -449,7 +457,7 @@ impl Triangulation {
         self.relink(old.mates[next], number, second);
     }
 
-    /// Replaces an edge by the other diagonal of the two triangles at it.
+    /// Replaces an edge by the other diagonal of the quadrilateral of its two triangles.
     fn flip(&mut self, number: u32, edge: usize) {
         let t = self.cells[number as usize];
         let across = t.mates[edge];
@@ -477,7 +485,7 @@ impl Triangulation {
         self.relink(t.mates[t1], number, across);
     }
 
-    /// Flips edges opposite to a new point until its triangles are locally Delaunay.
+    /// Flips edges opposite to a new point until the triangles at the point are locally Delaunay.
     fn legalize(&mut self, point: u32, mut open: SmallVec<[u32; 4]>) {
         while let Some(number) = open.pop() {
             poll();
@@ -500,7 +508,8 @@ impl Triangulation {
         self.is_in_circle([a, b, apex], other) && self.is_convex([a, b, apex, other])
     }
 
-    /// The ends of an edge and the corners opposite to it on both sides.
+    /// Returns the points at the ends of an edge, and the corners opposite to it in the triangles on both
+    /// sides.
     fn around(&self, number: u32, edge: usize) -> [u32; 4] {
         let t = &self.cells[number as usize];
         let across = t.mates[edge];
@@ -510,15 +519,17 @@ impl Triangulation {
         [corner(0), corner(1), corner(2), other]
     }
 
-    /// Return whether the two triangles at an edge make a strictly convex quadrilateral.
+    /// Returns true if the two triangles at an edge form a strictly convex quadrilateral.
     fn is_convex(&mut self, [a, b, apex, other]: [u32; 4]) -> bool {
         self.turn([apex, a, other]) == Sign::Positive
             && self.turn([other, b, apex]) == Sign::Positive
     }
 
-    /// Return whether a point lies clearly inside the circle through three others; in doubles.
+    /// Returns true if a point lies clearly inside the circle through three other points; computed in
+    /// doubles.
     fn is_in_circle(&self, corners: [u32; 3], point: u32) -> bool {
-        /// Rounding must not decide: four points of a grid often lie on one circle.
+        /// The relative margin from which a point is clearly inside: four points of a grid often lie on one
+        /// circle, and rounding must not decide.
         const CLEAR: f64 = 1e-9;
         let at = |i: u32| self.places[i as usize].at;
         let origin = at(point);
@@ -555,7 +566,7 @@ impl Place {
     }
 }
 
-/// Sign of the turn at three points, projected on two axes.
+/// Returns the exact sign of the turn along three points, projected on two axes.
 ///
 /// # Bits
 /// At most 604 for three points on edges, 1086 for any points (`arith::bounds`).
@@ -584,7 +595,8 @@ mod tests {
         cells.places[place as usize].at
     }
 
-    /// Twice the area of all triangles, each of which must turn left and know its neighbours.
+    /// Returns twice the area of all triangles; asserts that each is counterclockwise and agrees with its
+    /// neighbours.
     pub(super) fn area(cells: &Triangulation) -> f64 {
         let mut sum = 0.0;
         for (number, cell) in (0..).zip(cells.cells()) {

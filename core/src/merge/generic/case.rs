@@ -1,4 +1,4 @@
-//! The cases of splitting a tree.
+//! The cases in which a hyperplane splits a partition tree at its root.
 //!
 //! # Source
 //! Naylor, Amanatides, Thibault 1990, section 4: the cases of their table.
@@ -7,29 +7,30 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::side::Half;
 
-/// How the root of a tree and a splitting hyperplane lie to each other.
+/// The position of a splitting hyperplane relative to the cut at the root of a partition tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum SplitCase {
-    /// The tree is a leaf: so are both halves.
+    /// The tree is a leaf, so both halves are leaves.
     Leaf,
-    /// The hyperplane is the root's own.
+    /// The hyperplane is the root's cut.
     Same,
-    /// The hyperplane is the root's own with its sides exchanged.
+    /// The hyperplane is the root's cut with its sides exchanged.
     Opposite,
-    /// One-sided: the hyperplane's part lies on the side `deep` of the root's cut, and the root's
-    /// sub-hyperplane on the side `home` of the hyperplane.
+    /// Within the tree's region, the hyperplane lies on the side `deep` of the root's cut, and the root's cut
+    /// on the side `home` of the hyperplane.
     OneSided {
-        /// The subtree that is split.
+        /// The side of the root's cut whose subtree the hyperplane splits.
         deep: Half,
-        /// The half that keeps the root.
+        /// The side of the hyperplane whose half of the tree keeps the root's cut.
         home: Half,
     },
-    /// The two cross.
+    /// The hyperplane and the root's cut cross within the tree's region.
     Crossing,
 }
 
 impl SplitCase {
-    /// A name: the coplanar cases, "crossing", or the sides `deep` and `home`.
+    /// Returns the name of the case in lower case; a one-sided case is named by its sides `deep` and `home`,
+    /// as in "minus-plus".
     pub fn name(self) -> &'static str {
         match self {
             Self::Leaf => "leaf",

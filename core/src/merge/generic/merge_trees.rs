@@ -1,4 +1,4 @@
-//! Merging two trees into one.
+//! Combines two partition trees by a set operation.
 
 use std::sync::Arc;
 
@@ -12,17 +12,17 @@ use crate::merge::op::{Outcome, SetOp};
 use crate::tree::partition::{Cut, Facet, PartitionTree, SubHyperplane};
 use crate::tree::trace::Watcher;
 
-/// Combines two trees of one region by a set operation.
+/// Combines two partition trees of the same region by a set operation.
 ///
-/// The first tree's cuts split the second tree, from the root down; where one of them is a leaf, the leaf
-/// table decides. The result shares unchanged subtrees with the operands. Coplanar sets are joined, so that
-/// each part of the result's boundary keeps its source.
+/// The first tree's cuts split the second tree, from the root down, until one of two combined subtrees is a
+/// leaf, which decides the result. The result shares unchanged subtrees with the operands. It keeps the
+/// coplanar facets of both trees, so that each part of its boundary has a source.
 ///
 /// # Order
 /// Nodes of `a` before those of `b`.
 ///
 /// # Cost
-/// One split of a part of `b` per node of `a` that meets an undecided part of `b`.
+/// One split of a part of `b` for each node of `a` whose region meets an undecided part of `b`.
 ///
 /// # Errors
 /// `Internal` if the trees do not have the same region.
@@ -56,7 +56,7 @@ pub fn merge<S: Space>(
     merge_watched(a, b, op, &mut ())
 }
 
-/// Combines two trees as [`merge`] does, and reports each pair and each split.
+/// Combines two partition trees as [`merge`] does, and reports each step to `watcher`.
 ///
 /// # Errors
 /// As for [`merge`].
@@ -91,16 +91,18 @@ pub fn merge_watched<S: Space, W: Watcher<MergeEvent<S>>>(
 }
 
 enum Step<S: Space> {
-    /// Combine two trees of one region.
+    /// Combines two trees of the same region.
     Merge(PartitionTree<S>, PartitionTree<S>),
-    /// Join the two trees combined last under a node of the first operand.
+    /// Joins the two trees combined last under a node of the first operand, and adds coplanar facets to its
+    /// cut.
     Join {
         node: Cut<S>,
         coplanar: Vec<Facet<S>>,
     },
 }
 
-/// The outcome for a pair, and its reason.
+/// The result for two trees that need not be divided: the operand on which it depends, how it depends on it,
+/// and why.
 struct Decided<'a, S: Space> {
     outcome: Outcome,
     operand: &'a PartitionTree<S>,
@@ -125,7 +127,8 @@ impl<S: Space> Decided<'_, S> {
     }
 }
 
-/// The result if a leaf or equal references decide it, else the first operand's cut.
+/// Returns the result if one tree is a leaf, or if the trees are the same or complements; otherwise, as
+/// `Err`, the cut at the root of `a`.
 fn decided<'a, S: Space>(
     a: &'a PartitionTree<S>,
     b: &'a PartitionTree<S>,
@@ -151,7 +154,7 @@ fn decided<'a, S: Space>(
     }
 }
 
-/// Splits the second operand by the first one's cut and schedules the two sides.
+/// Splits the second tree by the cut of the first tree's root, and schedules the merging of both sides.
 fn divide<S: Space>(
     cut: &Cut<S>,
     b: &PartitionTree<S>,
@@ -199,7 +202,7 @@ fn join_event<S: Space>(node: &Cut<S>, tree: &PartitionTree<S>) -> MergeEvent<S>
     }
 }
 
-/// A sub-hyperplane with more coplanar fragments.
+/// Returns a copy of a sub-hyperplane with these facets added to its own.
 fn joined<S: Space>(
     sub_hyperplane: &SubHyperplane<S>,
     coplanar: Vec<Facet<S>>,

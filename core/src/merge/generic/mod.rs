@@ -1,4 +1,4 @@
-//! Merging of partition trees of any dimension, node by node.
+//! Splits and merges partition trees of any dimension, node by node.
 
 pub mod case;
 pub mod merge_trees;

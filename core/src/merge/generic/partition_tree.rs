@@ -1,4 +1,4 @@
-//! A tree with a chosen hyperplane at its root.
+//! Rebuilds a partition tree with a chosen hyperplane at its root.
 
 use std::sync::Arc;
 
@@ -7,10 +7,10 @@ use crate::error::Result;
 use crate::geometry::spaces::space::Space;
 use crate::tree::partition::{PartitionTree, SubHyperplane};
 
-/// The same set as a tree whose root is cut by the hyperplane of `span`.
+/// Returns a tree of the same set whose root is cut by the hyperplane of `span`.
 ///
-/// `span` is H ∩ region(T), the part of the hyperplane inside the region of the tree's root. A tree whose
-/// halves are equal leaves gets no cut.
+/// `span` is the part of the hyperplane inside the region of the tree's root. If both halves are leaves with
+/// equal labels, the result is a leaf.
 ///
 /// # Errors
 /// `Internal` if `span` is not the part of its hyperplane inside the tree's region.

@@ -1,8 +1,8 @@
-//! Splitting a tree by a hyperplane into the trees of its two sides.
+//! Splits a partition tree by a hyperplane into the trees of its two sides.
 //!
-//! `T` is the tree, `H` the hyperplane, `P` = H ∩ region(T). A piece lies on one side of a cut if no
-//! point of it lies *strictly* on the other; then, in exact arithmetic, P crosses the tree's cut if
-//! and only if the tree's own span crosses H, and exactly the cases of `Case` can occur.
+//! Notation: T is the tree, H the hyperplane, and P = H ∩ region(T). A piece lies on one side of a cut if no
+//! point of it lies *strictly* on the other. So in exact arithmetic P crosses the cut of T if and only if the
+//! part of this cut inside region(T), its span, crosses H; exactly the cases of `Case` can occur.
 //!
 //! # Source
 //! Naylor, Amanatides, Thibault 1990, section 4.
@@ -18,38 +18,39 @@ use crate::interrupt::poll;
 use crate::tree::partition::{Cut, Facet, PartitionTree, SubHyperplane};
 use crate::tree::trace::Watcher;
 
-/// A tree's parts on the two sides of a hyperplane.
+/// The parts of a partition tree on the two sides of a hyperplane.
 #[derive(Clone, Debug)]
 pub struct Halves<S: Space> {
-    /// The set on the minus side: a tree of the region's minus part.
+    /// The tree of the part on the minus side of the hyperplane.
     pub minus: PartitionTree<S>,
-    /// The set on the plus side.
+    /// The tree of the part on the plus side of the hyperplane.
     pub plus: PartitionTree<S>,
-    /// The tree's coplanar fragments in the hyperplane.
+    /// The facets of the tree that lie in the hyperplane.
     pub coplanar: Vec<Facet<S>>,
 }
 
-/// How an inner node and the splitting hyperplane lie to each other inside the node's region.
+/// The position of a splitting hyperplane H relative to the cut of an inner node, inside the node's region; P
+/// is the part of H in this region, and the span is the part of the node's hyperplane in it.
 enum Case<S: Space> {
-    /// H is the node's own cut.
+    /// H is the node's hyperplane.
     Same,
-    /// H is the node's own cut with its sides exchanged.
+    /// H is the node's hyperplane with its sides exchanged.
     Opposite,
-    /// P lies on the side `deep` of the node's cut, the node's span on the side `home` of H.
+    /// P lies on the side `deep` of the node's cut, and the node's span on the side `home` of H.
     ///
     /// The subtree `deep` is split; the node keeps its cut in the half `home` of H, which contains the
     /// other subtree entirely.
     OneSided { deep: Half, home: Half },
-    /// P and the span cross.
+    /// P and the node's span cross.
     Crossing {
-        /// P on the minus and plus sides of the node's cut.
+        /// The parts of P on the minus and plus sides of the node's cut.
         parts: [S::Fragment; 2],
-        /// The node's sub-hyperplane on the minus and plus sides of H.
+        /// The parts of the node's sub-hyperplane on the minus and plus sides of H.
         sub_hyperplanes: [Arc<SubHyperplane<S>>; 2],
     },
 }
 
-/// Return the case for the root of a tree and a splitting hyperplane.
+/// Returns the position of the hyperplane of `span` relative to the cut at the root of a tree.
 ///
 /// # Errors
 /// As for [`split_tree`].
@@ -83,16 +84,16 @@ impl<S: Space> Case<S> {
     }
 }
 
-/// Splits a tree by a hyperplane into its parts on the minus and plus sides.
+/// Splits a partition tree by a hyperplane into its parts on the minus and plus sides.
 ///
-/// `span` is P = H ∩ region(T), the part of the hyperplane inside the region of the tree's root; H is its
-/// hyperplane. Subtrees on one side are shared, not copied.
+/// `span` is the part of the hyperplane inside the region of the tree's root. Subtrees that lie on one side
+/// are shared, not copied.
 ///
 /// # Order
 /// Nodes keep the relative order of their originals.
 ///
 /// # Cost
-/// Proportional to the number of nodes whose regions H crosses.
+/// Proportional to the number of nodes whose regions the hyperplane crosses.
 ///
 /// # Errors
 /// `Internal` if `span` is not the part of its hyperplane inside the tree's region.
@@ -100,7 +101,7 @@ pub fn split_tree<S: Space>(tree: &PartitionTree<S>, span: &S::Fragment) -> Resu
     split_tree_watched(tree, span, &mut ())
 }
 
-/// Splits a tree as [`split_tree`] does, and reports each node.
+/// Splits a partition tree as [`split_tree`] does, and reports each step to `watcher`.
 ///
 /// # Errors
 /// As for [`split_tree`].
@@ -132,15 +133,16 @@ struct Splitter<'a, S: Space, W> {
 }
 
 enum Step<S: Space> {
-    /// Split a tree by the hyperplane of a fragment.
+    /// Splits a tree by the hyperplane of a fragment.
     Split(PartitionTree<S>, S::Fragment),
-    /// Rebuild a node around the halves of its subtree `deep`.
+    /// Rebuilds a node whose subtree on the side `deep` has been split; only the half on the side `home` of
+    /// the splitting hyperplane keeps the node.
     OneSided {
         node: Cut<S>,
         deep: Half,
         home: Half,
     },
-    /// Join the halves of a node's subtrees under the halves of its sub-hyperplane.
+    /// Joins the halves of both subtrees of a node under the two parts of its sub-hyperplane.
     Crossing {
         sub_hyperplanes: [Arc<SubHyperplane<S>>; 2],
     },
@@ -203,7 +205,8 @@ impl<'a, S: Space, W: Watcher<MergeEvent<S>>> Splitter<'a, S, W> {
         Ok(())
     }
 
-    /// The coplanar cases: the subtrees are the halves.
+    /// Handles a hyperplane equal to the node's: the subtrees are the halves, in the order `halves`, and the
+    /// node's facets are coplanar.
     fn open(&mut self, node: &Cut<S>, halves: [Half; 2]) {
         let [minus, plus] = halves.map(|half| node.child(half));
         self.coplanar
@@ -211,7 +214,8 @@ impl<'a, S: Space, W: Watcher<MergeEvent<S>>> Splitter<'a, S, W> {
         self.push(minus, plus);
     }
 
-    /// The one-sided cases: the half `home` keeps the node, the other half does not have it.
+    /// Handles a hyperplane that splits only the subtree `deep`: the half on the side `home` keeps the node,
+    /// and the other half is a half of the subtree.
     fn rebuild(&mut self, node: &Cut<S>, deep: Half, home: Half) -> Result<()> {
         let (minus, plus) = self.pop()?;
         match home {
@@ -221,7 +225,8 @@ impl<'a, S: Space, W: Watcher<MergeEvent<S>>> Splitter<'a, S, W> {
         Ok(())
     }
 
-    /// The crossing case: each half has a node.
+    /// Handles a hyperplane that crosses the node's cut: each half gets a node with its part of the
+    /// sub-hyperplane.
     fn join(&mut self, [inner, outer]: [Arc<SubHyperplane<S>>; 2]) -> Result<()> {
         let (plus_minus, plus_plus) = self.pop()?;
         let (minus_minus, minus_plus) = self.pop()?;
@@ -244,7 +249,8 @@ impl<'a, S: Space, W: Watcher<MergeEvent<S>>> Splitter<'a, S, W> {
     }
 }
 
-/// The case for a node and the splitting hyperplane's part in its region.
+/// Returns the position of a splitting hyperplane relative to the cut of `node`; `span` is the hyperplane's
+/// part inside the node's region.
 fn case_of<S: Space>(node: &Cut<S>, span: &S::Fragment) -> Result<Case<S>> {
     let (own, cut) = (node.hyperplane(), S::hyperplane(span));
     let sub_hyperplane = node.sub_hyperplane();

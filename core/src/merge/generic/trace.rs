@@ -1,8 +1,8 @@
-//! The steps of splitting and merging trees, node by node.
+//! Records of the steps by which partition trees are split and merged.
 //!
-//! The algorithms report shared nodes ([`MergeEvent`]); a [`Journal`] numbers the nodes of both operands in
-//! preorder and keeps plain records ([`MergeStep`]). With the operands as lists of numbers and labels, the
-//! records reproduce the result without any geometry.
+//! The algorithms report the nodes themselves ([`MergeEvent`]). A [`Journal`] numbers the nodes of both
+//! operands in preorder and records plain steps ([`MergeStep`]). Given the operands as lists of node numbers
+//! and labels, these steps reproduce the result without any geometry.
 
 use std::sync::Arc;
 
@@ -15,12 +15,13 @@ use crate::mesh::handle::NodeId;
 use crate::tree::partition::{Label, PartitionTree, SubHyperplane};
 use crate::tree::trace::Watcher;
 
-/// A tree's root: a leaf, or the contents of its cut.
+/// The root of a partition tree: the label of a leaf, or the sub-hyperplane of a cut.
 #[derive(Clone, Debug)]
 pub enum Root<S: Space> {
-    /// An undivided region.
+    /// A leaf: an undivided region with this label.
     Leaf(Label),
-    /// A divided region; complements have the same sub-hyperplanes.
+    /// A cut: the part of its hyperplane inside the node's region, with the facets in it. The complement of
+    /// the tree has the same sub-hyperplane.
     Cut(Arc<SubHyperplane<S>>),
 }
 
@@ -33,131 +34,135 @@ impl<S: Space> Root<S> {
     }
 }
 
-/// An event, in terms of shared nodes.
+/// A step of splitting or merging trees, reported with the nodes themselves.
 #[derive(Clone, Debug)]
 pub enum MergeEvent<S: Space> {
-    /// A pair of trees of one region is to be combined.
+    /// Two trees of the same region are about to be combined.
     Pair {
-        /// The part of the first operand.
+        /// The root of the first operand's tree in this region.
         a: Root<S>,
-        /// The part of the second.
+        /// The root of the second operand's tree in this region.
         b: Root<S>,
-        /// The decision for them.
+        /// How the two trees are combined.
         decision: Decision,
     },
-    /// A subtree is to be split.
+    /// A subtree of the second operand is about to be split by a hyperplane.
     Split {
-        /// Its root.
+        /// The root of the subtree.
         root: Root<S>,
-        /// The case for it and the splitting hyperplane.
+        /// The position of the splitting hyperplane relative to the subtree's root.
         case: SplitCase,
-        /// The parts of the cut's contents on the minus and the plus side, if the two cross.
+        /// The parts of the root's sub-hyperplane on the minus and the plus side of the splitting hyperplane,
+        /// if they cross.
         parts: Option<[Arc<SubHyperplane<S>>; 2]>,
     },
-    /// A subtree has been split.
+    /// A subtree of the second operand has been split into two trees.
     Halves {
-        /// The roots on the minus and the plus side.
+        /// The roots of the trees on the minus and the plus side.
         roots: [Root<S>; 2],
     },
-    /// The combined subtrees of a node of the first operand have been joined.
+    /// The two combined subtrees of a node of the first operand have been joined under it.
     Join {
-        /// The node's own sub-hyperplane.
+        /// The sub-hyperplane of that node.
         sub_hyperplane: Arc<SubHyperplane<S>>,
-        /// What became of it in the result.
+        /// The form that the node has in the result.
         joined: Joined,
     },
 }
 
-/// The decision for a pair of trees of one region.
+/// How two trees of the same region are combined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Decision {
-    /// The second tree is split by the first one's root; the halves are combined.
+    /// The first tree's root splits the second tree, and the halves are combined with the first tree's
+    /// subtrees.
     Divide,
-    /// A leaf, and why.
+    /// The result is a leaf with this label, for this reason.
     Leaf(Label, DecisionReason),
-    /// The first tree unchanged, shared.
+    /// The result is the first tree itself.
     First(DecisionReason),
-    /// The complement of the first tree.
+    /// The result is the complement of the first tree.
     FirstComplement(DecisionReason),
-    /// The second tree unchanged, shared.
+    /// The result is the second tree itself.
     Second(DecisionReason),
-    /// The complement of the second tree.
+    /// The result is the complement of the second tree.
     SecondComplement(DecisionReason),
 }
 
-/// The reason for a decision.
+/// The reason why two trees can be combined without dividing them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum DecisionReason {
     /// The first tree is a leaf.
     FirstIsLeaf,
     /// The second tree is a leaf.
     SecondIsLeaf,
-    /// Both are the same shared tree.
+    /// Both trees are the same shared tree.
     Same,
-    /// One is the complement of the other.
+    /// One tree is the complement of the other.
     Complement,
 }
 
-/// What a node of the first operand became in the result.
+/// The form that a node of the first operand has in the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Joined {
-    /// Itself: nothing below it changed.
+    /// The node itself, because nothing below it changed.
     Shared,
-    /// A new node with the same cut.
+    /// A new node with the same hyperplane.
     Rebuilt,
-    /// This leaf, because both its sides became equal leaves.
+    /// A leaf with this label, because both subtrees became leaves with this label.
     Collapsed(Label),
 }
 
-/// A tree's root, by number.
+/// The root of a partition tree: a label, or the number of an inner node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Name {
-    /// An undivided region.
+    /// A leaf: an undivided region with this label.
     Leaf(Label),
     /// The inner node of the first operand at this index in preorder, minus before plus.
     First(NodeId),
-    /// The inner node of the second operand, or a part of it.
+    /// The inner node of the second operand at this index in preorder, minus before plus, or a part of that
+    /// node.
     Second(NodeId),
 }
 
-/// One step of splitting or merging, in the order of the work.
+/// A step of splitting or merging trees, recorded with node numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MergeStep {
-    /// A pair of trees of one region.
+    /// Two trees of the same region are combined.
     Pair {
-        /// The part of the first operand.
+        /// The root of the first operand's tree in this region.
         a: Name,
-        /// The part of the second.
+        /// The root of the second operand's tree in this region.
         b: Name,
-        /// The decision for them.
+        /// How the two trees are combined.
         decision: Decision,
     },
-    /// A subtree is split by the cut of the first tree chosen last.
+    /// A subtree of the second operand is split by the cut of the first operand's node that the last `Pair`
+    /// divides.
     Split {
-        /// The subtree's root.
+        /// The root of the subtree.
         root: Name,
-        /// The case for it and the splitting hyperplane.
+        /// The position of the splitting hyperplane relative to the subtree's root.
         case: SplitCase,
     },
-    /// A subtree has been split.
+    /// A subtree of the second operand has been split into two trees.
     Halves {
-        /// The root on the minus side.
+        /// The root of the tree on the minus side.
         minus: Name,
-        /// The root on the plus side.
+        /// The root of the tree on the plus side.
         plus: Name,
     },
-    /// The combined subtrees of a node have been joined.
+    /// The two combined subtrees of a node of the first operand have been joined under it.
     Join {
-        /// The node of the first operand.
+        /// The number of that node in the first operand.
         node: Name,
-        /// What became of it in the result.
+        /// The form that the node has in the result.
         joined: Joined,
     },
 }
 
-/// A watcher that records the steps, with the operands' nodes by number.
+/// A watcher that records the steps of splitting or merging two trees, with nodes by number.
 ///
-/// It keeps the numbered nodes alive, so that no address is reused.
+/// It keeps the numbered nodes alive, because it recognises them by their addresses.
 #[derive(Debug)]
 pub struct Journal<S: Space> {
     first: Numbers<S>,
@@ -168,7 +173,7 @@ pub struct Journal<S: Space> {
 type Numbers<S> = FxHashMap<*const SubHyperplane<S>, (NodeId, Arc<SubHyperplane<S>>)>;
 
 impl<S: Space> Journal<S> {
-    /// A journal of merging two trees, or of splitting the second one.
+    /// Makes an empty journal for merging `first` with `second`, or for splitting `second`.
     pub fn new(first: &PartitionTree<S>, second: &PartitionTree<S>) -> Self {
         Self {
             first: numbered(first),
@@ -177,7 +182,7 @@ impl<S: Space> Journal<S> {
         }
     }
 
-    /// Return the recorded steps.
+    /// Returns the recorded steps, in the order in which they happened.
     pub fn into_steps(self) -> Vec<MergeStep> {
         self.steps
     }
@@ -244,7 +249,8 @@ fn name<S: Space>(root: &Root<S>, numbers: &Numbers<S>, make: impl Fn(NodeId) ->
     }
 }
 
-/// The inner nodes of a tree in preorder, minus before plus, by the contents of their cuts.
+/// Numbers the inner nodes of a tree in preorder, minus before plus; keys are the addresses of their
+/// sub-hyperplanes.
 fn numbered<S: Space>(tree: &PartitionTree<S>) -> Numbers<S> {
     let mut numbers = Numbers::default();
     let mut pending = vec![tree.clone()];

@@ -1,4 +1,4 @@
-//! The faces that stay in a cell, joined into the elements of a leaf.
+//! Joins the pieces of faces that stay in a cell into the elements of a deferred leaf.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Deferred, Group, Node, Part, PartElement};
 use crate::tree::pieces::pieces;
 
-/// The part of one element that stays with one orientation.
+/// The part of a face, or of a piece of a face, that bounds the result of a cell in one orientation.
 #[derive(Debug)]
 pub struct Kept {
     face: SourceFace,
@@ -28,18 +28,18 @@ pub struct Kept {
 
 #[derive(Debug)]
 enum KeptRegion {
-    /// All of a whole face inside the cell.
+    /// All of a face that is inside the cell.
     Whole,
-    /// All of a part inside the cell.
+    /// All of an earlier part of a face that is inside the cell.
     Part(Arc<Part>),
-    /// Convex pieces, and the region that some edges bound.
+    /// Convex pieces of a face, and a further region bounded by these edges.
     Pieces(Vec<Polygon>, Vec<BareEdge>),
-    /// The region inside an outline that needs no joining and is not all of the face in the cell.
+    /// The region inside an outline, which is complete and not all of the face in the cell.
     Outline(Vec<BareEdge>),
 }
 
 impl Kept {
-    /// All of a face in the cell.
+    /// Keeps all of a face that is in the cell.
     pub fn whole(face: SourceFace, orientation: Orientation) -> Self {
         let region = KeptRegion::Whole;
         Self {
@@ -49,7 +49,7 @@ impl Kept {
         }
     }
 
-    /// All of a part in the cell.
+    /// Keeps all of an earlier part of a face that is in the cell.
     pub fn part(face: SourceFace, orientation: Orientation, part: Arc<Part>) -> Self {
         let region = KeptRegion::Part(part);
         Self {
@@ -59,12 +59,12 @@ impl Kept {
         }
     }
 
-    /// Convex pieces of a face.
+    /// Keeps convex pieces of a face.
     pub fn pieces(face: SourceFace, orientation: Orientation, pieces: Vec<Polygon>) -> Self {
         Self::joined(face, orientation, pieces, Vec::new())
     }
 
-    /// Convex pieces of a face, and the region that some edges on it bound.
+    /// Keeps convex pieces of a face, and a further region of the face bounded by `edges`.
     pub fn joined(
         face: SourceFace,
         orientation: Orientation,
@@ -79,8 +79,8 @@ impl Kept {
         }
     }
 
-    /// The region inside an outline: some, but not all of a face in the cell. No two consecutive edges lie
-    /// on one line.
+    /// Keeps the region inside an outline, which must not be all of the face in the cell. No two consecutive
+    /// edges may lie on one line.
     pub fn outlined(face: SourceFace, orientation: Orientation, edges: Vec<BareEdge>) -> Self {
         let region = KeptRegion::Outline(edges);
         Self {
@@ -90,7 +90,7 @@ impl Kept {
         }
     }
 
-    /// Edges that bound some of it, besides the convex pieces.
+    /// Returns the edges that bound the kept region, apart from its convex pieces.
     fn edges(&self) -> &[BareEdge] {
         match &self.region {
             KeptRegion::Pieces(_, edges) | KeptRegion::Outline(edges) => edges,
@@ -98,7 +98,7 @@ impl Kept {
         }
     }
 
-    /// The convex pieces inside the cell.
+    /// Returns the kept region inside the cell as convex pieces, apart from a region given by edges.
     fn polygons(&self, source: &Source, cell: &Cell) -> Cow<'_, [Polygon]> {
         match &self.region {
             KeptRegion::Whole => source.clip(self.face.id, cell).into_iter().collect(),
@@ -113,8 +113,8 @@ impl Kept {
     }
 }
 
-/// Joins the pieces of each face and lists them as the work of a kernel; `touching` says whether they may
-/// touch each other anywhere.
+/// Joins the kept pieces of each face, and returns them as a deferred leaf made by a kernel. `corner` is the
+/// winding number at the cell's low corner, and `touching` says whether faces may touch each other anywhere.
 pub fn assemble(
     mut kept: Vec<Kept>,
     corner: i32,
@@ -173,7 +173,8 @@ pub fn assemble(
     Node::Deferred(leaf)
 }
 
-/// The outline of what stays of a face in one orientation; `None` if all of it stays.
+/// Returns the outline of the part of a face that stays in one orientation; `None` if all of the face in the
+/// cell stays.
 fn outline(run: &[Kept], source: &Source, face: FaceId, cell: &Cell) -> Option<Vec<BareEdge>> {
     let polygons: Vec<Cow<[Polygon]>> = run.iter().map(|k| k.polygons(source, cell)).collect();
     let polygons: Vec<&Polygon> = polygons.iter().flat_map(|p| p.iter()).collect();
@@ -210,8 +211,8 @@ fn list_whole(
     }
 }
 
-/// Return whether an outline runs only along the face's own edges and the cell's border. Then it is the
-/// border of the whole face inside the cell: a part of a connected set without a border of its own is all
+/// Returns true if an outline runs only along the face's own edges and the cell's walls. Then it is the
+/// border of the whole face inside the cell: a part of a connected set without a border inside the set is all
 /// of it.
 pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: FaceId, cell: &Cell) -> bool {
     let ends = edges.iter().map(|e| (&e.from, &e.to, &e.carrier));
@@ -232,7 +233,7 @@ pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: FaceId, cell: &Cel
     if others.is_empty() {
         return !edges.is_empty();
     }
-    // Walls are not slanted.
+    // The walls of a cell are not slanted.
     let is_slanted = |carrier: &Carrier| match carrier {
         Carrier::Cut(plane, _) => plane.only_axis().is_none(),
         Carrier::Edge(_) => false,
@@ -244,8 +245,8 @@ pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: FaceId, cell: &Cel
     others.iter().all(|e| border.contains(&e.line))
 }
 
-/// Return whether some edge of a face certainly lies on none of the face's edges and in no wall of the
-/// cell; may return false negatives.
+/// Returns true if one of the given edges certainly lies neither on an edge of the face nor in a wall of the
+/// cell; false proves nothing.
 fn has_inner<'a>(
     mut edges: impl Iterator<Item = (&'a Arc<Vertex>, &'a Arc<Vertex>, &'a Carrier)>,
     source: &Source,
@@ -263,7 +264,7 @@ fn has_inner<'a>(
     })
 }
 
-/// Return whether two points may lie in one wall of a cell that contains both; may return false positives.
+/// Returns false if two points of a cell certainly do not lie in the same wall of it; true proves nothing.
 fn may_share_wall(a: &Vertex, b: &Vertex, cell: &Cell) -> bool {
     let (ends, low, high) = ([a, b].map(Vertex::bounds), cell.low(), cell.high());
     (0..3).any(|i| {
@@ -272,7 +273,7 @@ fn may_share_wall(a: &Vertex, b: &Vertex, cell: &Cell) -> bool {
     })
 }
 
-/// The lines in which a plane meets the planes of a cell's walls.
+/// Returns the lines in which a plane meets the planes of a cell's walls.
 fn border_lines(plane: &Plane, cell: &Cell) -> Vec<LineKey> {
     let crossed = |wall: &Plane| {
         let axis = wall.main_axis();

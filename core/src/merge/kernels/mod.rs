@@ -1,7 +1,8 @@
-//! Leaf kernels: evaluate an expression in a cell that is no longer halved.
+//! Kernels: they evaluate an expression in a cell that the descent does not halve further.
 //!
-//! A kernel is a folder with a type that implements [`problem::Kernel`], and a place in [`ALL`].
-//! `merge/descent/descend.rs` also tries some on larger cells, which `merge/descent/choice.rs` chooses.
+//! A kernel is a folder with a type that implements [`problem::Kernel`] and is listed in [`ALL`].
+//! `merge/descent/descend.rs` also asks single kernels about larger cells, which `merge/descent/choice.rs`
+//! chooses.
 
 pub mod general;
 pub(super) mod kept;
@@ -12,7 +13,7 @@ pub mod trees;
 
 use problem::Kernel;
 
-/// All kernels, in the order in which small cells are offered to them. The last one takes every cell.
+/// All kernels, in the order in which they are asked to solve a small cell. The last one never refuses.
 pub const ALL: [&dyn Kernel; 3] = [
     &orthogonal::Orthogonal,
     &general::GeneralPosition,

@@ -1,4 +1,4 @@
-//! The problem for a kernel, and the order in which kernels are tried.
+//! The problem that a kernel solves in one cell, and the trait of kernels.
 
 use std::borrow::Cow;
 
@@ -8,34 +8,34 @@ use crate::merge::lists::list::{List, Sources};
 use crate::merge::rule::Rule;
 use crate::tree::node::Node;
 
-/// A cell in which an expression is to be evaluated.
+/// An expression to be evaluated in one cell.
 #[derive(Debug)]
 pub struct CellProblem<'a> {
-    /// The cell.
+    /// The cell in which the expression is to be evaluated.
     pub cell: &'a Cell,
-    /// What remains of the expression there.
+    /// The expression, simplified for operands that are constant in the cell.
     pub expression: &'a Expression,
-    /// The rule for which winding numbers of an operand are inside.
+    /// The rule that says which winding numbers of an operand are inside.
     pub rule: Rule,
-    /// The operands, in order of their numbers.
+    /// The operands with boundary in the cell, in ascending order of their numbers.
     pub operands: Vec<Listed<'a>>,
-    /// The sources of all operands.
+    /// The meshes and half-spaces of all operands.
     pub sources: &'a Sources,
 }
 
-/// An operand with boundary in a cell.
+/// An operand with its boundary in a cell.
 #[derive(Debug)]
 pub struct Listed<'a> {
-    /// Its number in the expression.
+    /// The number of the operand in the expression.
     pub number: u32,
-    /// Its boundary in the cell.
+    /// The elements (faces and parts of faces) of the operand that meet the cell.
     pub list: Cow<'a, List>,
 }
 
-/// A way to evaluate an expression in a cell.
+/// A method to evaluate an expression in a cell.
 ///
-/// All kernels compute the same set. Each refuses some positions; the cell then goes to the next kernel, or
-/// is halved.
+/// All kernels compute the same set. A kernel may refuse a cell whose faces lie in a position that it does
+/// not handle; then the next kernel is asked, or the cell is halved.
 ///
 /// # Example
 /// ```
@@ -68,13 +68,13 @@ pub struct Listed<'a> {
 /// # Ok::<(), bspcsg::error::Error>(())
 /// ```
 pub trait Kernel {
-    /// Return the result in the cell; `None` if the kernel refuses the cell. In both cases adds the
-    /// operands found to overlap themselves.
+    /// Returns the result in the cell; `None` if the kernel refuses the cell. In both cases adds to
+    /// `overlapping` the numbers of operands found to overlap themselves.
     fn solve(&self, problem: &CellProblem, overlapping: &mut Vec<u32>) -> Option<Node>;
 }
 
 impl CellProblem<'_> {
-    /// The result of the first kernel that takes the cell.
+    /// Returns the result of the first kernel that does not refuse the cell; `None` if all do.
     pub fn solve_by(&self, kernels: &[&dyn Kernel], overlapping: &mut Vec<u32>) -> Option<Node> {
         let mut answers = kernels.iter().map(|kernel| kernel.solve(self, overlapping));
         answers.find_map(|answer| answer)

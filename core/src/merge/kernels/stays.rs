@@ -1,4 +1,4 @@
-//! The parts that stay of faces and of pieces of parts, as a kernel's result.
+//! Collects the parts of a cell's elements that bound a kernel's result.
 
 use std::sync::Arc;
 
@@ -10,32 +10,32 @@ use crate::interrupt::poll;
 use crate::mesh::handle::{Slot, SourceFace};
 use crate::tree::node::Part;
 
-/// The part of an element that stays on one side.
+/// The part of an element (a face or a convex piece of a part) that bounds the result in one orientation.
 pub enum Stays {
-    /// Nothing.
+    /// Nothing of the element.
     Nothing,
-    /// All of it in the cell.
+    /// All of the element in the cell.
     All,
-    /// These pieces.
+    /// These convex pieces of the element.
     Pieces(Vec<Polygon>),
-    /// The region inside an outline; no two consecutive edges lie on one line.
+    /// The region of the element inside an outline; no two consecutive edges lie on one line.
     Outline(Vec<BareEdge>),
 }
 
-/// The face or the part of an element.
+/// The face or the part that an element comes from.
 pub enum Owner {
-    /// A whole face.
+    /// The element is this whole face.
     Face(SourceFace),
-    /// A piece of the part with this number.
+    /// The element is a convex piece of the part with this number.
     Part(usize),
 }
 
-/// An element that meets the cell: its number, its owner, and what stays of it in the source's orientation
-/// and in the opposite one.
+/// An element that meets the cell: its number, the face or part that it comes from, and the parts of it that
+/// bound the result in the source's orientation and in the opposite one.
 pub type Settled = (usize, Owner, [Stays; 2]);
 
 impl Stays {
-    /// The result for these pieces.
+    /// Makes the value for these convex pieces; `Nothing` if there are none.
     pub fn of(pieces: Vec<Polygon>) -> Self {
         if pieces.is_empty() {
             Self::Nothing
@@ -54,7 +54,8 @@ impl Stays {
     }
 }
 
-/// Return what stays of all elements, given the parts with their slots, and each element's polygon.
+/// Returns the regions of all faces and parts that bound the result. `parts` has the parts with the slots of
+/// their sources, and `polygon` returns the element with a given number.
 pub fn kept(
     settled: impl Iterator<Item = Settled>,
     parts: &[(&Arc<Part>, Slot)],
@@ -89,7 +90,8 @@ pub fn kept(
     kept
 }
 
-/// A part unchanged if all its pieces stay, else the pieces that stay.
+/// Returns the part unchanged if all its pieces stay, otherwise the pieces that stay; `None` if there are
+/// none.
 fn kept_part(
     (part, slot): (&Arc<Part>, Slot),
     pieces: Vec<(usize, Stays)>,

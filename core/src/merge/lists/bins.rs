@@ -1,11 +1,12 @@
-//! A long list's faces sorted into the cells of one level, so that no halving moves them.
+//! Sorts the faces of a long list once into equally large cells, so that halving a larger cell moves none of
+//! them.
 //!
-//! Above that level a cell only looks up its number of faces and its winding number; the faces are gathered
-//! where the descent ends or continues with short lists.
+//! A cell larger than these only looks up how many faces it has and the winding number at its corner. Its
+//! faces are collected where the descent ends or continues with short lists.
 //!
 //! # Source
 //! Counting sort; integral images (Crow 1984) for the counts in boxes of cells.
-// Places inside the window, and numbers of its cells, are never negative.
+// Indices of cells inside the window are never negative.
 
 use std::sync::Arc;
 
@@ -22,35 +23,38 @@ use crate::mesh::handle::FaceId;
 use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node};
 
-/// The least average number of faces in a cell.
+/// The least average number of faces in a cell into which faces are sorted.
 const MIN_FACES_PER_CELL: usize = 4;
 
-/// The largest average number of entries of a face: above that a coarser level is better.
+/// The largest average number of cells in which a face is entered; if it is exceeded, larger cells are used.
 const MAX_ENTRIES_PER_FACE: usize = 2;
 
-/// The number of faces sampled to estimate the number of entries.
+/// The number of faces sampled to estimate in how many cells a face is entered.
 const FACES_SAMPLED: usize = 1024;
 
-/// The least number of cells worth sorting into.
+/// The least number of cells for which it pays to sort faces into them.
 const MIN_CELLS: usize = 64;
 
-/// The faces of a deferred leaf, by cells of a window.
+/// The faces of a deferred leaf, sorted by the equally large cells of a window.
 #[derive(Debug)]
 pub struct Bins {
     home: Branch,
-    /// The number of each group's first element: elements are numbered consecutively over all groups.
+    /// For each group of faces, the number of its first element; elements are numbered consecutively over all
+    /// groups.
     firsts: Vec<u32>,
     window: Window,
-    /// The index of each cell's first entry, and the end of the last.
+    /// For each cell the index of its first entry in `entries`; the last number is the end of the last cell's
+    /// entries.
     starts: Vec<u32>,
-    /// The elements, sorted by cell.
+    /// The numbers of the elements in each cell, cell after cell.
     entries: Vec<u32>,
-    /// For each corner of the window, the number of entries below it on all axes.
+    /// For each corner of the window's cells, the number of entries in the cells below it on all three axes.
     below: Vec<u32>,
     crossings: Crossings,
 }
 
-/// The faces of a group.
+/// The faces of one group, which share a mesh and an orientation; `first` is the number of the first one
+/// among the elements of the leaf.
 struct Run<'a> {
     mesh: &'a TriangleMesh,
     faces: &'a [FaceId],
@@ -58,9 +62,10 @@ struct Run<'a> {
     first: u32,
 }
 
-/// The cells of elements: one number each, or a span for those in several.
+/// The cells that each element (face) lies in.
 struct Sorted {
-    /// The cell of each element, or `SPANS`.
+    /// For each element the number of the one cell that contains it, or `SPANS` if it reaches into several or
+    /// lies outside the window.
     cells: Vec<u32>,
     spans: Vec<Span>,
 }
@@ -68,10 +73,10 @@ struct Sorted {
 const SPANS: u32 = u32::MAX;
 
 impl Bins {
-    /// The bins of a branch whose node is a deferred leaf.
+    /// Sorts the faces of a branch whose node is a deferred leaf.
     ///
-    /// `None` if it does not consist of faces of meshes only, or if most faces are so large within their
-    /// region that no level separates them.
+    /// `None` if the leaf does not consist of faces of meshes only, or if most faces are so large within
+    /// their region that no cell size separates them.
     pub fn new(home: &Branch) -> Option<Self> {
         let Node::Deferred(leaf) = &*home.node else {
             return None;
@@ -112,12 +117,13 @@ impl Bins {
         })
     }
 
-    /// Return whether the halves of a cell still consist of whole cells of the window.
+    /// Returns true if halving this cell cuts none of the cells into which faces are sorted.
     pub fn divide(&self, cell: &Cell) -> bool {
         self.window.is_divided_in(cell)
     }
 
-    /// The number of entries in a cell inside the home: zero if no face meets it.
+    /// Returns the number of entries of faces in a cell of the sorted leaf: zero if no face meets the cell; a
+    /// face may be counted several times.
     pub fn len_in(&self, cell: &Cell) -> usize {
         let [x, y, z] = self.window.covered(cell);
         let [_, ny, nz] = self.window.count();
@@ -129,13 +135,13 @@ impl Bins {
         (slab(x.end) - slab(x.start)) as usize
     }
 
-    /// The winding number at the low corner of a cell inside the home.
+    /// Returns the winding number at the low corner of a cell that lies in the sorted leaf.
     pub fn corner_of(&self, cell: &Cell) -> i32 {
         let change = self.crossings.up_to(self.window.corner(cell));
         self.home.oriented(self.leaf().corner + change)
     }
 
-    /// The part of the home in a cell, as a deferred leaf.
+    /// Returns the sorted leaf restricted to a cell, as a deferred leaf that lists the faces in this cell.
     pub fn branch_in(&self, cell: &Cell) -> Branch {
         if *cell == self.home.cell {
             return self.home.clone();
@@ -150,7 +156,7 @@ impl Bins {
         Branch::of_node(*cell, Node::Deferred(leaf))
     }
 
-    /// Return whether a kernel made the home.
+    /// Returns true if a kernel made the sorted leaf; false if it is the unchanged boundary of an operand.
     pub fn is_worked(&self) -> bool {
         self.leaf().worked
     }
@@ -185,7 +191,7 @@ impl Bins {
         groups
     }
 
-    /// The elements in a cell, ascending.
+    /// Returns the numbers of the elements in a cell, ascending and without repetition.
     fn elements_in(&self, cell: &Cell) -> Vec<u32> {
         let [x, y, z] = self.window.covered(cell);
         let mut elements = Vec::with_capacity(self.len_in(cell));
@@ -198,7 +204,7 @@ impl Bins {
     }
 }
 
-/// Sorts numbers below a limit, and leaves out repetitions.
+/// Sorts numbers below `limit` and removes repetitions.
 fn ascending(mut numbers: Vec<u32>, limit: usize) -> Vec<u32> {
     if numbers.len() < limit / 32 {
         numbers.sort_unstable();
@@ -220,7 +226,7 @@ fn ascending(mut numbers: Vec<u32>, limit: usize) -> Vec<u32> {
     numbers
 }
 
-/// The faces by group; `None` if some are not triangles of a mesh.
+/// Returns the faces of a leaf by group; `None` if the leaf has elements other than triangles of meshes.
 fn runs(leaf: &Deferred) -> Option<Vec<Run<'_>>> {
     if !leaf.parts.is_empty() {
         return None;
@@ -239,14 +245,15 @@ fn runs(leaf: &Deferred) -> Option<Vec<Run<'_>>> {
     Some(runs)
 }
 
-/// The run and the face of an element.
+/// Returns the group of the element with this number, and its face.
 fn find<'a, 'b>(runs: &'a [Run<'b>], element: u32) -> (&'a Run<'b>, FaceId) {
     let run = &runs[runs.partition_point(|r| r.first <= element) - 1];
     (run, run.faces[(element - run.first) as usize])
 }
 
 impl Run<'_> {
-    /// Return whether one pass over all vertices of the mesh pays.
+    /// Returns true if the group has at least as many faces as its mesh has vertices, so that one pass over
+    /// all vertices pays.
     fn is_most(&self) -> bool {
         self.faces.len() >= self.mesh.vertices.len()
     }
@@ -269,7 +276,8 @@ fn joint(a: (Lattice, Lattice), b: (Lattice, Lattice)) -> (Lattice, Lattice) {
     )
 }
 
-/// The bounds of all faces, inside a cell.
+/// Returns the intersection of a cell with the bounding box of all faces, as its low and its high corner;
+/// `None` if it is empty.
 fn bounds(runs: &[Run], home: &Cell) -> Option<(Lattice, Lattice)> {
     let (low, high) = runs.iter().filter_map(Run::bounds).reduce(joint)?;
     let top = home.high();
@@ -278,7 +286,8 @@ fn bounds(runs: &[Run], home: &Cell) -> Option<(Lattice, Lattice)> {
     (0..3).all(|i| low[i] <= high[i]).then_some((low, high))
 }
 
-/// The finest window with enough faces per cell and few enough entries per face.
+/// Returns the window of the smallest cells with enough faces in each cell and with each face in few enough
+/// cells, on average; `None` if there is none, or if its cells are fewer than `MIN_CELLS`.
 fn plan(runs: &[Run], home: &Cell, total: usize) -> Option<Window> {
     let (low, high) = bounds(runs, home)?;
     let step = total.div_ceil(FACES_SAMPLED);
@@ -298,7 +307,7 @@ fn plan(runs: &[Run], home: &Cell, total: usize) -> Option<Window> {
         .filter(|w| w.len() >= MIN_CELLS)
 }
 
-/// The number of cells in which a face with these bounds is entered.
+/// Returns the number of the window's cells that a face with this bounding box may reach into.
 fn entry_count(window: &Window, (low, high): &(Lattice, Lattice)) -> usize {
     let [low, high] = [window.code(low), window.code(high)];
     cell_count(window, &Span::new(0, [low, high, high]))
@@ -350,7 +359,8 @@ impl Sorted {
     }
 }
 
-/// The entries of spanning faces as pairs of cell and element; `None` if there are too many.
+/// Returns the pairs of cell and element for the faces that reach into several cells; `None` if these pairs,
+/// with the lines that the faces may cross, are more than `limit`.
 fn rows(window: &Window, runs: &[Run], spans: &[Span], limit: usize) -> Option<Vec<(u32, u32)>> {
     let mut rows = Vec::with_capacity(2 * spans.len());
     let mut lines = 0;
@@ -378,7 +388,7 @@ fn rows(window: &Window, runs: &[Run], spans: &[Span], limit: usize) -> Option<V
     Some(rows)
 }
 
-/// Calls a function with each cell of a box.
+/// Calls `enter` with the number of each cell from `low` to `high`.
 fn each_cell(window: &Window, low: [i32; 3], high: [i32; 3], enter: &mut impl FnMut(u32)) {
     for x in low[0]..=high[0] {
         for y in low[1]..=high[1] {
@@ -389,7 +399,7 @@ fn each_cell(window: &Window, low: [i32; 3], high: [i32; 3], enter: &mut impl Fn
     }
 }
 
-/// Calls a function with the cells of a box that a triangle may meet.
+/// Calls `enter` with the number of each cell from `low` to `high` that a triangle may meet.
 fn spread(
     window: &Window,
     corners: &[Lattice; 3],
@@ -416,7 +426,9 @@ fn spread(
     }
 }
 
-/// The entries sorted by cell, ascending for elements of one cell, and where each cell's start.
+/// Sorts entries by cell; returns for each cell the index of its first entry, and the elements of the
+/// entries. `cells` has the only cell of each element, and `rows` the pairs of cell and element of elements
+/// in several cells.
 fn distribute(window: &Window, cells: &[u32], rows: &[(u32, u32)]) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0u32; window.len() + 2];
     for cell in cells.iter().filter(|c| **c != SPANS) {
@@ -445,7 +457,8 @@ fn distribute(window: &Window, cells: &[u32], rows: &[(u32, u32)]) -> (Vec<u32>,
     (starts, entries)
 }
 
-/// For each corner of the window, the number of entries in the cells below it on all axes.
+/// Returns for each corner of the window's cells the number of entries in the cells below it on all three
+/// axes.
 fn integral(window: &Window, starts: &[u32]) -> Vec<u32> {
     let [nx, ny, nz] = window.count().map(|c| c.cast_unsigned() as usize);
     let (row, slab) = (nz + 1, (ny + 1) * (nz + 1));
@@ -473,7 +486,8 @@ mod tests {
     use crate::mesh::handle::Slot;
     use crate::tree::solid::Solid;
 
-    /// 64 boxes in rows, each in a cell of 16 points, and one around all of them.
+    /// 64 boxes in a cubic array, each in a cell of 16 lattice points along each axis, and one box around
+    /// them all.
     fn boxes_in_a_box() -> Solid {
         let places = (0..64).map(|i| [16 * (i & 3), 16 * (i >> 2 & 3), 16 * (i >> 4)]);
         let small = places.map(|p| [2, 13].map(|c| p.map(|x| x + c)));

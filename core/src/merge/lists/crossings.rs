@@ -1,8 +1,9 @@
-//! Changes of the winding number of a window's faces along the lines between its cells.
+//! Changes of the winding number along the lines through the corners of a window's cells.
 //!
-//! The path from the low corner of the window to another corner runs along the first axis, then the second,
-//! then the third. Only faces across lines of two axes can meet a line of the third.
-// Lines, and places inside the window, are never negative.
+//! The path from the low corner of the window to another corner of its cells runs along the first axis, then
+//! the second, then the third. Only faces whose bounds contain lines across two axes can meet a line along
+//! the third.
+// The numbers of lines, and indices of cells inside the window, are never negative.
 
 use super::window::{Span, Window};
 use crate::geometry::axes::each_axis;
@@ -11,17 +12,17 @@ use crate::geometry::side::Orientation;
 use crate::geometry::winding::crossing::{triangle_change, Segment};
 use crate::interrupt::poll;
 
-/// A line along an axis and a place on it in one word, ordered by line.
+/// The number of a line along an axis and a cell index on it in one 64-bit word, ordered by line, then index.
 type Key = u64;
 
-/// The changes along the lines of one axis, as running sums.
+/// The changes of the winding number along the lines parallel to one axis, as running sums.
 #[derive(Debug, Default)]
 struct Along {
     keys: Vec<Key>,
     sums: Vec<i32>,
 }
 
-/// The crossings of faces with the paths to a window's corners.
+/// The crossings of faces with the paths from a window's low corner to the corners of its cells.
 #[derive(Debug)]
 pub struct Crossings {
     window: Window,
@@ -46,7 +47,8 @@ impl Along {
         }
     }
 
-    /// The change along a line from its start to another line across it.
+    /// Returns the change of the winding number along line number `line`, from its start to the plane number
+    /// `end` across it.
     fn up_to(&self, line: u32, end: i32) -> i32 {
         let before = |key: Key| {
             let count = self.keys.partition_point(|k| *k < key);
@@ -57,7 +59,8 @@ impl Along {
 }
 
 impl Crossings {
-    /// The crossings of spanning faces; `corners` gives a face's corners and its orientation.
+    /// Finds the crossings of faces that reach into several cells; `corners` returns the corners and the
+    /// orientation of a face by its element number.
     pub fn new(
         window: Window,
         spans: &[Span],
@@ -82,7 +85,7 @@ impl Crossings {
         }
     }
 
-    /// The change of the winding number from the window's low corner to another corner.
+    /// Returns the change of the winding number from the window's low corner to another corner of its cells.
     pub fn up_to(&self, corner: [i32; 3]) -> i32 {
         let [x, y, z] = corner;
         let line = |axis| number(&self.window, axis, x, y);
@@ -92,7 +95,7 @@ impl Crossings {
     }
 }
 
-/// Return the number of lines that a span may meet.
+/// Returns how many of the lines through corners of cells a face with this range of cells may cross.
 pub fn line_count(span: &Span) -> usize {
     let mut count = 0;
     if crosses_two(span) {
@@ -101,12 +104,13 @@ pub fn line_count(span: &Span) -> usize {
     count
 }
 
-/// Return whether a face lies across lines of two axes.
+/// Returns true if a face reaches over planes between cells on at least two axes.
 fn crosses_two(span: &Span) -> bool {
     (0..3).filter(|i| !span.lines(*i).is_empty()).count() >= 2
 }
 
-/// Calls a function with each axis and line on which a face with this span may cross it.
+/// Calls `visit` with each line that a face with this range of cells may cross: the axis that it is parallel
+/// to, and its indices on the first two axes.
 fn visit_lines(span: &Span, visit: &mut impl FnMut(usize, i32, i32)) {
     let [x, y, z] = each_axis(|axis| span.lines(axis));
     let starts = |lines: &std::ops::Range<i32>| lines.contains(&0);
@@ -121,7 +125,8 @@ fn visit_lines(span: &Span, visit: &mut impl FnMut(usize, i32, i32)) {
     }
 }
 
-/// The number of a line along an axis: the first axis has one line, the second a row of lines.
+/// Returns the number of a line parallel to `axis`, which lies at indices `x` and `y` on the first two axes;
+/// the first axis has only one line, and the second one for each `x`.
 fn number(window: &Window, axis: usize, x: i32, y: i32) -> u32 {
     match axis {
         0 => 0,
@@ -130,8 +135,8 @@ fn number(window: &Window, axis: usize, x: i32, y: i32) -> u32 {
     }
 }
 
-/// Return the place where a face crosses a line inside the window, and the change of the winding number
-/// there.
+/// Returns the index of the cell along a line, parallel to `axis`, in which a face crosses it, and the change
+/// of the winding number there; `None` if it does not cross the line inside the window.
 fn crossing(
     window: &Window,
     span: &Span,
@@ -170,7 +175,7 @@ mod tests {
 
     #[test]
     fn the_way_to_a_corner_in_a_box_crosses_its_surface_once() {
-        // It extends beyond the top of the window.
+        // The box extends above the top of the window.
         let solid = cuboid([4; 3], [28, 28, 40]);
         let mesh = solid.sources().get(Slot(0)).mesh().expect("a mesh");
         let window = Window::around(&[0; 3], &[31; 3], 3).expect("few cells");
@@ -181,7 +186,7 @@ mod tests {
         let spans: Vec<Span> = mesh.face_ids().map(span).collect();
         let corners = |element: u32| (mesh.corners(FaceId(element)), Orientation::Same);
         let crossings = Crossings::new(window, &spans, corners);
-        // Corners lie at -1/2, 15/2, 31/2, 47/2 and 63/2.
+        // The corners of the cells have the coordinates -1/2, 15/2, 31/2, 47/2 and 63/2.
         for (x, y, z) in
             (0..5).flat_map(|x| (0..5).flat_map(move |y| (0..5).map(move |z| (x, y, z))))
         {

@@ -1,4 +1,4 @@
-//! The list of elements that meet a cell, and its division at the cell's cut.
+//! The list of elements (faces and parts of faces) that meet a cell, and its division with the cell.
 
 use std::sync::{Arc, OnceLock};
 
@@ -16,7 +16,7 @@ use crate::tree::node::{Branch, Deferred, Group, Node, PartElement};
 use crate::tree::pieces::{pieces, Piece};
 use crate::tree::table::Table;
 
-/// Coordinates relative to a cell, coarse enough for 32 bits.
+/// Coordinates relative to a cell, divided by a power of two so that they fit into 32 bits.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     origin: Lattice,
@@ -39,7 +39,7 @@ impl Frame {
         index.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
     }
 
-    /// The first index whose coordinates are all at least `k`.
+    /// Returns the first 32-bit index whose lattice coordinates are all at least `k`.
     fn index_beyond(&self, axis: usize, k: i64) -> i32 {
         self.index(axis, k + (1 << self.shift) - 1)
     }
@@ -58,25 +58,26 @@ impl Frame {
     }
 }
 
-/// A whole face with conservative bounds.
+/// A whole face with its bounding box relative to a cell, rounded outwards.
 #[derive(Clone, Copy, Debug)]
 pub struct Record {
     low: [i32; 3],
     high: [i32; 3],
-    /// The face.
+    /// The number of the face in its source.
     pub face: FaceId,
     run: Run,
 }
 
-/// A slot, an orientation and a mark in one word, shared by the faces of a group.
+/// The source (its slot), the orientation and the mark `TOUCHING` of a group of faces in one 32-bit word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Run(u32);
 
 impl Run {
-    /// The bit of the orientation: there are fewer than 2³⁰ sources.
+    /// The bit that is set for faces turned around; the bits below 2³⁰ are the slot, as there are fewer than
+    /// 2³⁰ sources.
     const OPPOSITE: u32 = 1 << 31;
 
-    /// The bit of faces that may touch other elements anywhere.
+    /// The bit that is set for faces that may touch other elements anywhere, not only along edges.
     const TOUCHING: u32 = 1 << 30;
 
     fn new(slot: Slot, orientation: Orientation, touching: bool) -> Self {
@@ -99,78 +100,78 @@ impl Run {
 }
 
 impl Record {
-    /// The source in the evaluation's table.
+    /// Returns the index of the face's source in the evaluation's table of sources.
     pub fn slot(&self) -> Slot {
         self.run.slot()
     }
 
-    /// Return the orientation of the face relative to the source.
+    /// Returns the orientation of the face relative to its source.
     pub fn orientation(&self) -> Orientation {
         self.run.orientation()
     }
 }
 
-/// A part with conservative bounds, and its cached convex pieces.
+/// A part of a face with its bounding box relative to a cell, rounded outwards, and its cached convex pieces.
 #[derive(Clone, Debug)]
 pub struct PartRecord {
     low: [i32; 3],
     high: [i32; 3],
-    /// The part.
+    /// The part of a face, with its orientation.
     pub element: PartElement,
     pieces: OnceLock<Arc<[Piece]>>,
 }
 
 impl PartRecord {
-    /// The convex pieces.
+    /// Returns the convex pieces of the part; the first call computes them.
     pub fn pieces(&self) -> &[Piece] {
         self.pieces.get_or_init(|| pieces(&self.element.part))
     }
 }
 
-/// The elements of one operand that meet a cell, and its winding number at the low corner.
+/// The elements of one operand that meet a cell, and the operand's winding number at the cell's low corner.
 #[derive(Clone, Debug)]
 pub struct List {
     frame: Frame,
-    /// Whole faces.
+    /// The whole faces that meet the cell.
     pub records: Vec<Record>,
-    /// Parts.
+    /// The parts of faces that meet the cell.
     pub parts: Vec<PartRecord>,
-    /// The winding number at the cell's low corner.
+    /// The operand's winding number at the cell's low corner.
     pub corner: i32,
     worked: bool,
 }
 
-/// The sources of an evaluation, in the order of the expression.
+/// The sources (meshes and half-spaces) of an evaluation, in the order in which operands first name them.
 #[derive(Debug)]
 pub struct Sources(Table);
 
 impl Sources {
-    /// The sources of a table.
+    /// Makes the sources of an evaluation from a table.
     pub fn new(table: Table) -> Self {
         Self(table)
     }
 
-    /// The table.
+    /// Returns the table of sources.
     pub fn table(&self) -> &Table {
         &self.0
     }
 
-    /// The source in a slot.
+    /// Returns the source with this index in the table.
     pub fn get(&self, slot: Slot) -> &Arc<Source> {
         self.0.get(slot)
     }
 
-    /// The slot of a source.
+    /// Returns the index of a source in the table.
     ///
     /// # Panics
-    /// If the table does not have it.
+    /// If the table does not contain the source.
     pub fn slot(&self, source: &Source) -> Slot {
         self.0.slot(source).expect("a source of the table")
     }
 }
 
 impl List {
-    /// A box around the elements, at most slightly larger than needed.
+    /// Returns the low and the high corner of a box around all elements, rounded outwards.
     pub fn bounds(&self) -> [Lattice; 2] {
         let records = self.records.iter().map(|r| (&r.low, &r.high));
         let parts = self.parts.iter().map(|p| (&p.low, &p.high));
@@ -185,7 +186,7 @@ impl List {
         [place(low, 0), place(high, 1)]
     }
 
-    /// Opens a deferred leaf whose branch covers `cell`.
+    /// Makes the list of a deferred leaf in the cell of its branch, complemented if the branch is.
     pub fn open(leaf: &Deferred, branch: &Branch, sources: &Sources) -> Self {
         spend(leaf.len());
         let frame = Frame::of(&branch.cell);
@@ -209,8 +210,8 @@ impl List {
         list
     }
 
-    /// Opens a deferred leaf as a list of a larger cell; `None` if an element extends beyond the leaf's own
-    /// cell, where it may not be boundary.
+    /// Makes the list of a deferred leaf in a cell that contains the cell of its branch. `None` if an element
+    /// extends out of the branch's cell, because outside it may not bound the solid.
     pub fn lifted(branch: &Branch, cell: &Cell, sources: &Sources) -> Option<Self> {
         let Node::Deferred(leaf) = &*branch.node else {
             return None;
@@ -232,27 +233,28 @@ impl List {
         Some(list)
     }
 
-    /// The number of elements.
+    /// Returns the number of elements (whole faces and parts).
     pub fn len(&self) -> usize {
         self.records.len() + self.parts.len()
     }
 
-    /// Return whether a kernel made the elements.
+    /// Returns true if a kernel made the elements; false if they are the unchanged boundary of an operand.
     pub fn is_worked(&self) -> bool {
         self.worked
     }
 
-    /// Return whether some faces may touch other elements anywhere.
+    /// Returns true if the list has a face that may touch other elements anywhere, not only along edges.
     pub fn is_touching(&self) -> bool {
         self.records.iter().any(|r| r.run.is_touching())
     }
 
-    /// Return whether there are no elements.
+    /// Returns true if no element is listed.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The lists of the two halves of `cell`.
+    /// Divides the list of `cell` at `cut` into the lists of the minus and the plus half; an element may be
+    /// in both.
     pub fn divide(mut self, cell: &Cell, cut: Cut, sources: &Sources) -> (Self, Self) {
         spend(self.len());
         if !self.frame.resolves(cell) {
@@ -271,8 +273,8 @@ impl List {
         (self, plus)
     }
 
-    /// Restricts the list to a smaller cell; nothing may meet the rest of the cell, so that the number at
-    /// the low corner is the same.
+    /// Restricts the list to a smaller cell. No element may meet the other part of the larger cell, so that
+    /// the winding number at the low corner does not change.
     pub fn shrink(&mut self, inner: &Cell, sources: &Sources) {
         if !self.frame.resolves(inner) {
             spend(self.len());
@@ -280,7 +282,8 @@ impl List {
         }
     }
 
-    /// The winding number in the rest of the cell around a smaller one; nothing may meet the rest.
+    /// Returns the winding number in `cell` outside of the smaller cell `inner`; no element may meet this
+    /// region.
     pub fn beside(&self, cell: &Cell, inner: &Cell, sources: &Sources) -> i32 {
         match cell.cut() {
             Some(cut) if inner.low() == cell.low() => {
@@ -290,7 +293,8 @@ impl List {
         }
     }
 
-    /// Keeps the records of the minus half in place, and returns the others.
+    /// Removes the faces that miss the minus half of `cell`, and returns the faces that may meet its plus
+    /// half.
     fn divide_records(&mut self, cell: &Cell, cut: Cut, sources: &Sources) -> Vec<Record> {
         let (axis, at) = (cut.axis, self.frame.index(cut.axis, cut.at));
         let halves = Half::BOTH.map(|half| cell.half(cut, half));
@@ -309,7 +313,7 @@ impl List {
         plus
     }
 
-    /// Count the elements that extend beyond the cell: halving cannot separate them soon.
+    /// Returns the number of elements that extend out of the cell, which halving cannot separate soon.
     pub fn reaching_out(&self, cell: &Cell) -> usize {
         let high = cell.high();
         let (low, high) = (self.frame.indices(cell.low()), self.frame.indices(&high));
@@ -329,7 +333,8 @@ impl List {
         self.frame = frame;
     }
 
-    /// The change of the winding number from the cell's low corner to the plus half's.
+    /// Returns the change of the winding number from the low corner of `cell` to the low corner of its plus
+    /// half.
     fn change_along_edge(&self, cell: &Cell, cut: Cut, sources: &Sources) -> i32 {
         let from = cell.corner();
         let segment = Segment {
@@ -366,7 +371,8 @@ impl List {
         change
     }
 
-    /// The list as a deferred leaf, complemented if the flag is set.
+    /// Returns the list as a deferred leaf, complemented if `complement` is true; without elements, as a
+    /// leaf.
     pub fn close(self, complement: bool, sources: &Sources) -> Node {
         let corner = if complement {
             1 - self.corner
@@ -440,7 +446,8 @@ impl Frame {
         }
     }
 
-    /// Return whether a record is so large that its plane may miss a cell that its bounds meet.
+    /// Returns true if a face's bounding box is at least as long as `cell` on an axis; such a face may miss a
+    /// half of the cell that its box meets.
     fn exceeds(&self, r: &Record, cell: &Cell) -> bool {
         let size = cell.size();
         (0..3).any(|i| {
@@ -465,14 +472,14 @@ mod tests {
             list = list.divide(&cell, cut, &scene.sources).1;
             cell = cell.half(cut, Half::Plus);
         }
-        // The cell from 16 up: its low corner is inside the box, and the faces at zero are not in it.
+        // The cell begins at 16: its low corner is inside the box, and the faces at zero are not in it.
         assert_eq!((*cell.low(), list.corner), ([16; 3], 1));
         let mesh = scene.sources.get(Slot(0)).mesh().expect("a mesh");
         let meets = |f: FaceId| mesh.face_box(f).1.iter().all(|c| *c == 20);
         assert!(!list.is_empty() && list.records.iter().all(|r| meets(r.face)));
     }
 
-    /// Around the low corner of a large cell, inside the solid, and around boxes elsewhere.
+    /// Boxes around the low corner of a large cell, near this corner, and far from it.
     #[test]
     fn shrinking_counts_what_halving_counts() {
         let ends = [[-100, 20], [3, 20], [12 << 30, (12 << 30) + 9]];
@@ -492,7 +499,7 @@ mod tests {
         }
     }
 
-    /// Halve a list from a cell down to an inner one; also returns the other halves.
+    /// Halves a list from a cell down to an inner one; returns its list, and the lists of the other halves.
     fn down(list: List, from: Cell, inner: &Cell, sources: &Sources) -> (List, Vec<List>) {
         let (mut list, mut cell, mut others) = (list, from, Vec::new());
         while let Some(cut) = cell.cut().filter(|_| cell != *inner) {

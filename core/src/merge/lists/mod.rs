@@ -1,4 +1,5 @@
-//! The elements that meet a cell: lists, divided with the cells, and bins for long lists.
+//! The elements (faces and parts of faces) that meet a cell: short lists, which are divided with the cell,
+//! and long ones sorted into bins.
 
 pub(super) mod bins;
 pub(super) mod crossings;

@@ -1,4 +1,4 @@
-//! Tests whether a face misses a box, by separating axes in doubles.
+//! Tests whether a face misses an axis-parallel box, by separating axes in doubles.
 
 use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
@@ -8,10 +8,10 @@ use crate::geometry::plane::{Lattice, Plane};
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::{Shape, Source};
 
-/// Relative slack of the separating axis tests in doubles: far above their rounding.
+/// The relative slack of the separating axis tests in doubles, far above their rounding errors.
 const SLACK: f64 = 1e-13;
 
-/// Return whether a face certainly misses a closed cell; may return false negatives.
+/// Returns true if a face certainly misses a closed cell; false proves nothing.
 pub fn misses(source: &Source, face: FaceId, cell: &Cell) -> bool {
     let (low, high) = (cell.low(), cell.high());
     match source.shape() {
@@ -29,10 +29,11 @@ fn plane_misses(plane: &Plane, low: &Lattice, high: &Lattice) -> bool {
     value.abs() > reach + (size + reach) * SLACK
 }
 
-/// Return whether a lattice triangle certainly misses the box half a step around lattice points;
-/// may return false negatives.
+/// Returns true if a triangle certainly misses the box from half a step below `low` to half a step above
+/// `high`; false proves nothing.
 ///
-/// Separating axes: the face's normal, and each of its edges projected along each axis.
+/// The separating axes are the triangle's normal, and the cross products of its edges with the coordinate
+/// axes.
 ///
 /// # Example
 /// ```
@@ -49,7 +50,8 @@ pub fn triangle_misses(corners: &[Lattice; 3], low: &Lattice, high: &Lattice) ->
     separated(&local, &half)
 }
 
-/// Centre relative to `origin`, and half extents, of a closed box.
+/// Returns the centre relative to `origin` and the half extents of the box from half a step below `low` to
+/// half a step above `high`.
 fn middle(low: &Lattice, high: &Lattice, origin: &Lattice) -> ([f64; 3], [f64; 3]) {
     let center = each_axis(|i| {
         f64::midpoint(
@@ -90,7 +92,7 @@ fn apart(p: &[[f64; 3]; 3], half: &[f64; 3], axis: &[f64; 3]) -> bool {
 mod tests {
     use super::*;
 
-    /// A triangle across the corner of space, and boxes that overlap its bounds.
+    /// A triangle with a corner on each axis, and boxes that overlap its bounding box.
     #[test]
     fn boxes_on_one_side_of_the_plane_are_missed() {
         let corners = [[30, 0, 0], [0, 30, 0], [0, 0, 30]];

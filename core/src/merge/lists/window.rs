@@ -1,5 +1,5 @@
-//! A window on one level of the hierarchy of cells: a box of equal cells, and places in it.
-// Counts and the places of cells are never negative, and places beyond the window exceed -2.
+//! A box of equally large cells of the dyadic hierarchy (a window), and the indices of its cells.
+// Counts and the indices of cells are never negative, and indices outside the window are at least -1.
 
 use std::ops::Range;
 
@@ -8,34 +8,36 @@ use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 
-/// The most cells along one axis: places in the window and just outside it fit into ten bits.
+/// The most cells of a window along one axis: an index in the window or just outside it fits into ten bits.
 const MAX_CELLS_PER_AXIS: i64 = 1022;
 
-/// Equal cells of the hierarchy, numbered from the lowest one.
+/// A box of equally large cells of the dyadic hierarchy, numbered along each axis from the lowest one.
 ///
-/// A coordinate's *place* on an axis is the number of its cell there, −1 below the window and the count
-/// above it. The *lines* are the planes between the cells, numbered from 0 to the count.
+/// A coordinate's *place* on an axis is the index of its cell along the axis, −1 below the window, and the
+/// number of cells above it. The *lines* of an axis are the planes that bound the cells, numbered from 0 to
+/// the number of cells.
 #[derive(Clone, Copy, Debug)]
 pub struct Window {
-    /// The binary logarithm of the cells' extent, the same on all axes.
+    /// The binary logarithm of the cells' extent in lattice steps, the same on all axes.
     size: u32,
     first: Lattice,
     count: [i32; 3],
 }
 
-/// The range of places of a face's bounds, including those outside the window.
+/// The range of cell indices that a face's bounding box covers on each axis, −1 and the number of cells
+/// standing for outside the window.
 #[derive(Clone, Copy, Debug)]
 pub struct Span {
-    /// The element.
+    /// The number of the face among the elements of a deferred leaf.
     pub element: u32,
-    /// The lowest places.
+    /// The lowest cell index on each axis.
     pub low: [i16; 3],
-    /// The highest places.
+    /// The highest cell index on each axis.
     pub high: [i16; 3],
 }
 
 impl Span {
-    /// The places of a face's corners, packed as by `Window::code`.
+    /// Makes the range of a face from its three corners' cell indices, packed as by `Window::code`.
     pub fn new(element: u32, codes: [u32; 3]) -> Self {
         let field = |code: u32, i: usize| ((code >> (20 - 10 * i)) & 0x3ff) as i16 - 1;
         let ends = |pick: fn(i16, i16) -> i16| {
@@ -54,14 +56,16 @@ impl Span {
         }
     }
 
-    /// The lines on an axis that it crosses.
+    /// Returns the numbers of the planes across an axis, between cells of a window, that lie within the
+    /// face's range.
     pub fn lines(&self, axis: usize) -> Range<i32> {
         i32::from(self.low[axis]) + 1..i32::from(self.high[axis]) + 1
     }
 }
 
 impl Window {
-    /// The cells of extent 2^size that a lattice box meets; `None` if there are too many on an axis.
+    /// Returns the window of the cells of extent 2^`size` that a lattice box meets; `None` if they are more
+    /// than `MAX_CELLS_PER_AXIS` on an axis.
     #[allow(
         clippy::cast_possible_truncation,
         reason = "not above MAX_CELLS_PER_AXIS"
@@ -79,17 +83,17 @@ impl Window {
             })
     }
 
-    /// The binary logarithm of the cells' extent.
+    /// The binary logarithm of the cells' extent in lattice steps, the same on all axes.
     pub fn size(&self) -> u32 {
         self.size
     }
 
-    /// The numbers of cells along the axes.
+    /// Returns the number of cells along each axis.
     pub fn count(&self) -> [i32; 3] {
         self.count
     }
 
-    /// The number of cells.
+    /// Returns the number of cells in the window.
     pub fn len(&self) -> usize {
         self.count
             .iter()
@@ -103,21 +107,21 @@ impl Window {
         ((k >> self.size) - self.first[axis]).clamp(-1, i64::from(self.count[axis])) as i32
     }
 
-    /// The places of a lattice point in one word, equal for all points of a cell.
+    /// Packs a lattice point's three cell indices into one 32-bit word, equal for all points of a cell.
     #[inline]
     pub fn code(&self, p: &Lattice) -> u32 {
         let field = |i: usize| (self.place(i, p[i]) + 1).cast_unsigned();
         field(0) << 20 | field(1) << 10 | field(2)
     }
 
-    /// The number of a cell in the window; the last axis varies fastest.
+    /// Returns the number of a cell in the window from its index on each axis; the last axis varies fastest.
     #[inline]
     pub fn index(&self, at: [i32; 3]) -> usize {
         let count = self.count;
         ((at[0] * count[1] + at[1]) * count[2] + at[2]).cast_unsigned() as usize
     }
 
-    /// The number of the cell with this code; `None` outside the window.
+    /// Returns the number of the cell whose indices `Window::code` packed; `None` outside the window.
     #[inline]
     pub fn index_of(&self, code: u32) -> Option<u32> {
         let at = each_axis(|i| ((code >> (20 - 10 * i)) & 0x3ff).cast_signed() - 1);
@@ -125,12 +129,13 @@ impl Window {
         inside.then(|| as_number(self.index(at)))
     }
 
-    /// The coordinate of a line in half steps.
+    /// Returns the coordinate of plane number `line` between the cells across an axis, in half lattice steps.
     pub fn line(&self, axis: usize, line: i32) -> i64 {
         2 * ((self.first[axis] + i64::from(line)) << self.size) - 1
     }
 
-    /// The lattice box of a box of cells, both ends included.
+    /// Returns the lowest and the highest lattice point of a box of cells, given by its lowest and highest
+    /// cell.
     pub fn extent(&self, low: &[i32; 3], high: &[i32; 3]) -> (Lattice, Lattice) {
         let start = |i: usize, place: i32| (self.first[i] + i64::from(place)) << self.size;
         (
@@ -139,7 +144,7 @@ impl Window {
         )
     }
 
-    /// The places that a larger cell covers.
+    /// Returns for each axis the indices of the window's cells in a larger cell.
     #[inline]
     pub fn covered(&self, cell: &Cell) -> [Range<i32>; 3] {
         let high = cell.high();
@@ -149,17 +154,19 @@ impl Window {
         })
     }
 
-    /// The lines through the low corner of a larger cell.
+    /// Returns for each axis the number of the window's plane through the low corner of a larger cell.
     pub fn corner(&self, cell: &Cell) -> [i32; 3] {
         each_axis(|i| self.place(i, cell.low()[i]).max(0))
     }
 
-    /// Return whether a cell's cut lies between cells of the window.
+    /// Returns true if a cell is larger than the window's cells on an axis, so that halving it cuts none of
+    /// them.
     pub fn is_divided_in(&self, cell: &Cell) -> bool {
         cell.size().iter().any(|s| u32::from(*s) > self.size)
     }
 
-    /// The cells of the window in a span, as lowest and highest places; `None` if there are none.
+    /// Returns the lowest and the highest cell of the window in a face's range; `None` if the face lies
+    /// outside the window.
     pub fn within(&self, span: &Span) -> Option<([i32; 3], [i32; 3])> {
         let low = span.low.map(|p| i32::from(p).max(0));
         let high = each_axis(|i| i32::from(span.high[i]).min(self.count[i] - 1));

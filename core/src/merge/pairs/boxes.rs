@@ -1,4 +1,4 @@
-//! Pairs of overlapping boxes, found by halving the space around them.
+//! Finds pairs of overlapping boxes by halving the space around them.
 
 use std::cmp::Reverse;
 
@@ -7,34 +7,36 @@ use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::spend;
 
-/// The most boxes compared all with all: halving fewer costs about as much.
+/// The most boxes that are compared all with all; halving the space of fewer boxes costs about as much.
 const MAX_COMPARED: usize = 256;
 
-/// The most boxes compared where halving does not separate them: a sweep of fewer costs about as much.
+/// The most boxes that are compared all with all if halving does not separate them; a sweep of fewer boxes
+/// costs about as much.
 pub const MAX_COMPARED_UNSEPARATED: usize = 384;
 
-/// The number of pairs of boxes compared per unit of work.
+/// The number of pairs of boxes compared per unit of work, after which the program checks whether to stop.
 const PAIRS_PER_UNIT: usize = 16;
 
-/// The number of boxes compared with one at a time.
+/// The number of boxes that are compared with one box at once.
 const LANES: usize = 8;
 
-/// Coordinates as 32-bit integers.
+/// A corner of a box, as 32-bit integers.
 type Ends = [i32; 3];
 
-/// An element with its box in 32-bit integers.
+/// An element with its box in 32-bit coordinates.
 #[derive(Clone, Copy)]
 pub struct Boxed {
     low: [i32; 3],
     high: [i32; 3],
-    /// Its operand.
+    /// The index of the element's operand.
     pub operand: u32,
-    /// Its number.
+    /// The number of the element, chosen by the caller.
     pub number: u32,
 }
 
 impl Boxed {
-    /// An element of an operand: its number, and its box with `shift` low bits dropped.
+    /// Makes an element with its operand's index, its number, and its box with `shift` low bits of each
+    /// coordinate dropped.
     #[allow(clippy::cast_possible_truncation, reason = "the shift leaves 31 bits")]
     pub fn new(operand: usize, number: u32, [low, high]: [&Lattice; 2], shift: u32) -> Self {
         Self {
@@ -45,18 +47,19 @@ impl Boxed {
         }
     }
 
-    /// The same with another number.
+    /// Returns the same element with another number.
     #[must_use]
     pub const fn numbered(self, number: u32) -> Self {
         Self { number, ..self }
     }
 
-    /// The lowest and the highest coordinates.
+    /// Returns the low and the high corner of the element's box.
     pub const fn ends(&self) -> (Ends, Ends) {
         (self.low, self.high)
     }
 
-    /// The same with its box clipped to another one; `None` if they do not overlap.
+    /// Returns the element with its box clipped to the box from `low` to `high`; `None` if the boxes do not
+    /// overlap.
     pub fn within(&self, low: Ends, high: Ends) -> Option<Self> {
         let part = Self {
             low: each_axis(|i| self.low[i].max(low[i])),
@@ -67,47 +70,50 @@ impl Boxed {
         is_some.then_some(part)
     }
 
-    /// Return whether the box begins at or below a place on an axis.
+    /// Returns true if the box begins at or below the coordinate `at` on an axis.
     pub const fn is_below(&self, axis: usize, at: i32) -> bool {
         self.low[axis] <= at
     }
 
-    /// Return whether the box extends above a place on an axis.
+    /// Returns true if the box extends above the coordinate `at` on an axis.
     pub const fn is_above(&self, axis: usize, at: i32) -> bool {
         self.high[axis] > at
     }
 }
 
-/// How many low bits to drop so that coordinates up to this size fit into 31 bits with their sign.
+/// Returns how many low bits to drop so that coordinates of absolute value up to `size` fit into 31 bits with
+/// their sign.
 pub fn shift_of(size: u64) -> u32 {
     (u64::BITS - size.leading_zeros()).saturating_sub(30)
 }
 
-/// The ends of several boxes, by axis, to compare all with one box at once.
+/// The lower and upper ends of `LANES` boxes by axis, to compare all of them with one box at once.
 struct Lanes {
     low: [[i32; LANES]; 3],
     high: [[i32; LANES]; 3],
 }
 
-/// The elements that reach into a part of space, grouped by operand.
+/// The elements whose boxes reach into a box of space, grouped by operand.
 pub struct Part {
     elements: Vec<Boxed>,
     space: Space,
-    /// The number of bits dropped from their boxes.
+    /// The number of low bits dropped from the coordinates of the boxes.
     shift: u32,
 }
 
-/// The places above `low`, up to `high`.
+/// The box of points with coordinates above `low` and up to `high`.
 ///
-/// A pair belongs to the space that contains the lowest corner of its boxes' intersection.
+/// Two elements belong to the space that contains the low corner of the intersection of their boxes, so that
+/// each pair is found in one space only.
 #[derive(Clone, Copy)]
 pub struct Space {
     low: [i32; 3],
     high: [i32; 3],
 }
 
-/// Calls `meet` for all pairs of different operands whose boxes overlap, and `crowd` for elements that
-/// halving does not separate, with the space of their remaining pairs; stops if a call returns `None`.
+/// Calls `meet` for the pairs of elements of different operands whose boxes overlap, and `crowd` for elements
+/// that halving does not separate, with the space to which their pairs belong. Stops and returns `None` if a
+/// call does.
 pub fn pairs(
     part: Part,
     mut meet: impl FnMut(u32, u32) -> Option<()>,
@@ -125,8 +131,8 @@ pub fn pairs(
     })
 }
 
-/// Calls `meet` for the pairs of different operands whose boxes overlap, the lower number first; compares
-/// all elements in a space, and stops if `meet` returns `None`.
+/// Calls `meet` for all pairs of elements of different operands whose boxes overlap, the earlier operand
+/// first. Compares all with all; stops and returns `None` if `meet` does.
 pub fn compare_all(
     elements: &[Boxed],
     space: &Space,
@@ -156,8 +162,9 @@ pub fn compare_all(
     Some(())
 }
 
-/// As [`compare_all`], sorted along the axis on which the boxes overlap least; for mostly single elements
-/// per operand, so that few comparisons are within one operand.
+/// Calls `meet` for all pairs of elements of different operands whose boxes overlap, the lower number first,
+/// where most operands have a single element. Sorts the boxes along the axis on which they overlap least, and
+/// compares only those that overlap there.
 fn compare_in_order(
     elements: &[Boxed],
     space: &Space,
@@ -187,7 +194,7 @@ fn compare_in_order(
     Some(())
 }
 
-/// The elements sorted by their lower ends on an axis.
+/// Returns the elements sorted by the lower ends of their boxes on an axis.
 fn sorted_along(axis: usize, elements: &[Boxed]) -> Vec<Boxed> {
     let begins = (0usize..).zip(elements).map(|(at, e)| (e.low[axis], at));
     let mut order: Vec<(i32, usize)> = begins.collect();
@@ -195,7 +202,8 @@ fn sorted_along(axis: usize, elements: &[Boxed]) -> Vec<Boxed> {
     order.into_iter().map(|(_, at)| elements[at]).collect()
 }
 
-/// Calls `meet` for the overlapping pairs of two groups, comparing all with all.
+/// Calls `meet` for each element of the first group and each of the second whose boxes overlap; compares all
+/// with all.
 pub fn compare_groups(first: &[Boxed], second: &[Boxed], meet: impl Fn(&Boxed, &Boxed)) {
     let lanes = Lanes::of(second);
     for one in first {
@@ -207,13 +215,13 @@ pub fn compare_groups(first: &[Boxed], second: &[Boxed], meet: impl Fn(&Boxed, &
 }
 
 impl Lanes {
-    /// Boxes that overlap nothing.
+    /// Boxes that overlap no other box.
     const EMPTY: Self = Self {
         low: [[i32::MAX; LANES]; 3],
         high: [[i32::MIN; LANES]; 3],
     };
 
-    /// The boxes of some elements in order; empty boxes fill the last lanes.
+    /// Packs the boxes of elements in order; empty boxes fill the last pack.
     fn of(elements: &[Boxed]) -> Vec<Self> {
         elements.chunks(LANES).map(Self::of_few).collect()
     }
@@ -229,7 +237,7 @@ impl Lanes {
         lanes
     }
 
-    /// Calls `found` with the numbers of the boxes that overlap `one`, starting at a number.
+    /// Calls `found` with the indices, from `from` on, of the boxes that overlap the box of `one`.
     fn each_overlapping(all: &[Self], from: usize, one: &Boxed, mut found: impl FnMut(usize)) {
         let first = from / LANES;
         for (block, lanes) in (first..).zip(&all[first.min(all.len())..]) {
@@ -245,8 +253,8 @@ impl Lanes {
         }
     }
 
-    /// For each box, all bits if it misses `one`, else none: words as wide as the compared numbers stay in
-    /// their lanes.
+    /// Returns for each box a 32-bit word with all bits set if it misses the box of `one`, otherwise zero.
+    /// Words as wide as the compared coordinates compile to vector instructions.
     #[inline]
     fn missed_by(&self, one: &Boxed) -> [u32; LANES] {
         let word = |b: bool| if b { !0u32 } else { 0 };
@@ -262,7 +270,7 @@ impl Lanes {
 }
 
 impl Space {
-    /// The space around elements.
+    /// Returns the smallest space that contains the boxes of all elements.
     pub fn around(elements: &[Boxed]) -> Self {
         let low = |i: usize| elements.iter().map(|e| e.low[i]).min();
         let high = |i: usize| elements.iter().map(|e| e.high[i]).max();
@@ -272,7 +280,7 @@ impl Space {
         }
     }
 
-    /// The axis along which the boxes of elements are shortest, relative to the space.
+    /// Returns the axis along which the boxes of elements are shortest, relative to the space.
     fn sparsest(&self, elements: &[Boxed]) -> usize {
         let share = |i: usize| {
             let length = |e: &Boxed| f64::from(e.high[i]) - f64::from(e.low[i]);
@@ -287,12 +295,12 @@ impl Space {
         }
     }
 
-    /// The places below the lowest one and at the highest one.
+    /// Returns the corner just below the lowest point of the space, and its highest point.
     pub const fn ends(&self) -> (Ends, Ends) {
         (self.low, self.high)
     }
 
-    /// The parts up to a place on an axis, and above it.
+    /// Returns the part of the space up to the coordinate `at` on an axis, and the part above it.
     pub const fn divided(&self, axis: usize, at: i32) -> [Self; 2] {
         let (mut below, mut above) = (*self, *self);
         below.high[axis] = at;
@@ -300,7 +308,8 @@ impl Space {
         [below, above]
     }
 
-    /// Calls `meet` if a pair belongs here.
+    /// Calls `meet` if the pair of elements belongs to this space, and returns its result; otherwise returns
+    /// `Some(())`.
     pub fn if_owned(&self, a: &Boxed, b: &Boxed, meet: impl FnOnce() -> Option<()>) -> Option<()> {
         if self.owns(a, b) {
             meet()
@@ -309,7 +318,7 @@ impl Space {
         }
     }
 
-    /// Return whether a pair belongs here.
+    /// Returns true if the low corner of the intersection of two elements' boxes lies in this space.
     pub fn owns(&self, a: &Boxed, b: &Boxed) -> bool {
         (0..3).all(|i| {
             let corner = a.low[i].max(b.low[i]);
@@ -318,7 +327,7 @@ impl Space {
     }
 }
 
-/// Elements sorted by number, without repetition.
+/// Returns the elements sorted by number, without repetition.
 pub fn each_once(mut elements: Vec<Boxed>) -> Vec<Boxed> {
     elements.sort_unstable_by_key(|e| e.number);
     elements.dedup_by_key(|e| e.number);
@@ -326,7 +335,8 @@ pub fn each_once(mut elements: Vec<Boxed>) -> Vec<Boxed> {
 }
 
 impl Part {
-    /// All elements, grouped by operand; `shift` is the number of bits dropped from their boxes.
+    /// Makes a part of space around all elements, which must be grouped by operand; `shift` is the number of
+    /// low bits dropped from their boxes.
     #[must_use]
     pub fn of(elements: Vec<Boxed>, shift: u32) -> Self {
         let space = Space::around(&elements);
@@ -337,14 +347,15 @@ impl Part {
         }
     }
 
-    /// The number of bits dropped from the boxes.
+    /// Returns the number of low bits dropped from the coordinates of the boxes.
     #[must_use]
     pub const fn shift(&self) -> u32 {
         self.shift
     }
 
-    /// Parts of at most `most` elements, and one of all elements that halving does not separate. Each pair
-    /// belongs to one of the former, or is in the latter.
+    /// Halves space into parts with at most `most` elements each, and adds one part with all elements that
+    /// halving does not separate. Each pair of overlapping boxes belongs to one of the first parts, or is in
+    /// the last one.
     #[must_use]
     pub fn divided(self, most: usize) -> Vec<Self> {
         let shift = self.shift;
@@ -363,8 +374,8 @@ impl Part {
         parts
     }
 
-    /// Calls `visit` for parts that have at most `most` elements, or that halving does not separate; stops
-    /// if it returns `None`.
+    /// Halves space, and calls `visit` for each part that has at most `most` elements or that halving does
+    /// not separate; stops and returns `None` if `visit` does.
     fn halved(self, most: usize, mut visit: impl FnMut(Self) -> Option<()>) -> Option<()> {
         let mut open = vec![self];
         while let Some(part) = open.pop() {
@@ -377,9 +388,11 @@ impl Part {
         Some(())
     }
 
-    /// Divides the elements between the halves of the space; false if no axis separates them.
+    /// Halves the space on an axis, and appends the halves with elements of different operands to `open`.
+    /// Returns false, without a change, if no axis separates the elements.
     ///
-    /// The longest axis that separates them is as good as the best one, and saves counting on all axes.
+    /// It takes the longest axis that separates the elements: this is as good as the best one, and saves
+    /// counting on all axes.
     fn halve(&self, open: &mut Vec<Self>) -> bool {
         let length = |i: usize| self.space.high[i] - self.space.low[i];
         let mut axes = [0, 1, 2];
@@ -401,7 +414,7 @@ impl Part {
         self.space.low[axis].midpoint(self.space.high[axis])
     }
 
-    /// Count the elements in the lower and the upper half.
+    /// Returns the numbers of elements that reach into the lower and into the upper half on an axis.
     fn counts(&self, axis: usize) -> [usize; 2] {
         let at = self.middle(axis);
         let count = |[below, above]: [u32; 2], e: &Boxed| {

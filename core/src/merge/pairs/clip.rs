@@ -1,4 +1,4 @@
-//! The parts of triangles inside boxes.
+//! Clips triangles to boxes.
 //!
 //! # Source
 //! Sutherland, Hodgman 1974, "Reentrant polygon clipping": one plane after the other.
@@ -8,13 +8,13 @@ use smallvec::SmallVec;
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::{Point, Triangle};
 
-/// A triangle clipped by the six planes of a box has up to nine corners.
+/// A triangle clipped by the six planes of a box, which has up to nine corners.
 type Polygon = SmallVec<[Point; 9]>;
 
-/// The bounds of the part of a triangle inside a box; `None` if it is empty.
+/// Returns the bounding box of the part of a triangle inside a box, as low and high corner; `None` if the
+/// part is empty.
 ///
-/// Clipped corners are off by a few units in the last place of the coordinates, and so is the part near the
-/// planes.
+/// The result is off by a few units in the last place of the coordinates.
 pub fn part_within(triangle: &Triangle, [low, high]: &[Point; 2]) -> Option<[Point; 2]> {
     let mut polygon = Polygon::from_slice(triangle);
     for axis in 0..3 {
@@ -29,7 +29,7 @@ pub fn part_within(triangle: &Triangle, [low, high]: &[Point; 2]) -> Option<[Poi
     Some([f64::min, f64::max].map(|most| each_axis(|i| end(i, most))))
 }
 
-/// The part of a polygon where a linear function is at least zero.
+/// Returns the part of a polygon on which the linear function `height` is at least zero.
 fn part_over(polygon: Polygon, height: impl Fn(&Point) -> f64) -> Polygon {
     if polygon.iter().all(|p| height(p) >= 0.0) {
         return polygon;

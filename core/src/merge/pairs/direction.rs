@@ -1,15 +1,15 @@
-//! Directions in doubles, and the largest coordinate.
+//! Directions in space as vectors of doubles.
 
 use super::Swept;
 use crate::geometry::doubles::vector::{cross, dot};
 
-/// The padding of projections, as a share of the largest coordinate; far above their rounding.
+/// The padding of projections, as a share of the largest coordinate; far above their rounding errors.
 pub const SLACK: f64 = 1e-14;
 
-/// The lowest and highest place along a line.
+/// The lowest and the highest coordinate of an element along a line.
 pub type Span = [f64; 2];
 
-/// A direction and two perpendicular to it.
+/// Returns a direction and two vectors perpendicular to it and to each other.
 pub fn frame(long: &[f64; 3]) -> [[f64; 3]; 3] {
     let thin = (0..3).min_by(|i, j| long[*i].abs().total_cmp(&long[*j].abs()));
     let mut axis = [0.0; 3];
@@ -18,13 +18,13 @@ pub fn frame(long: &[f64; 3]) -> [[f64; 3]; 3] {
     [*long, any, cross(long, &any)]
 }
 
-/// The unit vector of a vector; `None` for zero.
+/// Returns the vector scaled to length 1; `None` for the zero vector and for infinite lengths.
 pub fn unit(v: &[f64; 3]) -> Option<[f64; 3]> {
     let size = dot(v, v).sqrt();
     (size > 0.0 && size.is_finite()).then(|| v.map(|x| x / size))
 }
 
-/// The largest coordinate of all corners, at least 1.
+/// Returns the largest absolute coordinate of all corners, at least 1.
 pub fn largest_coordinate(elements: &[&Swept]) -> f64 {
     let corners = elements.iter().filter_map(|e| e.corners.as_ref());
     let coordinates = corners.flatten().flatten();

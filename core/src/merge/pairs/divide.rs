@@ -1,4 +1,4 @@
-//! Divides crowds of many operands between two groups with different directions.
+//! Divides the elements of many operands between two groups with different directions.
 
 use super::boxes::Boxed;
 use super::line::direction_along;
@@ -6,26 +6,26 @@ use super::Swept;
 use crate::arith::convert::as_double;
 use crate::geometry::doubles::vector::{cross, dot};
 
-/// Two groups of a crowd's operands.
+/// The elements of many operands, divided into two groups of operands.
 pub struct Groups {
-    /// The elements, grouped by operand.
+    /// The elements of both groups, sorted by operand.
     pub elements: Vec<Boxed>,
     /// The index at which the second group begins.
     pub middle: usize,
 }
 
-/// An operand's elements, and the sine of the angle between their direction and that of the largest
-/// operand.
+/// The elements of one operand, and the sine of the angle between their main direction and the main direction
+/// of the operand with the most elements.
 struct Run<'a> {
     elements: &'a [Boxed],
     bend: f64,
 }
 
-/// Divides a crowd between groups of about equal size where the directions of long operands differ most;
-/// `None` if there is only one operand.
+/// Divides elements, sorted by operand, into two groups of operands where the operands' main directions
+/// differ most, preferring groups of similar size. `None` if there is only one operand.
 ///
-/// So bundles of needles are separated before they are divided themselves: two bundles at an angle have few
-/// pairs seen along the line across both, and one bundle seen along itself.
+/// So bundles of parallel needles are separated from each other first: a sweep along the line across both
+/// directions finds few pairs between two bundles, and the projection along a bundle finds few within it.
 pub fn divided(crowd: &[Boxed], swept: impl Fn(&Boxed) -> Swept) -> Option<Groups> {
     let mut runs = runs(crowd, swept);
     runs.sort_by(|a, b| a.bend.total_cmp(&b.bend));
@@ -45,7 +45,7 @@ fn runs(crowd: &[Boxed], swept: impl Fn(&Boxed) -> Swept) -> Vec<Run<'_>> {
     };
     let chunks = crowd.chunk_by(|a, b| a.operand == b.operand);
     let runs: Vec<_> = chunks.map(|run| (run, long(run))).collect();
-    // The first of equal ones.
+    // Of operands with equally many elements, the first is taken.
     let largest = runs.iter().rev().max_by_key(|(run, _)| run.len());
     let straight = largest.and_then(|(_, long)| *long);
     let bend = |long: Option<[f64; 3]>| {
@@ -59,7 +59,8 @@ fn runs(crowd: &[Boxed], swept: impl Fn(&Boxed) -> Swept) -> Vec<Run<'_>> {
     runs.into_iter().map(with_bend).collect()
 }
 
-/// The number of runs before the best division, and the number of their elements.
+/// Returns how many operands come before the best division, and how many elements these have; `None` if there
+/// is only one operand.
 fn division(runs: &[Run], size: usize) -> Option<(usize, usize)> {
     let ends = runs.iter().scan(0, |end, run| {
         *end += run.elements.len();
@@ -68,7 +69,7 @@ fn division(runs: &[Run], size: usize) -> Option<(usize, usize)> {
     let score = |(count, end): (usize, usize)| {
         let smaller = end.min(size - end);
         let jump = runs[count].bend - runs[count - 1].bend;
-        // Groups of less than a quarter would need too many divisions.
+        // Groups with less than a quarter of the elements would need too many divisions.
         let jump = if 4 * smaller < size { 0.0 } else { jump };
         (jump * as_double(smaller), smaller)
     };
@@ -84,7 +85,7 @@ mod tests {
     use super::*;
     use crate::geometry::plane::Lattice;
 
-    /// A needle at a height, by its direction.
+    /// A needle in the direction `along`, at the height `at`.
     fn needle(at: u32, along: Lattice) -> [Lattice; 3] {
         let low = [0, 0, i64::from(at)];
         [[0; 3], [0, 1, 1], along].map(|by| [0, 1, 2].map(|i| low[i] + by[i]))
@@ -92,7 +93,7 @@ mod tests {
 
     #[test]
     fn bundles_at_an_angle_come_apart() {
-        // Operands of one bundle alternate with those of the other.
+        // Operands of one bundle alternate with operands of the other bundle.
         let along = |at: u32| [[9000, 10, 0], [9000, -10, 0]][at as usize / 10 % 2];
         let swept = |at: u32| {
             let corners = needle(at, along(at));

@@ -1,7 +1,8 @@
-//! Separates crowds of long triangles by their fragments in small cells.
+//! Separates many long triangles by clipping them to small cells.
 //!
-//! The boxes of needles overlap all their surroundings, so halving space does not separate them. But a
-//! needle crosses few of the cells in its box, and its fragment in a cell has a small box.
+//! The box of a long thin triangle (a needle) overlaps the boxes of many elements around it, so halving space
+//! does not separate them. But a needle crosses few of the cells in its box, and its fragment in a cell has a
+//! small box.
 
 use super::boxes::{Boxed, Space};
 use super::clip::part_within;
@@ -11,57 +12,60 @@ use crate::arith::convert::as_double;
 use crate::geometry::doubles::Triangle;
 use crate::interrupt::spend;
 
-/// The most fragments compared all with all: dividing fewer costs about as much.
+/// The most fragments in a cell that are compared all with all; dividing the cell of fewer fragments costs
+/// about as much.
 const MAX_FRAGMENTS_COMPARED: usize = 64;
 
-/// The candidate places divide each axis into this many intervals.
+/// The number of equal intervals into which the candidate coordinates divide each axis of a cell.
 const INTERVALS_PER_AXIS: usize = 16;
 
-/// A division separates elements if the parts of the cell have less than this share of its pairs.
+/// A division of a cell separates elements if both parts together have at most this share of the cell's
+/// pairs.
 const MAX_SHARE_OF_PAIRS: f64 = 7.0 / 8.0;
 
-/// The number of consecutive divisions that may separate nothing, unless a part has at most half of the
-/// pairs. Near the corner of a fan, one axis leaves all needles on both sides, and another then separates
-/// them from walls.
+/// The number of consecutive divisions that may separate nothing; a part with at most half of the pairs
+/// starts the count again. Near the corner of a fan, one axis leaves all needles on both sides, and another
+/// axis then separates them from walls.
 ///
 /// No division increases the number of pairs, so there are never more fragments than pairs.
 const MAX_VAIN_DIVISIONS: u32 = 2;
 
-/// A crowd's elements, and the cells still to be divided.
+/// The triangles to be separated, and the cells still to be divided.
 pub struct Crowd {
-    /// By number, where known; scaled like the boxes.
+    /// For each element its corners, if known, in the scale of the boxes.
     corners: Vec<Option<Triangle>>,
-    /// A bound above the error of clipping.
+    /// A bound on the error of clipping.
     slack: f64,
     open: Vec<Fragments>,
 }
 
 /// The fragments of elements in a cell, grouped by operand.
 pub struct Fragments {
-    /// Their boxes, numbered by the elements' indices in the crowd.
+    /// The fragments' boxes, numbered by the index of the element.
     pub elements: Vec<Boxed>,
     pub space: Space,
-    /// The number of further divisions that may leave many pairs.
+    /// The number of consecutive further divisions that may separate nothing.
     patience: u32,
 }
 
-/// A place on an axis.
+/// A candidate for dividing a cell: a coordinate `at` on an axis.
 struct Division {
     axis: usize,
     at: i32,
-    /// The pairs of elements below it and above it.
+    /// The numbers of pairs of fragments of different operands that reach below the coordinate, and above it.
     pairs: [f64; 2],
 }
 
 impl Division {
-    /// The pairs on both sides.
+    /// Returns the sum of the numbers of pairs on both sides.
     fn left(&self) -> f64 {
         self.pairs[0] + self.pairs[1]
     }
 }
 
 impl Crowd {
-    /// Elements, with their boxes before and after dropping `shift` low bits.
+    /// Starts the separation of elements; `swept` has their boxes before, and `boxed` after dropping `shift`
+    /// low bits.
     pub fn of(boxed: &[Boxed], swept: &[Swept], shift: u32) -> Self {
         let scale = 1.0 / as_double(1u64 << shift);
         let scaled = |corners: Triangle| corners.map(|p| p.map(|x| x * scale));
@@ -81,13 +85,13 @@ impl Crowd {
         }
     }
 
-    /// The fragment of an element in a cell, clipped from a larger cell's; `None` if it is empty.
+    /// Clips the fragment `of` an element to the smaller cell `space`; `None` if nothing is left.
     fn fragment(&self, of: &Boxed, space: &Space) -> Option<Boxed> {
         let Some(corners) = &self.corners[of.number as usize] else {
             return Some(*of);
         };
         let (low, high) = space.ends();
-        // A cell contains the places above its low end, up to the next above its high end.
+        // A cell contains the points from the lattice point after its low end to the one after its high end.
         let low = low.map(|x| f64::from(x) + 1.0 - self.slack);
         let high = high.map(|x| f64::from(x) + 1.0 + self.slack);
         let [low, high] = part_within(corners, &[low, high])?;
@@ -97,8 +101,8 @@ impl Crowd {
         )
     }
 
-    /// The fragments on both sides of the place that leaves the fewest pairs; `None` if dividing does not
-    /// pay.
+    /// Divides a cell at the candidate coordinate that leaves the fewest pairs, and clips the fragments;
+    /// `None` if dividing does not pay.
     fn divide(&self, whole: &Fragments) -> Option<[Fragments; 2]> {
         let places = (0..3).flat_map(|axis| whole.divisions(axis));
         let best = places.min_by(|a, b| a.left().total_cmp(&b.left()))?;
@@ -131,8 +135,8 @@ impl Crowd {
 impl Iterator for Crowd {
     type Item = Fragments;
 
-    /// The fragments in a cell that is not worth dividing. Any two elements that meet have overlapping
-    /// boxes of fragments in one of these cells.
+    /// Returns the fragments in the next cell that is not worth dividing. Any two elements of different
+    /// operands that meet have fragments with overlapping boxes in one of these cells.
     fn next(&mut self) -> Option<Fragments> {
         while let Some(whole) = self.open.pop() {
             spend(whole.elements.len());
@@ -150,7 +154,8 @@ impl Iterator for Crowd {
 }
 
 impl Fragments {
-    /// The patience for the parts below and above a place; `None` if none is left for dividing there.
+    /// Returns the patience (the number of further divisions that may separate nothing) of the two parts of a
+    /// cell; `None` if the cell must not be divided there.
     fn patience_after(&self, division: &Division) -> Option<[u32; 2]> {
         let before = self.pairs();
         if division.left() <= MAX_SHARE_OF_PAIRS * before {
@@ -173,19 +178,20 @@ impl Fragments {
         first.map(|e| e.operand) == last.map(|e| e.operand)
     }
 
-    /// The number of pairs of different operands.
+    /// Returns the number of pairs of fragments of different operands.
     fn pairs(&self) -> f64 {
         let mut all = Tally::default();
         self.runs().for_each(|run| all.add(run.iter().map(|_| 0)));
         all.pairs()[0]
     }
 
-    /// The fragments of each operand.
+    /// Returns the fragments of each operand as a slice.
     fn runs(&self) -> impl Iterator<Item = &[Boxed]> {
         self.elements.chunk_by(|a, b| a.operand == b.operand)
     }
 
-    /// The candidate places for dividing an axis.
+    /// Returns the candidate coordinates for dividing the cell on an axis, with the numbers of pairs on both
+    /// sides.
     fn divisions(&self, axis: usize) -> impl Iterator<Item = Division> + use<> {
         let (low, high) = self.space.ends();
         let (low, length) = (low[axis], high[axis] - low[axis]);
@@ -207,17 +213,17 @@ impl Fragments {
     }
 }
 
-/// The numbers of elements up to each candidate place.
+/// Counts of the elements up to each candidate coordinate, from which the numbers of pairs follow.
 #[derive(Default)]
 struct Tally {
-    /// The increase over the previous place.
+    /// For each candidate, the increase of the number of elements over the previous candidate.
     more: [f64; INTERVALS_PER_AXIS + 1],
-    /// The increase of the sum of squares of the operands' numbers.
+    /// For each candidate, the increase of the sum of the squares of the operands' numbers of elements.
     more_squares: [f64; INTERVALS_PER_AXIS + 1],
 }
 
 impl Tally {
-    /// Adds an operand's elements, given the place where each begins.
+    /// Adds the elements of one operand, given the index of the candidate at which each begins.
     fn add(&mut self, places: impl Iterator<Item = usize>) {
         let mut own = [0.0; INTERVALS_PER_AXIS + 1];
         places.for_each(|place| own[place] += 1.0);
@@ -229,7 +235,7 @@ impl Tally {
         }
     }
 
-    /// The number of pairs of different operands up to each place.
+    /// Returns for each candidate the number of pairs of elements of different operands up to it.
     fn pairs(&self) -> [f64; INTERVALS_PER_AXIS + 1] {
         let (mut count, mut squares) = (0.0, 0.0);
         std::array::from_fn(|k| {
@@ -248,7 +254,7 @@ fn as_coordinate(x: f64) -> i32 {
     x.floor() as i32
 }
 
-/// The candidate place on an axis, clamped to its ends.
+/// Returns the index of a candidate coordinate, clamped to the ends of the axis.
 #[allow(
     clippy::cast_sign_loss,
     clippy::cast_possible_truncation,
@@ -264,7 +270,8 @@ mod tests {
     use crate::arith::convert::as_whole;
     use crate::geometry::axes::each_axis;
 
-    /// A disc of needles from one corner to an arc of short walls; each is an operand of its own.
+    /// A disc of needles from one corner to an arc of short walls; the needles are operand 0, and each wall
+    /// is an operand of its own.
     fn disc(sides: u32) -> Vec<Swept> {
         let corner = |k: u32| {
             let (y, x) = (f64::from(k) / f64::from(sides) * std::f64::consts::PI).sin_cos();

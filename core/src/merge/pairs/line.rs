@@ -1,4 +1,4 @@
-//! Lines to sweep along, and the extents of elements along them.
+//! Lines along which elements are swept, and the extents of elements along them.
 
 use super::direction::{frame, unit, Span, SLACK};
 use super::view::{views, View, SLOPE_ERROR};
@@ -7,30 +7,32 @@ use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::vector::{cross, dot};
 
-/// The number of elements from which lines other than the axes are worth finding.
+/// The number of elements above which lines other than the axes are tried.
 pub const SLANTED_LINES_FROM: usize = 512;
 
-/// Lines with a larger cosine are nearly parallel: their plane shows little.
+/// The largest cosine of the angle between two lines whose plane is used; with a larger cosine they are
+/// nearly parallel, and their plane separates little more than one line.
 const MAX_COSINE_OF_LINES: f64 = 0.8;
 
-/// A line, and the elements along it.
+/// A line, the extents of elements along it, and how many elements overlap at a point of it on average.
 pub struct Line {
     pub gauge: Gauge,
     pub spans: Vec<Span>,
     pub crowding: f64,
 }
 
-/// A measure of the places of points along a line.
+/// A function that gives each point of space a coordinate along a line.
 #[derive(Clone, Copy)]
 pub enum Gauge {
-    /// The distance in a direction.
+    /// The coordinate is the dot product with this unit vector.
     Along([f64; 3]),
-    /// The slope seen from a point.
+    /// The coordinate is the slope of the point in this view.
     Seen(View),
 }
 
 impl Gauge {
-    /// Return whether the plane of two lines shows more than one of them does.
+    /// Returns true if the plane of two gauges may separate more elements than one gauge: they are far from
+    /// parallel, and straight lines of space are straight in the plane.
     pub fn is_across(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Along(a), Self::Along(b)) => dot(a, b).abs() < MAX_COSINE_OF_LINES,
@@ -38,7 +40,7 @@ impl Gauge {
         }
     }
 
-    /// Return whether straight lines in space are straight in the plane of two gauges.
+    /// Returns true if straight lines of space are straight in the plane of two gauges.
     pub fn keeps_straight(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Along(_), Self::Along(_)) => true,
@@ -47,8 +49,8 @@ impl Gauge {
         }
     }
 
-    /// The places of a triangle's corners, or of a triangle with the same shadow; `None` if the shadow is
-    /// unbounded.
+    /// Returns the coordinates of a triangle's corners, or of a triangle with the same projection; `None` if
+    /// the projection may be unbounded.
     pub fn places(&self, corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
         match self {
             Self::Along(direction) => Some(corners.map(|p| dot(&p, direction))),
@@ -56,7 +58,8 @@ impl Gauge {
         }
     }
 
-    /// A bound on the error of places, for coordinates up to a size.
+    /// Returns a bound on the error of the coordinates along the line, for points with coordinates up to
+    /// `size`.
     pub fn slack(&self, size: f64) -> f64 {
         match self {
             Self::Along(_) => size * SLACK,
@@ -66,8 +69,8 @@ impl Gauge {
 }
 
 impl Line {
-    /// The axes and, for many elements, lines along and across the directions of long elements, and slopes
-    /// seen from the corner that most elements of an operand share.
+    /// Returns the coordinate axes and, for many elements, lines along and across the main directions of long
+    /// elements, and slopes seen from the corner that most elements of an operand share.
     pub fn all(elements: &[&Swept]) -> Vec<Self> {
         let mut lines: Vec<Self> = (0..3).map(|axis| Self::axis(elements, axis)).collect();
         if elements.len() > SLANTED_LINES_FROM {
@@ -89,13 +92,13 @@ impl Line {
         Self::new(Gauge::Along(direction), elements.iter().map(span).collect())
     }
 
-    /// `None` if an element has no corners.
+    /// Measures elements along a direction; `None` if the corners of an element are not known.
     fn slanted(elements: &[&Swept], direction: &[f64; 3]) -> Option<Self> {
         let spans = projections(elements, direction)?;
         Some(Self::new(Gauge::Along(*direction), spans))
     }
 
-    /// `None` if no element is completely ahead.
+    /// Measures the slopes of elements in a view; `None` if no element is ahead of the eye point.
     fn seen(elements: &[&Swept], view: &View) -> Option<Self> {
         let spans = view.spans(elements)?;
         Some(Self::new(Gauge::Seen(*view), spans))
@@ -111,7 +114,8 @@ impl Line {
     }
 }
 
-/// The sum of extents relative to the whole: the average number of elements that overlap at a point.
+/// Returns the average number of elements that overlap at a point of a line: the sum of their lengths divided
+/// by the length of the whole range.
 fn crowding(spans: &[Span]) -> f64 {
     let low = spans.iter().fold(f64::INFINITY, |m, s| m.min(s[0]));
     let high = spans.iter().fold(f64::NEG_INFINITY, |m, s| m.max(s[1]));
@@ -119,8 +123,8 @@ fn crowding(spans: &[Span]) -> f64 {
     sum / (high - low).max(f64::MIN_POSITIVE)
 }
 
-/// For the first operand and for the others: the direction of long elements, two perpendicular to it, and
-/// the one across both operands' directions.
+/// Returns unit vectors: the main direction of the first operand's elements and two directions perpendicular
+/// to it, the same three for all other elements, and the direction perpendicular to both main directions.
 fn directions(elements: &[&Swept]) -> Vec<[f64; 3]> {
     let own = elements.first().map_or(0, |e| e.operand);
     let (first, others): (Vec<&Swept>, Vec<&Swept>) =
@@ -133,7 +137,7 @@ fn directions(elements: &[&Swept]) -> Vec<[f64; 3]> {
     found.iter().filter_map(unit).collect()
 }
 
-/// The direction of long elements.
+/// Returns the mean direction of the elements' longest edges, as a unit vector; `None` if there is none.
 pub fn direction_along(elements: &[&Swept]) -> Option<[f64; 3]> {
     let mut long = [0.0f64; 3];
     let corners = elements.iter().filter_map(|e| e.corners.as_ref());
@@ -153,7 +157,8 @@ pub fn longest_edge(corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
     (0..3).map(edge).max_by(longer)
 }
 
-/// The extents along a direction, padded for rounding; `None` if an element has no corners.
+/// Returns the extents of elements along a direction, padded for rounding; `None` if the corners of an
+/// element are not known.
 fn projections(elements: &[&Swept], direction: &[f64; 3]) -> Option<Vec<Span>> {
     elements
         .iter()

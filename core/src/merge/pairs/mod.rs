@@ -1,7 +1,7 @@
-//! Pairs of elements of different operands that may meet.
+//! Finds the pairs of elements (triangles or parts of faces) of different operands that may meet.
 //!
-//! Space is halved while that separates boxes. Elements in the remaining crowds are separated by their
-//! parts in smaller cells, and by sweeps along the lines on which they overlap least.
+//! Space is halved as long as this separates boxes. Elements of the crowds that remain are separated by
+//! clipping them to smaller cells, and by sweeps along the lines on which they overlap least.
 
 mod boxes;
 mod clip;
@@ -22,24 +22,26 @@ use divide::{divided, Groups};
 use fragments::{Crowd, Fragments};
 use view::share_corner;
 
-/// An element for a sweep: its operand, its box, and corners whose convex hull contains it.
+/// An element (a triangle or a part of a face) for a sweep: its operand, its box, and three corners whose
+/// convex hull contains it.
 #[derive(Clone, Debug)]
 pub struct Swept {
-    /// The operand.
+    /// The index of the element's operand.
     pub operand: usize,
-    /// The lowest coordinates inside the cell, relative to its low corner.
+    /// The element's lowest coordinate on each axis inside the cell, relative to the cell's low corner.
     pub low: Lattice,
-    /// The highest coordinates inside the cell, relative to its low corner.
+    /// The element's highest coordinate on each axis inside the cell, relative to the cell's low corner.
     pub high: Lattice,
-    /// Three corners of a triangle, relative to the same corner; `None` if only the box is known.
+    /// The corners of a triangle that contains the element, relative to the cell's low corner; `None` if only
+    /// the box is known.
     pub corners: Option<[[f64; 3]; 3]>,
 }
 
-/// Calls `meet` for all pairs of different operands that may meet, the lower number first. Gives up if
-/// `meet` does, if too many elements overlap along every line, or if a crowd's operands share a corner,
-/// where all would meet.
+/// Calls `meet` for all pairs of elements of different operands that may meet, the lower number first.
+/// Returns `None` if `meet` does, if too many elements overlap along every line, or if elements of different
+/// operands in a crowd share a corner.
 ///
-/// Elements are grouped by operand; `swept` gives the element with a number.
+/// Elements must be grouped by operand; `swept` returns the element with a number.
 pub fn pairs(
     elements: Vec<Boxed>,
     swept: impl Fn(u32) -> Swept,
@@ -63,14 +65,15 @@ pub fn pairs(
     })
 }
 
-/// As [`pairs`], for many operands with few elements each; gives up only if `meet` does.
+/// Calls `meet` for all pairs of elements of different operands that may meet, where many operands have few
+/// elements each. Returns `None` only if `meet` does.
 ///
-/// A pair may be found more than once.
+/// `meet` may be called several times for a pair.
 ///
 /// # Cost
-/// Crowds that halving does not separate are clipped to smaller cells as long as these separate them. The
-/// rest is divided between two groups of operands repeatedly, each swept against the other; where sweeps
-/// separate nothing either, all are compared.
+/// Elements that halving does not separate are clipped to smaller cells as long as these separate them. The
+/// others are divided between two groups of operands repeatedly, each swept against the other; if sweeps
+/// separate nothing, either, all pairs are compared.
 ///
 /// # Example
 /// ```
@@ -105,7 +108,7 @@ pub fn pairs_of_many(
         crowded.extend_from_slice(crowd);
         Some(())
     })?;
-    // Fragments of a pair may meet elsewhere than at the low corner of the boxes' intersection, so all
+    // Fragments of two elements may meet elsewhere than at the low corner of the boxes' intersection, so all
     // crowds are searched together.
     let crowded = each_once(crowded);
     let all: Vec<Swept> = crowded.iter().map(|e| swept(e.number)).collect();
@@ -117,7 +120,8 @@ pub fn pairs_of_many(
     cells.try_for_each(|cell| compare(cell, |e| swept_as(e, &all, shift), meet))
 }
 
-/// A fragment as an element for a sweep.
+/// Returns the fragment of an element, clipped to a cell, as an element for a sweep; `shift` bits were
+/// dropped from its box.
 fn swept_as(fragment: &Boxed, all: &[Swept], shift: u32) -> Swept {
     let (low, high) = fragment.ends();
     Swept {
@@ -127,7 +131,8 @@ fn swept_as(fragment: &Boxed, all: &[Swept], shift: u32) -> Swept {
     }
 }
 
-/// Calls `meet` for the pairs of fragments in a cell; stops if it returns `None`.
+/// Calls `meet` for the pairs of fragments of different operands in a cell that may meet; stops and returns
+/// `None` if `meet` does.
 fn compare(
     cell: Fragments,
     swept: impl Fn(&Boxed) -> Swept,
@@ -148,7 +153,8 @@ fn compare(
     Some(())
 }
 
-/// Calls `meet` for the pairs between two groups; stops if it returns `None`.
+/// Calls `meet` for the pairs of an element of the first group and one of the second that may meet; stops and
+/// returns `None` if `meet` does.
 fn sweep_groups(
     (first, second): (&[Boxed], &[Boxed]),
     swept: &impl Fn(&Boxed) -> Swept,
@@ -190,12 +196,12 @@ mod tests {
     use crate::geometry::apart::pierces;
     use crate::geometry::axes::each_axis;
 
-    /// More elements than this are also swept along slanted lines.
+    /// The number of elements above which slanted lines are swept, too.
     const MANY: usize = 512;
 
     const REACH: i64 = 2000;
 
-    /// A triangle from a place; its far side is within a few steps of the end of a direction.
+    /// A triangle with one corner at `apex`; the two others are near the end of the direction `along`.
     fn sector(apex: Lattice, along: Lattice) -> impl Strategy<Value = [Lattice; 3]> {
         let near = || [-300..=300i64, -300..=300i64, -300..=300i64];
         (near(), near()).prop_map(move |(a, b)| {
@@ -204,7 +210,7 @@ mod tests {
         })
     }
 
-    /// Two fans with apexes near each other, also just below the clipped range.
+    /// Two fans of triangles with apexes at or near each other; a common apex lies just outside the cell.
     fn fans() -> impl Strategy<Value = Scene> {
         let place = || [-9..=9i64, -9..=9i64, -9..=9i64];
         let direction = || [50..=200i64, -200..=200i64, -200..=200i64];
@@ -223,7 +229,7 @@ mod tests {
         })
     }
 
-    /// A triangle along a direction, a few steps wide.
+    /// A long thin triangle along a direction.
     fn needle(along: Lattice) -> impl Strategy<Value = [Lattice; 3]> {
         let near = || [-99..=99i64, -99..=99i64, -99..=99i64];
         (near(), near(), near(), 0..=9i64).prop_map(move |(a, b, c, length)| {
@@ -232,7 +238,7 @@ mod tests {
         })
     }
 
-    /// Triangles with their operands, and the least x that counts.
+    /// Triangles with their operands, and the lowest x coordinate of the cell.
     #[derive(Clone, Debug)]
     struct Scene {
         triangles: Vec<(usize, [Lattice; 3])>,
@@ -271,7 +277,7 @@ mod tests {
             .prop_map(sorted)
     }
 
-    /// The pairs found, the lower number first; `None` if the search gives up.
+    /// Returns the pairs that `pairs` finds, the lower number first; `None` if it gives up.
     fn found(scene: &Scene) -> Option<HashSet<(usize, usize)>> {
         let triangles = scene.triangles.iter();
         let elements: Vec<Swept> = triangles.map(|(k, t)| swept(*k, t, scene.floor)).collect();
@@ -286,7 +292,7 @@ mod tests {
         Some(found)
     }
 
-    /// Return whether triangles of different operands share a corner.
+    /// Returns true if triangles of different operands share a corner inside the cell.
     fn touch(scene: &Scene) -> bool {
         let mut owners = HashMap::new();
         let corners = scene.triangles.iter().flat_map(|(k, t)| t.map(|p| (*k, p)));
@@ -294,7 +300,7 @@ mod tests {
         counted.any(|(k, p)| *owners.entry(p).or_insert(k) != k)
     }
 
-    /// The pairs found by the search for many operands.
+    /// Returns the pairs that `pairs_of_many` finds, the lower number first.
     fn found_of_many(scene: &Scene) -> HashSet<(usize, usize)> {
         let triangles = scene.triangles.iter();
         let elements: Vec<Swept> = triangles.map(|(k, t)| swept(*k, t, scene.floor)).collect();
@@ -313,7 +319,7 @@ mod tests {
         found(scene).map_or_else(|| touch(scene), |found| holds_all(scene, &found))
     }
 
-    /// Return whether all pairs that meet were found.
+    /// Returns true if all pairs of triangles of different operands that cross are in `found`.
     fn holds_all(scene: &Scene, found: &HashSet<(usize, usize)>) -> bool {
         let meet = |i: usize, j: usize| {
             let (a, b) = (&scene.triangles[i], &scene.triangles[j]);
@@ -324,7 +330,7 @@ mod tests {
         all.all(|(i, j)| found.contains(&(i, j)) || !meet(i, j))
     }
 
-    /// The sides of a cone over a polygon with `sides` corners.
+    /// The lateral triangles of a cone over a polygon with `sides` corners.
     fn cone(operand: usize, sides: u32, apex: Lattice) -> Vec<(usize, [Lattice; 3])> {
         let corner = |k: u32| {
             let angle = std::f64::consts::TAU * f64::from(k) / f64::from(sides);
@@ -339,7 +345,7 @@ mod tests {
         (0..sides).map(side).collect()
     }
 
-    /// Two cones; the apex of the second is offset from the first's.
+    /// Two cones; the apex of the second is `by`, and the apex of the first is the origin.
     fn cones(sides: [u32; 2], by: Lattice) -> Scene {
         let triangles = [cone(0, sides[0], [0; 3]), cone(1, sides[1], by)].concat();
         Scene {

@@ -1,9 +1,9 @@
-//! The rims of triangles in the plane of two gauges.
+//! Half-planes that bound the projections of triangles on a plane.
 
 use super::direction::Span;
 use super::line::Gauge;
 
-/// The points of the plane with normal · point at most the limit.
+/// A half-plane: the points with normal · point ≤ limit.
 #[derive(Clone, Copy)]
 pub struct HalfPlane {
     normal: [f64; 2],
@@ -11,16 +11,17 @@ pub struct HalfPlane {
 }
 
 impl HalfPlane {
-    /// The whole plane.
+    /// The half-plane without a limit: the whole plane.
     const ALL: Self = Self {
         normal: [0.0; 2],
         limit: f64::INFINITY,
     };
 
-    /// Return the half-plane that contains the points `corners`, bounded by the line through the first two.
+    /// Returns the half-plane that contains the points `corners` and is bounded by the line through the first
+    /// two, moved outwards by `slack`.
     ///
-    /// Any normal is valid, so that only products with it are rounded: by a few units in the last place of
-    /// the coordinates, well below the coordinates' own error.
+    /// The half-plane contains the points whatever the rounding of its normal. Only products with the normal
+    /// are off, by a few units in the last place of the coordinates, well below the coordinates' own error.
     fn beside(corners: [[f64; 2]; 3], slack: f64) -> Self {
         let [a, b, c] = corners;
         let across = [b[1] - a[1], a[0] - b[0]];
@@ -38,15 +39,15 @@ impl HalfPlane {
         }
     }
 
-    /// Return whether a box lies outside.
+    /// Returns true if a box of the plane, given by its extent on each axis, lies outside the half-plane.
     pub fn excludes(&self, spans: &[Span; 2]) -> bool {
         let least = |i: usize| self.normal[i] * spans[i][usize::from(self.normal[i] < 0.0)];
         least(0) + least(1) > self.limit
     }
 }
 
-/// The half-planes at the edges of a triangle's shadow in the plane of two lines, for coordinates up to a
-/// size; the whole plane where edges would not be straight.
+/// Returns the half-planes at the edges of a triangle's projection on the plane of two gauges; `size` bounds
+/// the coordinates. If there is no projection with straight edges, returns the whole plane three times.
 pub fn rims(corners: Option<&[[f64; 3]; 3]>, plane: &[Gauge; 2], size: f64) -> [HalfPlane; 3] {
     let seen = corners.filter(|_| plane[0].keeps_straight(&plane[1]));
     let shadow = seen.and_then(|c| Some([plane[0].places(c)?, plane[1].places(c)?]));

@@ -1,9 +1,9 @@
-//! Pairs of elements with overlapping extents, found by sweeps along lines.
+//! Finds pairs of elements whose extents overlap, by sweeps along lines.
 //!
-//! A line is a coordinate axis, or one along or across the direction of most long elements: needles overlap
-//! in every box, but rarely in a projection across them. Triangles around a common corner overlap in every
-//! projection, but rarely as seen from that corner. In the plane of the two best lines, the edges of
-//! triangles also exclude boxes.
+//! A line is a coordinate axis, or lies along or across the main direction of long elements: the boxes of
+//! needles overlap, but rarely their projections on a line across them. Triangles around a common corner
+//! overlap in every projection, but rarely as seen from that corner. In the plane of the two best lines, the
+//! edges of triangles exclude further boxes.
 
 use super::direction::{largest_coordinate, Span};
 use super::line::{longest_edge, Line, SLANTED_LINES_FROM};
@@ -14,14 +14,16 @@ use crate::geometry::doubles::vector::dot;
 use crate::interrupt::spend;
 use crate::mesh::tasks::{each, Worth};
 
-/// A sweep that compares more pairs, at about a nanosecond each, costs more than halving the cell.
+/// The most pairs that a sweep may compare, at about a nanosecond each; a longer sweep costs more than
+/// halving the cell.
 const MAX_PAIRS_SWEPT: f64 = 3e8;
 
-/// The number of pairs of spans compared per unit of work.
+/// The number of pairs of extents compared per unit of work, after which the program checks whether to stop.
 const PAIRS_PER_UNIT: usize = 16;
 
-/// Calls `meet` for all pairs of different operands whose extents overlap along every line, the lower index
-/// first; returns `None` if too many elements overlap along each line.
+/// Calls `meet` for all pairs of elements of different operands whose extents overlap along every line, the
+/// lower index first. Returns `None`, before any call, if more than `MAX_PAIRS_SWEPT` pairs would be
+/// compared.
 pub fn pairs(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<()> {
     let parties = parties(elements);
     let sweeps = each(Worth::Task, parties.iter().collect(), |numbers| {
@@ -35,8 +37,9 @@ pub fn pairs(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<(
     Some(())
 }
 
-/// The elements in one group or, if two operands have many, in pairs of groups that suit different lines:
-/// each operand's long and short elements against the other's.
+/// Returns groups of element indices to be swept separately: one group or, if two operands have many
+/// elements, up to four groups, each with the long or the short elements of each operand, because these suit
+/// different lines.
 fn parties(elements: &[Swept]) -> Vec<Vec<usize>> {
     let own = elements[0].operand;
     let (ours, others): (Vec<usize>, Vec<usize>) =
@@ -52,7 +55,8 @@ fn parties(elements: &[Swept]) -> Vec<Vec<usize>> {
         .collect()
 }
 
-/// The elements at least half as long as the longest, and the others.
+/// Divides elements into those at least half as long as the longest, and the shorter ones; empty groups are
+/// left out.
 fn by_length(elements: &[Swept], numbers: Vec<usize>) -> Vec<Vec<usize>> {
     let length = |i: &usize| {
         let edge = elements[*i].corners.as_ref().and_then(longest_edge);
@@ -68,22 +72,22 @@ fn by_length(elements: &[Swept], numbers: Vec<usize>) -> Vec<Vec<usize>> {
         .collect()
 }
 
-/// The elements along the lines on which they overlap least, by operand.
+/// One sweep: elements by operand, sorted along the line on which they overlap least.
 struct Sweep {
     operands: Vec<SortedElements>,
     size: usize,
     crowding: f64,
 }
 
-/// An operand's elements, sorted along the line on which all overlap least.
+/// The elements of one operand, sorted along the line on which the elements of all operands overlap least.
 struct SortedElements {
-    /// Extents along that line.
+    /// The extents of the elements along the line on which they overlap least.
     first: Vec<Span>,
-    /// Extents along the next best line.
+    /// The extents of the elements along the next best line.
     second: Vec<Span>,
-    /// Extents along the other lines.
+    /// The extents of the elements along each further line.
     others: Vec<Vec<Span>>,
-    /// The half-planes that bound each element in the plane of the two best lines.
+    /// The three half-planes that bound each element in the plane of the two best lines.
     rims: Vec<[HalfPlane; 3]>,
     numbers: Vec<usize>,
 }
@@ -123,12 +127,12 @@ impl Sweep {
         }
     }
 
-    /// The approximate number of pairs compared.
+    /// Returns the approximate number of pairs that the sweep compares.
     fn cost(&self) -> f64 {
         self.crowding * as_double(self.size)
     }
 
-    /// The pairs of different operands that may meet, the lower index first.
+    /// Returns the pairs of elements of different operands that may meet, the lower index first.
     fn run(&self) -> Vec<(usize, usize)> {
         let mut found = Vec::new();
         let mut meet = |i: usize, j: usize| found.push((i.min(j), i.max(j)));
@@ -143,8 +147,8 @@ impl Sweep {
 }
 
 impl SortedElements {
-    /// Finds for each element those of another operand that begin after it, or also at the same place if
-    /// `level` is set.
+    /// Calls `meet` for each element and those overlapping elements of `other` that begin after it along the
+    /// best line, or also at the same coordinate if `level` is true.
     fn meet_those_after(&self, other: &Self, level: bool, meet: &mut impl FnMut(usize, usize)) {
         let mut start = 0;
         for (at, [low, high]) in self.first.iter().enumerate() {

@@ -1,7 +1,7 @@
-//! Slopes of elements seen from a corner that many of them share.
+//! Slopes of elements as seen from a corner that many of them share.
 //!
-//! A fan of triangles overlaps in every box and in every projection. Seen from its apex, each triangle is a
-//! line, and the lines follow each other around it.
+//! The triangles of a fan overlap in every box and in every projection. Seen from the common corner (the
+//! apex), each triangle is a line, and these lines follow each other around it.
 
 use rustc_hash::FxHashMap;
 
@@ -10,32 +10,35 @@ use super::Swept;
 use crate::arith::convert::as_double;
 use crate::geometry::doubles::vector::{dot, less};
 
-/// An operand's elements are a fan if at least one in this many has the apex.
+/// An operand's elements count as a fan if at least one in this many has a corner at the apex.
 const FAN_IF_ONE_IN: usize = 4;
 
-/// A point is ahead if its depth is more than this share of the largest coordinate.
+/// A point counts as ahead only if its depth along the viewing direction is more than this share of the
+/// largest coordinate.
 const MIN_DEPTH_AHEAD: f64 = 1e-6;
 
-/// A point is ahead if its slope is less than this.
+/// A point counts as ahead only if the absolute value of its slope is less than this.
 const MAX_SLOPE_AHEAD: f64 = 16.0;
 
-/// The error of slopes of points ahead: coordinates and depths are off by less than `SLACK` times the
-/// largest coordinate.
+/// A bound on the error of slopes of points ahead: coordinates and depths are off by less than `SLACK` times
+/// the largest coordinate.
 pub const SLOPE_ERROR: f64 = (1.0 + MAX_SLOPE_AHEAD) * SLACK / MIN_DEPTH_AHEAD;
 
-/// An eye point, a viewing direction, and a direction to measure slopes in.
+/// An eye point, a viewing direction, and a direction across it in which slopes are measured.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     eye: [f64; 3],
     ahead: [f64; 3],
     across: [f64; 3],
-    /// The largest coordinate.
+    /// The largest absolute coordinate of all elements.
     size: f64,
 }
 
-/// The views from the apexes of the first operand's elements and of the others'.
+/// Returns views from the apex of the first operand's elements, and from the apex of all other elements, as
+/// far as they are fans.
 ///
-/// None from an apex that elements of two operands share inside the cell: no slope separates these.
+/// An apex that elements of two operands share inside the cell gives no view, because no slope separates
+/// these elements.
 pub fn views(elements: &[&Swept]) -> Vec<View> {
     let own = elements.first().map_or(0, |e| e.operand);
     let (first, others): (Vec<&Swept>, Vec<&Swept>) =
@@ -59,7 +62,7 @@ pub fn views(elements: &[&Swept]) -> Vec<View> {
     alone.filter_map(from).flatten().collect()
 }
 
-/// The corner that most elements share, if they are a fan.
+/// Returns the corner that the most elements share, if they are a fan; otherwise `None`.
 fn apex(elements: &[&Swept]) -> Option<[f64; 3]> {
     let mut counts: FxHashMap<[u64; 3], usize> = FxHashMap::default();
     for corner in elements.iter().filter_map(|e| e.corners.as_ref()).flatten() {
@@ -71,12 +74,13 @@ fn apex(elements: &[&Swept]) -> Option<[f64; 3]> {
     (count * FAN_IF_ONE_IN >= elements.len()).then(|| most.map(f64::from_bits))
 }
 
-/// Return bits that are equal for equal places: coordinates are whole numbers, so that zero has one sign.
+/// Returns the bits of a point's coordinates, equal for equal points: coordinates are whole numbers, and zero
+/// always has the same sign.
 fn bits(place: &[f64; 3]) -> [u64; 3] {
     place.map(f64::to_bits)
 }
 
-/// Return whether elements of different operands share a corner inside the cell.
+/// Returns true if elements of different operands share a corner inside the cell.
 pub fn share_corner(elements: &[Swept]) -> bool {
     let mut owners: FxHashMap<[u64; 3], usize> = FxHashMap::default();
     elements.iter().any(|e| {
@@ -85,7 +89,7 @@ pub fn share_corner(elements: &[Swept]) -> bool {
     })
 }
 
-/// Return whether elements of different operands share this corner inside the cell.
+/// Returns true if elements of different operands share the corner `place` inside the cell.
 fn is_shared(elements: &[&Swept], place: &[f64; 3]) -> bool {
     let touches = |e: &&&Swept| e.is_at(place) && e.has(place);
     let mut operands = elements.iter().filter(touches).map(|e| e.operand);
@@ -94,20 +98,21 @@ fn is_shared(elements: &[&Swept], place: &[f64; 3]) -> bool {
 }
 
 impl Swept {
-    /// Return whether a place lies in the element's box inside the cell.
+    /// Returns true if a point lies in the element's box inside the cell.
     fn is_at(&self, place: &[f64; 3]) -> bool {
         let within = |i: usize| as_double(self.low[i])..=as_double(self.high[i]);
         (0..3).all(|i| within(i).contains(&place[i]))
     }
 
-    /// Return whether a place is one of the corners.
+    /// Returns true if a point is one of the element's corners.
     fn has(&self, place: &[f64; 3]) -> bool {
         let corners = self.corners.iter().flatten();
         corners.map(bits).any(|corner| corner == bits(place))
     }
 }
 
-/// The mean direction of an apex's triangles.
+/// Returns the mean direction in which triangles with a corner at `eye` extend; `None` if there is no such
+/// direction.
 fn middle(elements: &[&Swept], eye: &[f64; 3]) -> Option<[f64; 3]> {
     let mut sum = [0.0f64; 3];
     let around = elements.iter().filter(|e| e.has(eye));
@@ -120,13 +125,13 @@ fn middle(elements: &[&Swept], eye: &[f64; 3]) -> Option<[f64; 3]> {
 }
 
 impl View {
-    /// Return whether two views have the same eye point.
+    /// Returns true if two views have the same eye point.
     pub fn shares_eye(&self, other: &Self) -> bool {
         bits(&self.eye) == bits(&other.eye)
     }
 
-    /// The slopes of a triangle's corners; a corner at the eye gets the slope of another one. `None` if any
-    /// other corner is not ahead.
+    /// Returns the slopes of a triangle's corners; a corner at the eye gets the slope of another corner.
+    /// `None` if a corner is neither at the eye nor ahead.
     pub fn places(&self, corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
         let at_eye = |p: &[f64; 3]| bits(p) == bits(&self.eye);
         let seen = corners.iter().find(|p| !at_eye(p))?;
@@ -137,7 +142,7 @@ impl View {
         Some(places)
     }
 
-    /// The slope of a point, if it is ahead.
+    /// Returns the slope of a point; `None` if the point is not ahead.
     fn slope(&self, p: &[f64; 3]) -> Option<f64> {
         let toward = less(p, &self.eye);
         let depth = dot(&toward, &self.ahead);
@@ -145,11 +150,11 @@ impl View {
         (depth > MIN_DEPTH_AHEAD * self.size && slope.abs() < MAX_SLOPE_AHEAD).then_some(slope)
     }
 
-    /// The least and greatest slope of each element, padded by their error; all slopes for elements that
-    /// are not ahead. `None` if no element is ahead.
+    /// Returns the least and the greatest slope of each element, padded by the error of slopes; an element
+    /// that is not ahead gets the extremes of all slopes. `None` if no element is ahead.
     ///
-    /// A slope is a quotient of linear functions. So on a triangle ahead its extremes are at corners; on a
-    /// triangle with a corner at the eye it is constant along each line from there.
+    /// A slope is a quotient of linear functions. So on a triangle that is ahead, its extremes are at
+    /// corners; on a triangle with a corner at the eye, it is constant along each line from that corner.
     pub fn spans(&self, elements: &[&Swept]) -> Option<Vec<Span>> {
         let span = |e: &&Swept| {
             let places = self.places(e.corners.as_ref()?)?;

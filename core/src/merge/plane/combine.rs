@@ -1,8 +1,8 @@
-//! Set operations on sets of the plane: by a sweep over both boundaries, or by merging trees.
+//! Set operations on sets of the plane, by a sweep over both boundaries or by merging partition trees.
 //!
-//! A sweep costs as much as both boundaries have, a merge as much as the smaller one has, once the larger
-//! one has a tree. So a sweep suits operands of similar sizes, and a large one combined with few small
-//! ones; merging suits a large one combined with many.
+//! A sweep visits all edges of both boundaries; a merge visits the smaller operand and few nodes of the
+//! larger one, once that has a tree. So a sweep suits operands with similar numbers of edges, and a large
+//! operand that is combined with few small ones; merging suits a large operand that is combined with many.
 
 use super::input::Outlines;
 use super::sweep::bounded;
@@ -12,16 +12,17 @@ use crate::merge::op::SetOp;
 use crate::tree::partition::Label;
 use crate::tree::plane::{Boundary, PlaneSet, SWEEPS_PER_TREE};
 
-/// Operands are unlike if their sizes differ by more than this factor.
+/// Two operands count as unlike if their sizes (numbers of edges or nodes) differ by more than this factor.
 const MAX_SIZE_RATIO: usize = 8;
 
-/// A tree that grows to more than this many times its first size is rebuilt.
+/// A merged tree with more than this many times the nodes of the larger operand's first tree is replaced by
+/// its boundary, from which a new tree is built on demand.
 const MAX_GROWTH: usize = 4;
 
-/// The most nodes of a tree that is never rebuilt.
+/// A merged tree with at most this many nodes is never replaced by its boundary.
 const MAX_UNSHRUNK: usize = 64;
 
-/// Return the result of a set operation on two sets.
+/// Returns the result of a set operation on two sets of the plane.
 ///
 /// # Errors
 /// `Internal` for a defect.
@@ -49,7 +50,7 @@ fn swept(a: &Boundary, b: &Boundary, op: SetOp) -> Result<Boundary> {
     let mut outlines = Outlines::default();
     outlines.extend(a, 1);
     outlines.extend(b, 2);
-    // Inside the first set the number is odd, inside the second it is 2 or 3.
+    // The winding number is odd inside the first set, and 2 or 3 inside the second.
     let label = |bit: i32| Label::from_inside(bit != 0);
     bounded(&outlines, |number| {
         op.labels(label(number & 1), label(number & 2)) == Label::In
@@ -71,7 +72,7 @@ fn merged(a: &PlaneSet, b: &PlaneSet, op: SetOp) -> Result<PlaneSet> {
     Ok(set)
 }
 
-/// Return whether two sets are equal.
+/// Returns true if two sets of the plane are equal, up to their boundaries.
 ///
 /// # Errors
 /// `Internal` for a defect.
@@ -83,7 +84,7 @@ pub fn equal(a: &PlaneSet, b: &PlaneSet) -> Result<bool> {
     Ok(difference.label() == Some(Label::Out))
 }
 
-/// The union of any number of sets.
+/// Returns the union of any number of sets of the plane.
 ///
 /// # Errors
 /// `Internal` for a defect.

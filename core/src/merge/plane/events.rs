@@ -1,4 +1,5 @@
-//! The stops of a sweep: the corners in order, and the crossings found on the way.
+//! The stops of a sweep over the plane: the given corners in order, and the crossings of segments found
+//! during the sweep.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -7,12 +8,12 @@ use crate::arith::convert::as_number;
 use crate::interrupt::poll;
 use crate::tree::plane::Corner;
 
-/// The distinct corners by x, then y, and the index of each given corner among them.
+/// The distinct points among the given corners, ordered by x, then y.
 #[derive(Debug)]
 pub(super) struct Stops {
-    /// The number of a given corner for each stop.
+    /// For each stop, the index of a given corner at its point.
     pub corners: Vec<u32>,
-    /// The number of a stop for each given corner.
+    /// For each given corner, the index of the stop at its point.
     pub places: Vec<u32>,
 }
 
@@ -21,7 +22,7 @@ impl Stops {
         let mut keys: Vec<Key> = (0..).zip(corners).map(Key::of).collect();
         keys.sort_unstable();
         if !keys.iter().all(|key| key.is_lattice) {
-            // The order in doubles is almost exact, which suits a stable sort.
+            // The order in doubles is almost the exact one, so a stable sort is fast.
             keys.sort_by(|a, b| a.order(b, corners).then(a.number.cmp(&b.number)));
         }
         let mut stops = Self {
@@ -34,7 +35,7 @@ impl Stops {
             for key in group {
                 stops.places[key.number as usize] = as_number(stops.corners.len());
             }
-            // Lattice points are the cheapest to test.
+            // A lattice point, if there is one, stands for the stop: tests of it are the cheapest.
             let lattice = group.iter().find(|key| key.is_lattice);
             stops.corners.push(lattice.unwrap_or(&group[0]).number);
         }
@@ -42,10 +43,10 @@ impl Stops {
     }
 }
 
-/// A corner, ordered by its place in doubles; for a lattice point this is exact.
+/// A corner's key for sorting by its coordinates in doubles; the order of lattice points is exact.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
-    /// A number that increases with x, then y.
+    /// An integer that increases with x, then y.
     rank: u128,
     number: u32,
     is_lattice: bool,
@@ -61,7 +62,7 @@ impl Key {
         }
     }
 
-    /// The exact order of two corners.
+    /// Returns the exact order of two corners by x, then y.
     fn order(&self, other: &Self, corners: &[Corner]) -> Ordering {
         if self.is_lattice && other.is_lattice {
             return self.rank.cmp(&other.rank);
@@ -71,7 +72,7 @@ impl Key {
     }
 }
 
-/// A number that increases with a double; equal for both zeros.
+/// Returns an integer that increases with the double x, and is the same for 0.0 and -0.0.
 fn rank(x: f64) -> u64 {
     let bits = (x + 0.0).to_bits();
     if bits >> 63 == 0 {
@@ -81,7 +82,7 @@ fn rank(x: f64) -> u64 {
     }
 }
 
-/// Crossings ahead of a sweep, the nearest first.
+/// The known crossings of segments to the right of the sweep line, nearest first.
 #[derive(Debug, Default)]
 pub(super) struct Crossings(BinaryHeap<Crossing>);
 
@@ -93,7 +94,8 @@ impl Crossings {
         self.0.extend(corner.map(Crossing));
     }
 
-    /// The next crossing, if it is not beyond a corner; merges equal ones.
+    /// Removes and returns the next crossing if it comes before `corner` in the order of the sweep; drops
+    /// further copies of it, and crossings equal to `corner`.
     pub(super) fn before(&mut self, corner: Option<&Corner>) -> Option<Corner> {
         let order = |known: &Crossing| {
             corner.map_or(Ordering::Less, |corner| known.0.point.order(&corner.point))
@@ -101,7 +103,7 @@ impl Crossings {
         loop {
             match order(self.0.peek()?) {
                 Ordering::Greater => return None,
-                // The corner itself stops the sweep here.
+                // The sweep stops at this corner anyway.
                 Ordering::Equal => drop(self.0.pop()),
                 Ordering::Less => break,
             }

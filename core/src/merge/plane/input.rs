@@ -1,4 +1,4 @@
-//! The input of a sweep: weighted segments between corners.
+//! The input of a sweep over the plane: directed segments with weights.
 
 use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
@@ -6,33 +6,34 @@ use crate::geometry::spaces::dim2::{Lattice2, Line2};
 use crate::tree::partition::Label;
 use crate::tree::plane::{Boundary, Corner};
 
-/// Directed segments, each of which adds its weight to the winding numbers on its left.
+/// Directed segments in the plane; the winding number on the left of each exceeds that on its right by its
+/// weight.
 #[derive(Clone, Debug, Default)]
 pub struct Outlines {
-    /// The end points of the segments, in any order; some may be equal.
+    /// The end points of the segments, in any order; the same point may occur several times.
     pub corners: Vec<Corner>,
-    /// The segments.
+    /// The directed segments, with indices into `corners`.
     pub strands: Vec<Strand>,
-    /// The winding number far outside.
+    /// The winding number far outside all segments.
     pub base: i32,
 }
 
-/// A directed segment.
+/// A directed segment in the plane, with a weight.
 #[derive(Clone, Copy, Debug)]
 pub struct Strand {
-    /// The line that it lies in.
+    /// The directed line that contains the segment.
     pub line: Line2,
-    /// The numbers of its first and its last corner.
+    /// The indices of its first and its last point in `Outlines::corners`.
     pub ends: [u32; 2],
-    /// Its contribution to the winding number on the minus side.
+    /// The increase of the winding number from the plus side (right) to the minus side (left).
     pub weight: i32,
 }
 
 impl Outlines {
-    /// Adds a segment between lattice points, unless they are equal.
+    /// Adds a segment between two lattice points, unless they are equal.
     ///
     /// # Errors
-    /// `TooLarge` beyond the lattice.
+    /// `TooLarge` if a coordinate exceeds the lattice of 2^53 steps.
     pub fn push(&mut self, from: Lattice2, to: Lattice2, weight: i32) -> Result<()> {
         if from == to {
             return Ok(());
@@ -52,7 +53,8 @@ impl Outlines {
         Ok(())
     }
 
-    /// The number of a corner; reuses the last corner if it is the same point.
+    /// Returns the index of a corner for a lattice point: the last corner if it is this point, otherwise a
+    /// new one.
     fn corner(&mut self, at: Lattice2) -> u32 {
         let known = self.corners.last().and_then(|c| c.point.as_lattice());
         if known != Some(at) {
@@ -61,7 +63,7 @@ impl Outlines {
         as_number(self.corners.len()) - 1
     }
 
-    /// Adds the boundary of a set; `weight` adds to the winding numbers inside it.
+    /// Adds the boundary of a set of the plane; winding numbers inside the set increase by `weight`.
     pub fn extend(&mut self, boundary: &Boundary, weight: i32) {
         let shift = as_number(self.corners.len());
         self.corners.extend_from_slice(&boundary.corners);

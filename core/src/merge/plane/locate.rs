@@ -1,4 +1,4 @@
-//! The locations of many points, by a sweep over them and the corners of a boundary.
+//! Locates many points relative to a set of the plane, by one sweep.
 
 use std::cmp::Ordering;
 
@@ -11,7 +11,7 @@ use crate::interrupt::poll;
 use crate::tree::partition::{classify, Label, Location};
 use crate::tree::plane::{Boundary, PlaneSet};
 
-/// Locate each of some points relative to a set.
+/// Returns for each point whether it is inside, on the boundary of or outside a set of the plane.
 ///
 /// # Errors
 /// `Internal` for a defect.
@@ -26,11 +26,12 @@ pub fn located(set: &PlaneSet, points: &[Lattice2]) -> Result<Vec<Location>> {
     Ok(points.iter().map(place).collect())
 }
 
-/// Steps around a corner in doubles: two units in the last place are at most two steps below 2⁵³, and
-/// truncation is less than one.
+/// The width in lattice steps that is added around corners in doubles: they are off by two units in the last
+/// place, which are at most two steps below 2⁵³, and truncation to integers is off by less than one step.
 const CORNER_SLACK: f64 = 4.0;
 
-/// The box around a boundary's corners, rounded outwards; `None` without corners.
+/// Returns the low and the high corner of a box around a boundary, rounded outwards; `None` if the boundary
+/// has no corners.
 fn frame(boundary: &Boundary) -> Option<[Lattice2; 2]> {
     let points = boundary.corners.iter().map(|c| c.point.approx());
     let (low, high) = points.map(|p| (p, p)).reduce(|(low, high), (p, _)| {
@@ -43,11 +44,12 @@ fn frame(boundary: &Boundary) -> Option<[Lattice2; 2]> {
     ])
 }
 
-/// Locate each of some points relative to a closed boundary's set.
+/// Returns for each point whether it is inside, on or outside a closed boundary, by a sweep over the points
+/// and the boundary's corners.
 ///
 /// # Cost
-/// O(k + (n + i) log n) for n edges and k points, i of them in the box around the edges, if the
-/// sweep's line meets few edges at once.
+/// O(k + (n + i) log n) for n edges and k points, of which i lie in the box around the edges, if the sweep
+/// line meets few edges at once.
 fn passed(boundary: &Boundary, points: &[Lattice2]) -> Result<Vec<Location>> {
     let mut outlines = Outlines::default();
     outlines.extend(boundary, 1);

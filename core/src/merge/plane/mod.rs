@@ -1,9 +1,9 @@
-//! Sets of the plane by a sweep: the regions that outlines bound, and set operations on boundaries.
+//! Computes the regions that outlines bound, and set operations on sets of the plane, by a sweep.
 //!
-//! A line sweeps over the plane from left to right. It keeps the segments that it meets in order from
-//! below, and stops where one begins, ends or crosses its neighbour. Between two stops it knows the winding
-//! number of each gap, and so which pieces of segments have the set on one side only: the boundary. All
-//! predicates are exact.
+//! A vertical line sweeps over the plane from left to right. It stores the segments that it meets in order
+//! from below, and stops where a segment begins, ends or crosses its neighbour. Between two stops the winding
+//! number of each gap between neighbouring segments is known. The boundary consists of the pieces of segments
+//! that have the set on one side only. All predicates are exact.
 //!
 //! # Source
 //! Bentley, Ottmann: *Algorithms for reporting and counting geometric intersections*. IEEE

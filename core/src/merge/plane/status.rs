@@ -1,46 +1,48 @@
-//! The status of a sweep: the stretches of lines that the sweep line meets, in order from below.
+//! The status of a sweep over the plane: the segments that the sweep line meets, in order from below.
 
 use smallvec::SmallVec;
 
 use crate::geometry::side::Side;
 use crate::geometry::spaces::dim2::{Point2, RoundedLine};
 
-/// A stretch of a line with one or more strands, from the last stop on it to the next.
+/// A segment of a line that the sweep line meets, of one or more overlapping input segments; it reaches from
+/// the last stop on it to the next.
 #[derive(Clone, Debug)]
 pub(super) struct Stretch {
-    /// The line, directed to the right; its minus side is above.
+    /// The line of the segment, directed to the right; its minus side is above.
     pub line: RoundedLine,
-    /// The stop where the first strand ends.
+    /// The index of the stop at which the first of the input segments ends.
     pub right: u32,
-    /// The strands.
+    /// The indices of the overlapping input segments.
     pub strands: SmallVec<[u32; 2]>,
-    /// The increase of the winding number from below to above.
+    /// The increase of the winding number from below the segment to above it.
     pub rise: i32,
-    /// The winding number below.
+    /// The winding number just below the segment.
     pub below: i32,
-    /// The faces of the result below and above.
+    /// The faces of the resulting boundary below and above the segment.
     pub faces: [u32; 2],
-    /// The corner of the result where it began to separate inside from outside, if it does.
+    /// The corner of the result from which on the segment separates inside from outside; `None` if it does
+    /// not.
     pub start: Option<u32>,
 }
 
 impl Stretch {
-    /// The winding number above.
+    /// Returns the winding number just above the segment.
     pub(super) fn above(&self) -> i32 {
         self.below + self.rise
     }
 }
 
-/// The place of a point among the stretches on the sweep line.
+/// The position of a point in the order of the segments on the sweep line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
-    /// The number of stretches below it.
+    /// The number of segments below the point.
     pub first: usize,
-    /// The number of stretches below it and through it.
+    /// The number of segments below the point or through it.
     pub last: usize,
 }
 
-/// The stretches, in order from below.
+/// The segments that the sweep line meets, in order from below.
 #[derive(Debug, Default)]
 pub(super) struct Status {
     order: Vec<u32>,
@@ -49,17 +51,18 @@ pub(super) struct Status {
 }
 
 impl Status {
-    /// The stretch at an index from below.
+    /// Returns the segment with this index in the order from below.
     pub(super) fn at(&self, place: usize) -> &Stretch {
         &self.stretches[self.order[place] as usize]
     }
 
-    /// The number of stretches.
+    /// Returns the number of segments on the sweep line.
     pub(super) fn len(&self) -> usize {
         self.order.len()
     }
 
-    /// Return the place of a point on the sweep line; `stop` is its number, if it is a corner.
+    /// Returns the position of a point of the sweep line in the order of segments; `stop` is the index of the
+    /// stop at this point, if an input segment begins or ends there.
     pub(super) fn place(&self, point: &Point2, stop: Option<u32>) -> Place {
         let side = |number: &u32| {
             let stretch = &self.stretches[*number as usize];
@@ -69,7 +72,7 @@ impl Status {
                 stretch.line.side_of(point)
             }
         };
-        // Above a line to the right is its minus side.
+        // The minus side of a line to the right is above it.
         let first = self.order.partition_point(|n| side(n) == Side::Minus);
         let through = self.order[first..]
             .iter()
@@ -78,10 +81,10 @@ impl Status {
         Place { first, last }
     }
 
-    /// Replaces the stretches through a point.
+    /// Replaces the segments through a point by the segments that leave it to the right.
     ///
     /// # Cost
-    /// If their number changes, four bytes are moved for each stretch above.
+    /// If the number of segments changes, four bytes are moved for each segment above.
     pub(super) fn exchange(&mut self, place: Place, others: SmallVec<[Stretch; 2]>) {
         let through = &self.order[place.first..place.last];
         if through.len() == others.len() {

@@ -1,4 +1,4 @@
-//! The sweep itself.
+//! The sweep that computes which regions of the plane are inside outlines.
 
 use smallvec::SmallVec;
 
@@ -13,15 +13,15 @@ use crate::interrupt::poll;
 use crate::tree::partition::{Label, Location};
 use crate::tree::plane::{Boundary, Corner};
 
-/// The boundary of the set of places whose winding number satisfies a rule.
+/// Returns the boundary of the set of points of the plane for whose winding number `inside` is true.
 ///
-/// Strands may cross, overlap and repeat.
+/// The directed segments (strands) may cross, overlap and repeat.
 ///
 /// # Cost
-/// O((n + k) log n) for n strands that cross in k points, if the sweep line meets few of them at once.
+/// O((n + k) log n) for n segments that cross in k points, if the sweep line meets few of them at once.
 ///
 /// # Errors
-/// `NotClosed` if the strands do not define one number for every place.
+/// `NotClosed` if the segments do not define one winding number for every point.
 ///
 /// # Example
 /// ```
@@ -47,7 +47,7 @@ pub fn bounded(outlines: &Outlines, inside: impl Fn(i32) -> bool) -> Result<Boun
     Ok(sweep.into_boundary())
 }
 
-/// A strand directed to the right.
+/// An input segment, directed to the right.
 #[derive(Clone, Copy, Debug)]
 struct Running {
     line: Line2,
@@ -55,21 +55,22 @@ struct Running {
     rise: i32,
 }
 
-/// A place where the sweep stops.
+/// A point at which the sweep stops.
 #[derive(Debug)]
 pub(super) struct Event {
-    /// The place of the stop.
+    /// The point of the stop.
     pub corner: Corner,
-    /// Its number, if a strand begins or ends there.
+    /// The index of the stop, if an input segment begins or ends there; `None` at a crossing.
     pub stop: Option<u32>,
 }
 
-/// The state of the sweep.
+/// The state of a sweep over the plane from left to right.
 pub(super) struct Sweep<'a, R> {
     outlines: &'a Outlines,
     inside: R,
     stops: Stops,
-    /// The strands from left to right, and the index of the first that begins in each stop.
+    /// The input segments by their left end; `starts` has for each stop the index of the first one that
+    /// begins there.
     strands: Vec<Running>,
     starts: Vec<u32>,
     passed: u32,
@@ -95,7 +96,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         }
     }
 
-    /// The next stop.
+    /// Advances to the next stop and returns it; `None` after the last one.
     pub(super) fn next(&mut self) -> Option<Event> {
         let stop = self.passed;
         let corner = self.corner(stop).copied();
@@ -109,7 +110,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         })
     }
 
-    /// The corner of a stop.
+    /// Returns the point of the stop with this index; `None` after the last one.
     fn corner(&self, stop: u32) -> Option<&Corner> {
         let number = self.stops.corners.get(stop as usize)?;
         self.outlines.corners.get(*number as usize)
@@ -120,12 +121,12 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         self.output.into_boundary(outer)
     }
 
-    /// Return whether only one side of a stretch is inside.
+    /// Returns true if exactly one side of the segment `stretch` is inside.
     fn separates(&self, stretch: &Stretch) -> bool {
         (self.inside)(stretch.below) != (self.inside)(stretch.above())
     }
 
-    /// Processes a stop: ends the stretches through it and begins those that leave it to the right.
+    /// Processes a stop: ends the segments that reach it, and begins the segments that leave it to the right.
     pub(super) fn pass(&mut self, event: &Event) -> Result<()> {
         let place = self.status.place(&event.corner.point, event.stop);
         let (winding, face) = self.below(place.first);
@@ -149,7 +150,8 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         Ok(())
     }
 
-    /// The winding number and the face below a place.
+    /// Returns the winding number and the face of the result just below the index `place` in the order of
+    /// segments on the sweep line.
     fn below(&self, place: usize) -> (i32, u32) {
         match place.checked_sub(1) {
             Some(lower) => {
@@ -160,7 +162,8 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         }
     }
 
-    /// Locate a point before the next stop.
+    /// Returns the location of a point on the sweep line, which comes after the last stop and before the next
+    /// one.
     pub(super) fn location(&self, point: &Point2) -> Location {
         let place = self.status.place(point, None);
         if place.first < place.last {
@@ -173,7 +176,8 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         }
     }
 
-    /// The stretches that leave a stop to the right, in order from below.
+    /// Returns the segments that leave a stop to the right, in order from below; `winding` is the winding
+    /// number below them.
     fn leaving(&self, place: Place, stop: Option<u32>, winding: i32) -> SmallVec<[Stretch; 2]> {
         let mut numbers: SmallVec<[u32; 4]> = SmallVec::new();
         for passing in place.first..place.last {
@@ -198,7 +202,8 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
             .collect()
     }
 
-    /// The stretch for strands on one line.
+    /// Makes one segment of the sweep line's order from overlapping input segments on one line; `below` is
+    /// the winding number below it.
     fn stretch(&self, strands: &[u32], below: i32) -> Stretch {
         let running = strands.iter().map(|n| &self.strands[*n as usize]);
         Stretch {
@@ -212,7 +217,8 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         }
     }
 
-    /// Sets the faces and the corner of the stretches that leave a stop, and ends those before it.
+    /// Sets the faces beside the segments that leave a stop, adds the edges of the result that end there, and
+    /// begins new ones; `lower` and `upper` are the faces below and above all segments at the stop.
     fn settled(
         &mut self,
         mut leaving: SmallVec<[Stretch; 2]>,
@@ -243,7 +249,8 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         leaving
     }
 
-    /// Continues the boundary straight on, if nothing else of it meets this stop.
+    /// Extends the one boundary edge that reaches a stop if exactly one leaves it, in the same line and with
+    /// the same side inside; returns true if it did.
     fn goes_on(&self, arriving: &[usize], leaving: &mut [Stretch], walls: usize) -> bool {
         let ([before], 1) = (arriving, walls) else {
             return false;
@@ -260,7 +267,8 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         straight
     }
 
-    /// Adds a corner to the boundary, if any of it meets this stop.
+    /// Adds a corner to the result if a boundary edge reaches or leaves a stop; ends the edges that reach it
+    /// and begins those that leave it.
     fn turn(&mut self, arriving: &[usize], leaving: &mut [Stretch], walls: usize, corner: &Corner) {
         if arriving.is_empty() && walls == 0 {
             return;
@@ -281,7 +289,8 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         }
     }
 
-    /// Records the crossing of two neighbours; the upper one is at this index.
+    /// Records the crossing, if there is one, of the two neighbouring segments at the indices `place - 1` and
+    /// `place` from below.
     fn look(&mut self, place: usize) {
         if place == 0 || place >= self.status.len() {
             return;
@@ -303,7 +312,8 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
     }
 }
 
-/// The strands sorted by left end, and the first of each stop.
+/// Returns the input segments sorted by left end, and for each stop the index of the first one that begins
+/// there.
 fn running(outlines: &Outlines, stops: &Stops) -> (Vec<Running>, Vec<u32>) {
     let mut strands = Vec::with_capacity(outlines.strands.len());
     for strand in &outlines.strands {

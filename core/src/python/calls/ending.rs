@@ -1,7 +1,8 @@
-//! The end of the interpreter: threads that are inside the core then stay there.
+//! The end of the interpreter: threads that are inside the core then wait there.
 //!
-//! `CPython` before 3.14 ends a thread that takes the GIL of an ending interpreter by unwinding its
-//! stack, and a stack with Rust's frames aborts the process. Only daemon threads live so long.
+//! `CPython` before 3.14 ends a thread that takes the GIL of an ending interpreter by unwinding its stack;
+//! if Rust's frames are on the stack, that aborts the process. Only daemon threads are still alive at that
+//! time.
 
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::SeqCst};
@@ -10,10 +11,10 @@ use std::time::Duration;
 
 use pyo3::prelude::*;
 
-/// True from the moment at which the interpreter begins to end.
+/// True as soon as the interpreter begins to end.
 static IS_ENDING: AtomicBool = AtomicBool::new(false);
 
-/// The number of threads that wait for the GIL and were not told that the interpreter ends.
+/// The number of threads that wait for the GIL and will get it before the interpreter ends.
 static RETURNING: AtomicUsize = AtomicUsize::new(0);
 
 thread_local! {
@@ -21,17 +22,17 @@ thread_local! {
     static ENDS_IT: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Has Python call [`end`] when it begins to end.
+/// Registers [`end`] to be called when the interpreter begins to end.
 ///
 /// # Errors
-/// What Python raises.
+/// The exceptions of `atexit.register`.
 pub fn watch(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let atexit = module.py().import("atexit")?;
     atexit.call_method1("register", (wrap_pyfunction!(end, module)?,))?;
     Ok(())
 }
 
-/// Keeps other threads inside the core from now on, and waits for those on their way out.
+/// From now on lets no other thread leave the core, and waits for the threads that are just leaving it.
 #[pyfunction]
 fn end(py: Python<'_>) {
     ENDS_IT.set(true);
@@ -43,12 +44,12 @@ fn end(py: Python<'_>) {
     });
 }
 
-/// Forgets the threads that a forked process does not have.
+/// Resets the count of waiting threads in a forked process, which does not have these threads.
 pub fn forget_threads() {
     RETURNING.store(0, SeqCst);
 }
 
-/// Does some work with the GIL released.
+/// Runs `work` with the GIL released.
 pub fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> T {
     let result = py.detach(|| {
         let result = work();
@@ -59,7 +60,7 @@ pub fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> T {
     result
 }
 
-/// Does some work with the GIL taken, in a thread that has released it.
+/// Runs `work` with the GIL, in a thread that has released it.
 pub fn attached<T>(work: impl FnOnce(Python<'_>) -> T) -> T {
     announce_return();
     Python::attach(|py| {
@@ -68,7 +69,7 @@ pub fn attached<T>(work: impl FnOnce(Python<'_>) -> T) -> T {
     })
 }
 
-/// Counts this thread as one that waits for the GIL; does not return if the interpreter ends.
+/// Counts this thread as waiting for the GIL; never returns if the interpreter is ending.
 fn announce_return() {
     RETURNING.fetch_add(1, SeqCst);
     if IS_ENDING.load(SeqCst) && !ENDS_IT.get() {

@@ -1,4 +1,4 @@
-//! Core errors as Python exceptions with `code`, `where` and `message`.
+//! Converts core errors to Python exceptions with the attributes `code`, `where` and `message`.
 
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyKeyboardInterrupt};
@@ -14,7 +14,7 @@ create_exception!(
     "An error of the core: code, where, message."
 );
 
-/// The Python exception for an error.
+/// Converts a core error to a Python exception; a cancelled call becomes `KeyboardInterrupt`.
 pub fn to_python(py: Python<'_>, error: &Error) -> PyErr {
     if error.kind() == ErrorKind::Cancelled {
         return PyKeyboardInterrupt::new_err(());
@@ -31,7 +31,7 @@ pub fn to_python(py: Python<'_>, error: &Error) -> PyErr {
     }
 }
 
-/// The exception of a call; that of a defect names the call and what it was given, for a report.
+/// Adds the name of the call and its inputs to the exception of an internal error, for a report.
 pub fn with_report<'py>(
     py: Python<'py>,
     error: PyErr,
@@ -41,7 +41,7 @@ pub fn with_report<'py>(
     let value = error.value(py);
     let code = value.getattr("code").and_then(|c| c.extract::<String>());
     if code.is_ok_and(|code| code == ErrorKind::Internal.code()) {
-        // Without them the error is still the one to raise.
+        // If that fails, the error is still the one to raise.
         let _ = value
             .setattr("call", call)
             .and_then(|()| value.setattr("inputs", inputs()?));

@@ -1,4 +1,4 @@
-//! Work that must not be half done when the process is forked.
+//! Handles forks of the process around work that must not be interrupted by them.
 
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
@@ -6,10 +6,10 @@ use pyo3::types::IntoPyDict;
 
 use super::ending::forget_threads;
 
-/// Has Python call [`settle`] before each fork and [`begin_anew`] in the child, if there are forks.
+/// Registers [`settle`] for before each fork and [`begin_anew`] for the child, if the system has forks.
 ///
 /// # Errors
-/// What Python raises.
+/// The exceptions of `os.register_at_fork`.
 pub fn watch(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let os = module.py().import("os")?;
     if let Some(register) = os.getattr_opt("register_at_fork")? {
@@ -21,15 +21,15 @@ pub fn watch(module: &Bound<'_, PyModule>) -> PyResult<()> {
     Ok(())
 }
 
-/// Forgets the other threads of the process that was forked.
+/// Resets, in a forked child, what depends on threads that the child does not have.
 #[pyfunction]
 fn begin_anew() {
     forget_threads();
 }
 
-/// Completes what the first call that takes arrays sets up once for the process.
+/// Completes the one-time setup that the first call with arrays makes.
 ///
-/// Another thread may be at it; a child that was forked meanwhile would wait for it for ever.
+/// If another thread were still at it during the fork, the child would wait for that thread for ever.
 #[pyfunction]
 fn settle(py: Python<'_>) -> PyResult<()> {
     if py.import("sys")?.getattr("modules")?.contains("numpy")? {

@@ -1,4 +1,4 @@
-//! Objects that calls change or lock: what a forked process may not go on with.
+//! Objects that calls change or lock, which a forked process may not use if a call was interrupted.
 
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
@@ -7,25 +7,25 @@ use pyo3::prelude::*;
 use super::errors::to_python;
 use crate::error::{Error, ErrorKind};
 
-/// The calls that are inside an object, counted with the GIL held, as Python forks.
+/// The number of calls that are using an object, counted with the GIL held, as Python forks.
 ///
-/// A call that another thread had not ended when the process was forked never ends in the child,
-/// and may have left the object locked or half changed.
+/// A call of another thread that was running when the process was forked never ends in the child, and may
+/// have left the object locked or half changed.
 #[derive(Debug, Default)]
 pub struct InUse {
     process: AtomicU32,
     calls: AtomicUsize,
 }
 
-/// A call; it ends when this is dropped, with the GIL held.
+/// A call that uses an object; it ends when this value is dropped, with the GIL held.
 #[derive(Debug)]
 pub struct Call<'a>(&'a InUse);
 
 impl InUse {
-    /// Begins a call.
+    /// Counts a call that begins to use the object.
     ///
     /// # Errors
-    /// `Forked`.
+    /// `Forked` if another thread was using the object when the process was forked.
     pub fn enter(&self, py: Python<'_>) -> PyResult<Call<'_>> {
         let process = std::process::id();
         let own = self.process.load(Ordering::Relaxed) == process;

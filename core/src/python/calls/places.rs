@@ -1,10 +1,10 @@
-//! Processors on which the threads of a pool begin a call.
+//! Gives the threads of a pool processors on which they begin a call.
 //!
-//! Linux wakes a thread beside its waker if the processor where the thread ran last looks busy. That
-//! one still does when the caller has worked there and now waits, or when the host of a virtual machine
-//! has put it to sleep. Threads that meet on one processor share it until the kernel balances loads,
-//! some milliseconds later: longer than many calls take. So where processors are free, a call gives each
-//! thread one of its own to begin on, and soon lets it go again.
+//! Linux wakes a thread on the waker's processor if the processor where the thread ran last seems busy. That
+//! one still seems busy if the caller has worked there and now waits, or if the host of a virtual machine
+//! has put it to sleep. Threads that meet on one processor share it until the kernel balances loads, some
+//! milliseconds later: longer than many calls take. So if processors are free, a call pins each thread to
+//! its own one at the start, and soon releases the threads again.
 
 #[cfg(target_os = "linux")]
 pub use linux::Places;
@@ -20,22 +20,21 @@ mod linux {
     use rayon::ThreadPool;
     use rustix::thread::{gettid, sched_getaffinity, sched_getcpu, sched_setaffinity, CpuSet, Pid};
 
-    /// Threads beyond which the kernel is left alone: each costs a call of the system, and among so
-    /// many processors threads seldom meet.
+    /// The largest number of threads that are pinned: each costs a system call, and among more processors
+    /// threads seldom meet.
     const MAX_THREADS_PLACED: usize = 8;
 
-    /// The time for which processors count as free: a hundred times what it takes to ask.
+    /// How long the result of a test for free processors stays valid: a hundred times what the test takes.
     const MAX_AGE: Duration = Duration::from_millis(5);
 
-    /// The threads of a pool.
+    /// The threads of a pool, to be pinned to processors.
     pub struct Places {
         threads: Vec<Pid>,
-        /// The last look at processors: its time, and whether they were free. Locked while threads are
-        /// held.
+        /// The time and the result of the last test for free processors. Locked while threads are pinned.
         seen: Mutex<Option<(Instant, bool)>>,
     }
 
-    /// Threads that stay on processors of their own until this is dropped.
+    /// Threads pinned to processors of their own until this value is dropped.
     pub struct Held<'p> {
         threads: &'p [Pid],
         allowed: CpuSet,
@@ -43,7 +42,7 @@ mod linux {
     }
 
     impl Places {
-        /// The threads of a pool; waits until all of them run.
+        /// Finds the threads of a pool; waits until all of them run.
         pub fn of(pool: &ThreadPool) -> Self {
             Self {
                 threads: pool.broadcast(|_| gettid()),
@@ -51,8 +50,8 @@ mod linux {
             }
         }
 
-        /// Pins each thread to its own processor, the first to the caller's, since the caller is about
-        /// to wait. `None` if that would slow other work, or another call has pinned the threads.
+        /// Pins each thread to its own processor, the first to the caller's, since the caller is about to
+        /// wait. `None` if that would slow other work, or if another call has pinned the threads.
         pub fn hold(&self) -> Option<Held<'_>> {
             if !(2..=MAX_THREADS_PLACED).contains(&self.threads.len()) {
                 return None;
@@ -89,8 +88,8 @@ mod linux {
         }
     }
 
-    /// The number of threads of the machine that run or wait for a processor, beside this one and its
-    /// pool's.
+    /// Returns how many threads of the machine run or wait for a processor, without this thread and its
+    /// pool's; `None` if the system does not report it.
     fn others_that_run(own: &[Pid]) -> Option<usize> {
         let loads = read_to_string("/proc/loadavg").ok()?;
         let all: usize = loads.split([' ', '/']).nth(3)?.parse().ok()?;
@@ -98,19 +97,19 @@ mod linux {
         if others == 0 {
             return Some(0);
         }
-        // Threads of a pool stay awake for a moment after a call.
+        // The threads of a pool stay awake for a moment after a call.
         let awake = own.iter().filter(|&&thread| runs(thread)).count();
         Some(others.saturating_sub(awake))
     }
 
-    /// Return whether a thread of this process runs or waits for a processor.
+    /// Returns true if a thread of this process runs or waits for a processor.
     fn runs(thread: Pid) -> bool {
         let path = format!("/proc/self/task/{}/stat", thread.as_raw_pid());
         let state = |stat: &str| stat.rsplit(')').next()?.trim_start().chars().next();
         read_to_string(path).is_ok_and(|stat| state(&stat) == Some('R'))
     }
 
-    /// The processors of those allowed, from the one where this thread runs.
+    /// Yields the allowed processors in a circle, starting with the one where this thread runs.
     fn from_here(allowed: &CpuSet) -> impl Iterator<Item = usize> + '_ {
         let here = sched_getcpu();
         let circle = (here..CpuSet::MAX_CPU).chain(0..here);
@@ -165,17 +164,17 @@ mod linux {
 mod others {
     use rayon::ThreadPool;
 
-    /// The threads of a pool, which the system places.
+    /// The threads of a pool, on systems that do not allow pinning.
     pub struct Places;
 
     impl Places {
-        /// The threads of a pool; waits until all of them run.
+        /// Waits until all threads of the pool run.
         pub fn of(pool: &ThreadPool) -> Self {
             pool.broadcast(|_| ());
             Self
         }
 
-        /// Leaves the threads where the system has them begin.
+        /// Does nothing: the system decides where the threads run.
         pub fn hold(&self) -> Option<()> {
             None
         }

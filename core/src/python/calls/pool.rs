@@ -1,4 +1,4 @@
-//! Pools of threads, made anew in a process that was forked.
+//! Pools of threads, which a forked process makes again.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -10,23 +10,24 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use super::places::Places;
 use crate::error::{Error, ErrorKind, Result};
 
-/// The descent is at most 162 cells deep, three frames each; stolen work nests once more per level.
+/// The stack of a thread: the descent is at most 162 cells deep, with three frames each, and stolen work may
+/// nest once more at each level.
 const STACK_BYTES: usize = 64 << 20;
 
 static DEFAULT_THREADS: AtomicUsize = AtomicUsize::new(0);
 
-/// Sets the number of threads for calls that pass 0.
+/// Sets the number of threads of calls that pass 0.
 pub fn set_default_threads(n: usize) {
     DEFAULT_THREADS.store(n, Ordering::Relaxed);
 }
 
-/// Threads that share the work of calls.
+/// A pool of threads that share the work of calls.
 pub struct Pool {
     pub threads: ThreadPool,
     pub places: Places,
 }
 
-/// The pools of one process, by the number of threads that was asked for.
+/// The pools of one process, by their number of threads.
 struct Pools {
     process: u32,
     by_threads: BTreeMap<usize, Arc<Pool>>,
@@ -37,9 +38,9 @@ static POOLS: Mutex<Pools> = Mutex::new(Pools {
     by_threads: BTreeMap::new(),
 });
 
-/// The pool of so many threads, 0 for the default.
+/// Returns the pool with the given number of threads, 0 for the default; starts it if there is none.
 ///
-/// The lock is taken with the GIL held only, as Python forks: no child finds it locked.
+/// The lock is taken only with the GIL held, as Python forks: so it is never locked in a forked child.
 ///
 /// # Errors
 /// `TooMany` if the system does not start the threads.
@@ -59,9 +60,9 @@ pub fn pool(_gil: Python<'_>, threads: usize) -> Result<Arc<Pool>> {
 }
 
 impl Pools {
-    /// Forgets the pools of the process that this one was forked from: their threads are not here.
+    /// After a fork, drops the parent's pools, whose threads this process does not have.
     ///
-    /// They are not dropped, which would wait for the threads.
+    /// Their memory is not released, because that would wait for the threads.
     fn disown_if_forked(&mut self) {
         let process = std::process::id();
         if self.process != process {
@@ -71,7 +72,7 @@ impl Pools {
     }
 }
 
-/// A pool of which all threads run: none is forked away while it starts.
+/// Starts a pool and waits until all its threads run, so that no fork happens while it starts.
 fn started(threads: usize) -> Result<Pool> {
     let built = ThreadPoolBuilder::new()
         .num_threads(threads)

@@ -1,4 +1,4 @@
-//! Calls into the core: the GIL released, signals polled, panics caught.
+//! Runs calls of the core: releases the GIL, polls signals, catches panics.
 
 use std::cell::{Cell, RefCell};
 use std::sync::{mpsc, Arc};
@@ -12,29 +12,29 @@ use crate::error::panics::caught;
 use crate::error::{Error, Result};
 use crate::interrupt::{Call, CallerHooks, Share, Task, ASK_EVERY};
 
-/// Work on fewer elements than this begins on the caller's thread: passes over them are not shared,
-/// and what is worth more wakes the pool by itself.
+/// Work on fewer elements than this begins on the caller's thread: passes over them are not shared, and a
+/// step that is worth it wakes the pool itself.
 pub const MIN_ELEMENTS_FOR_POOL: usize = 1 << 13;
 
-/// The abilities of a caller's thread.
+/// What a call on the caller's thread may do: ask for signals, and hand a share of its work to a pool.
 const HOOKS: CallerHooks = CallerHooks {
     wants_to_stop: signal_raised,
     hand_over,
 };
 
 thread_local! {
-    /// The pool that does shares of this thread's call, and for how many threads it was asked.
+    /// The number of threads that this thread's call asked for, and the pool that does shares of its work.
     static HELPERS: RefCell<(usize, Option<Arc<Pool>>)> = const { RefCell::new((0, None)) };
 
-    /// The exception that a signal handler raised while this thread waited or worked.
+    /// The exception that a signal handler raised during a call of this thread.
     static RAISED: Cell<Option<PyErr>> = const { Cell::new(None) };
 
-    /// The callable that is called while this thread's calls run.
+    /// The Python function that is called regularly while calls of this thread run.
     static WATCHER: RefCell<Option<Py<PyAny>>> = const { RefCell::new(None) };
 }
 
-/// Has a function called about twenty times a second while calls of this thread run, or none; what
-/// it raises ends the call. Returns the one before.
+/// Registers a function that is called about twenty times a second while calls of this thread run, or None;
+/// an exception of the function ends the call. Returns the function that was registered before.
 #[pyfunction]
 pub fn watch(watcher: Option<Py<PyAny>>) -> Option<Py<PyAny>> {
     WATCHER.replace(watcher)
@@ -45,11 +45,11 @@ fn tell_watcher(py: Python<'_>) -> PyResult<()> {
     watcher.map_or(Ok(()), |found| found.call0(py).map(drop))
 }
 
-/// Runs work with the GIL released; an interrupt ends it at its next poll.
+/// Runs `work` with the GIL released; an interrupt ends it at its next poll.
 ///
 /// # Errors
-/// What the work returns, as a Python exception; a panic as an internal error; `KeyboardInterrupt`
-/// and what signal handlers raise.
+/// Errors of the work as Python exceptions; a panic as an internal error; `KeyboardInterrupt` and exceptions
+/// of signal handlers.
 pub fn run<T: Send>(
     py: Python<'_>,
     threads: usize,
@@ -73,7 +73,7 @@ pub fn run<T: Send>(
     }
 }
 
-/// Runs short work at once, with the GIL.
+/// Runs short work at once, without releasing the GIL.
 ///
 /// # Errors
 /// As for [`run`].
@@ -81,20 +81,20 @@ pub fn here<T>(py: Python<'_>, work: impl FnOnce() -> Result<T>) -> PyResult<T> 
     caught(work).map_err(|error| to_python(py, &error))
 }
 
-/// Has a pool do the work of a call and waits for it.
+/// Runs the work of a call in a pool and waits for it.
 fn shared<T: Send>(pool: &Pool, call: &Call, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
     let none = || Err(Error::internal("the work ended without an answer"));
     awaited(pool, call.task(), || call.run(work)).unwrap_or_else(none)
 }
 
-/// Has the call's pool do a share of its work and waits for it.
+/// Runs a share of a call's work in the call's pool and waits for it.
 fn hand_over(task: Task, share: Share<'_>) {
     if let Some(pool) = helpers() {
         awaited(&pool, task, || task.run(share));
     }
 }
 
-/// The pool for this thread's call; `None` if it has one thread, or the system starts none.
+/// Returns the pool for this thread's call; `None` if it has one thread, or the system starts none.
 fn helpers() -> Option<Arc<Pool>> {
     HELPERS.with_borrow_mut(|(threads, found)| {
         let ask = || attached(|py| pool(py, *threads).ok());
@@ -104,8 +104,8 @@ fn helpers() -> Option<Arc<Pool>> {
     })
 }
 
-/// Has a pool do some work of a call and waits for it; stops it when a signal's handler raises.
-/// `None`, or the panic, if the work panicked.
+/// Runs some work of a call in a pool and waits for it; stops it if a signal handler raises. `None` if the
+/// work panicked.
 fn awaited<T: Send>(pool: &Pool, task: Task, work: impl FnOnce() -> T + Send) -> Option<T> {
     let (done, wait) = mpsc::channel();
     let mut placed = pool.places.hold();
@@ -128,11 +128,10 @@ fn awaited<T: Send>(pool: &Pool, task: Task, work: impl FnOnce() -> T + Send) ->
     })
 }
 
-/// Return whether a signal has arrived of which the handler raised an exception, such as
-/// `KeyboardInterrupt`, or the watcher raised one.
+/// Returns true if a signal handler or the watcher has raised an exception, such as `KeyboardInterrupt`.
 ///
-/// A handler may fork. The child has the threads of the pool no more, and the work borrows from
-/// this stack, so that it can neither go on nor return: the child aborts with a message instead of hanging.
+/// A handler may fork. The child does not have the threads of the pool, and the work borrows from this
+/// stack, so the child can neither go on nor return: it aborts with a message instead of hanging.
 fn signal_raised() -> bool {
     let process = std::process::id();
     let raised = attached(|py| py.check_signals().and_then(|()| tell_watcher(py)).err());

@@ -1,4 +1,4 @@
-//! Numpy arrays and names to the core's own types, and back.
+//! Converts numpy arrays and names to the core's types, and back.
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -9,7 +9,8 @@ use crate::python::arrays::array;
 use crate::python::hyperplanes::Row;
 use crate::tree::fragments::{NodeCut, Policy, Sample};
 
-/// A caller's choice of how to build, before the dimension is known.
+/// How a tree is to be built, before the dimension is known: by a policy, by lines through corners, or by
+/// given cuts.
 #[derive(Clone, Debug)]
 pub enum BuildMethod {
     Policy(Policy, Option<usize>, i64),
@@ -17,7 +18,7 @@ pub enum BuildMethod {
     Given(Vec<NodeCut>),
 }
 
-/// How to build, and hyperplanes of the caller's own that come first.
+/// How a tree is to be built, and hyperplanes of the caller that come first.
 #[derive(Clone, Debug)]
 pub struct BuildOptions {
     pub method: BuildMethod,
@@ -46,7 +47,7 @@ pub fn named_policy(name: &str, seed: u64, sample: Sample, alpha: f64) -> Result
     })
 }
 
-/// Rows of up to three numbers, filled up.
+/// Returns the rows of an array with up to three columns, filled up to three with `fill`.
 pub fn padded<T: numpy::Element + Copy>(array: &PyReadonlyArray2<'_, T>, fill: T) -> Vec<[T; 3]> {
     let view = array.as_array();
     let row =
@@ -66,11 +67,11 @@ pub fn rows<T: numpy::Element + Copy>(
     PyArray1::from_vec(py, flat.collect()).reshape([count, dimension])
 }
 
-/// The mark that stands for an axis in the row of a hyperplane that is the tree's own.
+/// Stands for an axis in the row of a cut whose hyperplane is in the tree's own list.
 const OWN_AXIS: i64 = -2;
 
-/// Cuts as rows: (-1, piece) for a pivot, (axis, coordinate) for an axis-parallel cut, (-2, place)
-/// for a hyperplane of the tree's own list.
+/// Returns cuts as rows: (-1, piece) for a piece's hyperplane, (axis, coordinate) for an axis-parallel cut,
+/// (-2, index) for a hyperplane in the tree's own list.
 pub fn cut_rows(
     py: Python<'_>,
     cuts: impl Iterator<Item = NodeCut>,

@@ -1,4 +1,4 @@
-//! A tree of one dimension with the facets it was made of.
+//! A fragment tree of one dimension with the facets that it was made of.
 
 use num_bigint::BigInt;
 
@@ -23,14 +23,14 @@ use crate::tree::fragments::{
 };
 use crate::tree::trace::Watcher;
 
-/// A tree of one of the three dimensions.
+/// A fragment tree of dimension one, two or three.
 pub enum AnyFacetTree {
     Line(FacetTree<Dim1>),
     Plane(FacetTree<Dim2>),
     Space(FacetTree<Dim3>),
 }
 
-/// The tree over facets in a space of `dimension`.
+/// Builds the tree over facets in a space of the given dimension.
 pub fn build_any(
     dimension: usize,
     facets: Vec<Facet>,
@@ -48,7 +48,7 @@ pub fn build_any(
     })
 }
 
-/// Facets, their tree, and the lattice they lie on.
+/// Facets, their fragment tree, and the pitch of their lattice.
 pub struct FacetTree<S: Affine> {
     pub facets: Vec<Facet>,
     pub tree: FragmentTree<S>,
@@ -68,7 +68,7 @@ fn build_tree<S: FromRow>(
     })
 }
 
-/// A tree whose cuts somebody is asked for.
+/// Builds a tree whose cuts a callback chooses.
 pub fn build_asking<S: FromRow>(
     facets: Vec<Facet>,
     pitch: Pitch,
@@ -111,7 +111,7 @@ fn plan<S: FromRow>(facets: &[Facet], options: &BuildOptions) -> Result<Plan<S>>
     Ok(Plan::Own(own_cuts::<S>(&options.own)?, Box::new(plan)))
 }
 
-/// All fragments as flat lists.
+/// All fragments of a tree as flat lists.
 pub struct Export {
     pub vertices: Vec<[f64; 3]>,
     pub offsets: Vec<i64>,
@@ -122,7 +122,7 @@ pub struct Export {
 }
 
 impl<S: FromRow> FacetTree<S> {
-    /// Return the construction of the tree, which is built once more.
+    /// Builds the tree again, and returns how each of its regions was divided.
     pub fn construction(&self, options: &BuildOptions) -> Result<Vec<Division>> {
         let mut divisions = Vec::new();
         let plan = plan(&self.facets, options)?;
@@ -130,7 +130,7 @@ impl<S: FromRow> FacetTree<S> {
         Ok(divisions)
     }
 
-    /// The tree with more facets: where it ends it goes on by these options.
+    /// Returns the tree with more facets: it keeps its cuts, and empty regions are divided by `options`.
     pub fn grown(&self, facets: Vec<Facet>, options: &BuildOptions) -> Result<Self> {
         let rest = plan(&facets, options)?;
         let plan = Plan::Grown(Box::new(self.tree.clone()), Box::new(rest));
@@ -143,21 +143,21 @@ impl<S: FromRow> FacetTree<S> {
         })
     }
 
-    /// The options that make the tree again.
+    /// Returns options that build the same tree again.
     pub fn build_options(&self) -> BuildOptions {
         let own = self.tree.own().iter().map(row_of::<S>).collect();
         let method = BuildMethod::Given(self.cuts());
         BuildOptions { method, own }
     }
 
-    /// The nodes that a point passes, and its sides.
+    /// Returns the nodes that a point passes, each with the side of its hyperplane on which the point lies.
     pub fn path(&self, point: &[f64; 3]) -> Vec<(u32, i8)> {
         let point = Viewpoint::point(point, -self.pitch.exponent());
         let steps = locate(&self.tree, &point).into_iter();
         steps.map(|step| (step.node.0, sign(step.side))).collect()
     }
 
-    /// The first hits of rays, and what each cost.
+    /// Returns the first hit of each ray, and its cost.
     pub fn cast<const D: usize>(&self, rays: &[[f64; 6]]) -> Result<Vec<RayPath>>
     where
         S: Cast<D>,
@@ -172,7 +172,7 @@ impl<S: FromRow> FacetTree<S> {
         rays.iter().enumerate().map(cast).collect()
     }
 
-    /// The first hit of a ray: the origin, then the direction.
+    /// Returns the first hit of a ray, given by the coordinates of its origin and of its direction.
     pub fn cast_one<const D: usize>(
         &self,
         ray: &[f64; 6],
@@ -194,7 +194,7 @@ impl<S: FromRow> FacetTree<S> {
     }
 }
 
-/// −1, 0 or 1.
+/// Returns −1 for the minus side, 0 for `On`, 1 for the plus side.
 pub fn sign(side: Side) -> i8 {
     match side {
         Side::Minus => -1,
@@ -219,7 +219,7 @@ impl<S: Affine> FacetTree<S> {
         Some(all)
     }
 
-    /// Lattice steps to model units.
+    /// Converts lattice steps to model units.
     pub fn units(&self, steps: [f64; 3]) -> [f64; 3] {
         let power = 10f64.powi(self.pitch.exponent().unsigned_abs() as i32);
         steps.map(|k| {
@@ -238,7 +238,7 @@ impl<S: Affine> FacetTree<S> {
             .collect()
     }
 
-    /// Unit normals, and offsets in model units: n·x = offset.
+    /// Returns the unit normals n and the offsets of all nodes' hyperplanes n·x = offset, in model units.
     pub fn hyperplanes(&self) -> (Vec<[f64; 3]>, Vec<f64>) {
         let unit = |cut: &S::Hyperplane| {
             let [a, b, c, d] = S::approx(cut);
@@ -301,7 +301,7 @@ impl<S: Affine> FacetTree<S> {
         export
     }
 
-    /// The box of the facets grown by a margin in model units, at least one step.
+    /// Returns the box of the facets, enlarged by a margin in model units, at least one step.
     pub fn whole(&self, margin: f64) -> Result<Polytope<S>> {
         let steps = (margin / self.units([1.0; 3])[0])
             .round()
@@ -360,7 +360,7 @@ fn half_of(side: i8) -> Option<Half> {
     }
 }
 
-/// The box of facets grown by a number of steps; the unit box if there are none.
+/// Returns the box of the facets, enlarged by `margin` steps on each side.
 fn grown_box<S: Affine>(facets: &[Facet], margin: i64) -> Result<Polytope<S>> {
     let corners = || facets.iter().flat_map(|f| &f.corners);
     let reach = |k: i64| k.clamp(-S::REACH, S::REACH);

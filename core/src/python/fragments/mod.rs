@@ -43,7 +43,7 @@ type FragmentArrays<'py> = (
     Bools<'py>,
 );
 
-/// Runs the same code on the tree of whichever dimension it is.
+/// Evaluates an expression with the tree, whatever its dimension.
 macro_rules! each {
     ($inner:expr, $facet_tree:ident => $body:expr) => {
         match $inner {
@@ -63,7 +63,7 @@ pub struct PyFragmentTree {
     options: BuildOptions,
 }
 
-/// The same on the tree of whichever dimension it is, for what needs the dimension as a constant.
+/// Calls a method that has the dimension as a constant, on the tree of that dimension.
 macro_rules! each_cast {
     ($inner:expr, $facet_tree:ident, $method:ident, $($argument:expr),*) => {
         match $inner {
@@ -74,10 +74,10 @@ macro_rules! each_cast {
     };
 }
 
-/// A piece and where it is met.
+/// The first piece on a ray and the parameter where the ray meets it; `None` if it meets none.
 type FirstHit = Option<(u32, f64)>;
 
-/// Facets, t, and the numbers of nodes, leaves and tests of rays.
+/// For each ray: the facet, the parameter t, and the numbers of nodes, leaves and tests.
 type Paths<'py> = (Ints<'py>, Floats<'py>, Ints<'py>, Ints<'py>, Ints<'py>);
 
 #[pymethods]
@@ -125,8 +125,8 @@ impl PyFragmentTree {
         })
     }
 
-    /// A tree whose cuts `answer(depth, count, candidates)` chooses: it returns the place of a
-    /// candidate and None, or any number and a hyperplane's row.
+    /// Return a tree whose cuts `answer(depth, count, candidates)` chooses: it returns the index of a
+    /// candidate and None, or any number and the row of a hyperplane.
     #[classmethod]
     #[allow(clippy::too_many_arguments)]
     fn asked(
@@ -185,7 +185,7 @@ impl PyFragmentTree {
         })
     }
 
-    /// The tree with more facets; regions that were empty are divided by a policy.
+    /// Return the tree with more facets; a policy divides regions that were empty.
     #[allow(clippy::too_many_arguments)]
     fn grown(
         &self,
@@ -234,7 +234,7 @@ impl PyFragmentTree {
         })
     }
 
-    /// Return the construction of the tree, node by node.
+    /// Return how each node of the tree was made, in the order of the nodes.
     fn construction(&self, py: Python<'_>) -> PyResult<Vec<DivisionRow>> {
         let options = &self.options;
         let divisions = self.run(
@@ -245,14 +245,14 @@ impl PyFragmentTree {
         Ok(divisions.into_iter().map(division_row).collect())
     }
 
-    /// The nodes that a point passes, with its side of each: −1, 0 or 1.
+    /// Return the nodes that a point passes, each with the side of the point: −1, 0 or 1.
     fn path(&self, py: Python<'_>, point: [f64; 3]) -> PyResult<Vec<(u32, i8)>> {
         self.run(py, 0, || {
             Ok(each!(&self.inner, facet_tree => facet_tree.path(&point)))
         })
     }
 
-    /// The first facet on each ray, and what it cost.
+    /// Return the first facet on each ray, and the cost of finding it.
     fn cast<'py>(
         &self,
         py: Python<'py>,
@@ -277,7 +277,7 @@ impl PyFragmentTree {
         ))
     }
 
-    /// The way of one ray, step by step, and the piece and parameter of its first hit.
+    /// Return the steps of one ray through the tree, and the piece and parameter of its first hit.
     fn ray_events(
         &self,
         py: Python<'_>,
@@ -294,7 +294,7 @@ impl PyFragmentTree {
         Ok((path.hit, events.iter().map(event_row).collect()))
     }
 
-    /// The hyperplanes that come from no facet: rows of normal and offset, in lattice steps.
+    /// Return the hyperplanes that come from no facet: rows of normal and offset, in lattice steps.
     fn own(&self) -> Vec<Row> {
         each!(&self.inner, facet_tree => facet_tree.build_options()).own
     }
@@ -333,7 +333,8 @@ impl PyFragmentTree {
         })
     }
 
-    /// The cuts of a tree over the same facets that cuts none of them.
+    /// Return the cuts of a tree over the same facets that splits none of them; None if the search finds
+    /// none.
     fn perfect_cuts<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<i64>>>> {
         let found = self.run(
             py,
@@ -378,7 +379,7 @@ impl PyFragmentTree {
         Ok(dict)
     }
 
-    /// The exact coefficients n, d of a node's hyperplane n·x + d = 0, in lattice steps.
+    /// Return the exact coefficients n, d of a node's hyperplane n·x + d = 0, in lattice steps.
     fn coefficients(&self, node: u32) -> Option<Vec<BigInt>> {
         each!(&self.inner, facet_tree => facet_tree.coefficients(NodeId(node)))
     }
@@ -398,7 +399,7 @@ impl PyFragmentTree {
         ))
     }
 
-    /// Each cut of a fragment as node and input facet.
+    /// Return, for each split of a fragment, the node and the input facet.
     fn splits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
         let pairs = each!(&self.inner, facet_tree => facet_tree
             .tree
@@ -409,7 +410,7 @@ impl PyFragmentTree {
         array(py, pairs)
     }
 
-    /// The nodes from the farthest to the nearest.
+    /// Return the nodes in painter's order, from the farthest to the nearest.
     fn order<'py>(&self, py: Python<'py>, eye: [f64; 3], at_infinity: bool) -> PyResult<Ints<'py>> {
         let order = self.run(py, self.__len__(), || {
             let eye = self.viewpoint(eye, at_infinity)?;
@@ -421,7 +422,7 @@ impl PyFragmentTree {
         ))
     }
 
-    /// The side of each node's hyperplane on which the eye lies: -1, 0 or 1.
+    /// Return for each node the side of its hyperplane on which the eye lies: -1, 0 or 1.
     fn sides<'py>(
         &self,
         py: Python<'py>,
@@ -438,7 +439,7 @@ impl PyFragmentTree {
         ))
     }
 
-    /// Volume and surface of the root's region and of all nodes' regions, in lattice steps.
+    /// Return volume and surface of the root's region, and those of all nodes' regions, in lattice steps.
     fn measures<'py>(
         &self,
         py: Python<'py>,
@@ -460,8 +461,8 @@ impl PyFragmentTree {
         ))
     }
 
-    /// The corners of a region's walls; `node` None is the root's region, `side` -1 or 1 the part
-    /// of a node's region on that side of its hyperplane.
+    /// Return the corners of the walls of a region: the root's if `node` is None, else the node's, or its
+    /// part on one side of the node's hyperplane if `side` is -1 or 1.
     #[pyo3(signature = (node, side, margin))]
     fn region<'py>(
         &self,
@@ -479,7 +480,7 @@ impl PyFragmentTree {
         walls.into_iter().map(|w| rows(py, w, dimension)).collect()
     }
 
-    /// The corners of the part of a node's hyperplane inside its region.
+    /// Return the corners of the part of a node's hyperplane inside the node's region.
     fn span<'py>(&self, py: Python<'py>, node: u32, margin: f64) -> PyResult<Rows<'py>> {
         let corners = self.run(
             py,
@@ -489,19 +490,19 @@ impl PyFragmentTree {
         rows(py, corners, self.dimension())
     }
 
-    /// The facets as they came onto the lattice: corners in steps, and offsets.
+    /// Return the facets on the lattice: corners in steps, and for each facet where its corners start.
     fn lattice<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyArray2<i64>>, Ints<'py>)> {
         let corners = rows(py, self.corners.clone(), self.dimension())?;
         Ok((corners, PyArray1::from_vec(py, self.offsets.clone())))
     }
 
-    /// Return the number of convex pieces into which the facets were taken apart.
+    /// Return the number of convex pieces into which the facets were divided.
     #[getter]
     fn piece_count(&self) -> usize {
         each!(&self.inner, facet_tree => facet_tree.facets.len())
     }
 
-    /// The facet that each convex piece is a part of.
+    /// Return for each convex piece the facet that it is a part of.
     fn piece_sources<'py>(&self, py: Python<'py>) -> Ints<'py> {
         let facets = each!(&self.inner, facet_tree => &facet_tree.facets);
         let sources = facets.iter().map(|f| i64::from(f.source)).collect();
@@ -509,10 +510,10 @@ impl PyFragmentTree {
     }
 }
 
-/// Casting a ray costs about as much as a thousand elements of other work.
+/// The cost of casting a ray, in elements of other work.
 const ELEMENTS_PER_RAY: usize = 1000;
 
-/// The exception that a callable raised.
+/// A slot for the exception that a callback raised.
 type Raised = Arc<Mutex<Option<PyErr>>>;
 
 fn method_of(
@@ -529,7 +530,7 @@ fn method_of(
     Ok(BuildMethod::Policy(policy, (top > 0).then_some(top), 1))
 }
 
-/// Asks a Python callable; what it raises is kept.
+/// Wraps a Python callback that chooses cuts; stores its exception in `raised`.
 fn ask<S: FromRow>(answer: Py<PyAny>, raised: Raised, sample: Sample) -> Ask<S> {
     let refused = move |error: PyErr| {
         *raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
@@ -567,7 +568,7 @@ impl PyFragmentTree {
         each!(&self.inner, facet_tree => facet_tree.source(piece))
     }
 
-    /// Runs a method's work; the report of a defect holds the facets.
+    /// Runs the work of a method; the report of a defect contains the facets.
     fn run<T: Send>(
         &self,
         py: Python<'_>,

@@ -1,4 +1,4 @@
-//! Traces of trees over facets as plain tuples.
+//! Converts traces of fragment trees to plain tuples.
 
 use super::convert::cut_row;
 use super::facet_tree::sign;
@@ -6,16 +6,17 @@ use crate::geometry::side::Half;
 use crate::query::path::RayEvent;
 use crate::tree::fragments::{Candidate, Division, Reason};
 
-/// Node, parent or −1, side, depth; axis and place of the cut; why.
+/// A node, its parent or −1, its side of the parent, its depth, the row of its cut, and the reason for the
+/// cut.
 type Place = (u32, i64, i8, u32, [i64; 2], &'static str);
 
-/// Piece, pieces on the minus side, on the plus side, on both; score.
+/// A candidate: its piece; the numbers of pieces on the minus side, on the plus side and on both; its score.
 pub type CandidateRow = (u32, u32, u32, u32, f64);
 
-/// The place; the candidates; pieces before, minus, plus, split, coplanar.
+/// A division: the node; the candidates; the pieces before, minus, plus, split and coplanar.
 pub type DivisionRow = (Place, Vec<CandidateRow>, [Vec<u32>; 5]);
 
-/// Kind, node, piece, side; where from, to, at.
+/// An event of a ray: kind, node, piece, side; the parameters of entering, leaving and crossing.
 pub type EventRow = (
     &'static str,
     i64,

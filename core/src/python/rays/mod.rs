@@ -1,4 +1,4 @@
-//! The classes of rays: facets that rays meet, and trees that rays grow.
+//! The classes of rays: facets that rays are cast at, and trees that rays cause to grow.
 
 pub mod scene;
 pub mod store;

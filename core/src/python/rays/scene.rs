@@ -15,7 +15,7 @@ use crate::query::ray::batch::{Inside, Rays};
 use crate::query::ray::view::{views, View};
 use crate::query::ray::Scene;
 
-/// Casting a ray costs about as much as a hundred elements of other work.
+/// The cost of casting a ray, in elements of other work.
 pub(super) const ELEMENTS_PER_RAY: usize = 100;
 
 enum Facets {
@@ -24,7 +24,7 @@ enum Facets {
     Triangles(Scene<3>),
 }
 
-/// Calls a generic expression with the scene of the right dimension.
+/// Evaluates an expression with the scene, whatever its dimension.
 macro_rules! with_scene {
     ($facets:expr, $scene:ident => $body:expr) => {
         match $facets {
@@ -38,7 +38,7 @@ macro_rules! with_scene {
 type Floats<'py> = Bound<'py, PyArray1<f64>>;
 type Indices<'py> = Bound<'py, PyArray1<i64>>;
 
-/// Facet, t, kind, weights and points, the last two flat.
+/// For each hit: facet, t, kind, weights and point; the weights and the points are flat.
 pub(super) type HitArrays<'py> = (
     Indices<'py>,
     Floats<'py>,
@@ -179,7 +179,7 @@ impl RayScene {
         with_scene!(&self.facets, scene => scene.facets().len())
     }
 
-    /// Makes all that is deferred.
+    /// Divide all parts of the tree that are still deferred.
     #[pyo3(signature = (threads=0))]
     fn complete(&self, py: Python<'_>, threads: usize) -> PyResult<()> {
         self.run(py, threads, MIN_ELEMENTS_FOR_POOL, || {
@@ -188,7 +188,8 @@ impl RayScene {
         })
     }
 
-    /// The scene after its facets have moved, its tree made to fit; there must be as many of them.
+    /// Return the scene after its facets have moved, with its tree refitted; the number of facets must be
+    /// the same.
     fn refitted(&self, py: Python<'_>, corners: PyReadonlyArray1<'_, f64>) -> PyResult<Self> {
         let flat = corners.as_slice()?;
         let facets = self.run(py, 0, flat.len(), || {
@@ -202,7 +203,7 @@ impl RayScene {
         Ok(Self { facets, calls })
     }
 
-    /// The nodes that rays have reached, in preorder: boxes, the node above, whether one is
+    /// Return the nodes that rays have reached, in preorder, as columns: boxes, parents, whether a node is
     /// deferred, and the facets of leaves.
     fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let _call = self.calls.enter(py)?;
@@ -225,7 +226,7 @@ impl RayScene {
         Ok(columns.arrays(py))
     }
 
-    /// The first facet on each ray, −1 for none.
+    /// Return the first facet on each ray, −1 for a ray without one.
     #[pyo3(signature = (origins, directions, threads=0))]
     fn first_facets<'py>(
         &self,
@@ -242,7 +243,7 @@ impl RayScene {
         Ok(PyArray1::from_vec(py, facets))
     }
 
-    /// The offsets of each ray's hits, and the hits; with `merge` the first of those at one point.
+    /// Return where each ray's hits start, and all hits; with `merge` only the first hit at each point.
     #[pyo3(signature = (origins, directions, merge=false, threads=0))]
     fn all<'py>(
         &self,
@@ -263,8 +264,8 @@ impl RayScene {
         Ok((PyArray1::from_vec(py, offsets), columns.arrays(py)))
     }
 
-    /// The offsets of each ray's stretches inside, their parameters and facets, flat; what is
-    /// `unbounded` has winding number 1 far away.
+    /// Return where each ray's intervals inside start, and their parameters and facets, flat; if
+    /// `unbounded`, the winding number far away is 1.
     #[pyo3(signature = (origins, directions, rule="positive", unbounded=false, threads=0))]
     fn intervals<'py>(
         &self,
@@ -328,7 +329,7 @@ impl RayScene {
 }
 
 impl RayScene {
-    /// Runs work that may divide leaves.
+    /// Runs work that may divide parts of the tree; the report of a defect contains the facets.
     fn run<T: Send>(
         &self,
         py: Python<'_>,

@@ -1,15 +1,15 @@
-//! Trees that rays have grown as bytes.
+//! Stores trees that rays have grown as bytes.
 
 use crate::error::Result;
 use crate::query::stab::record::Record;
 use crate::store::sealed::{seal, unseal, Kind};
 
-/// A record as bytes.
+/// Encodes a record as bytes.
 pub fn to_bytes(record: &Record) -> Result<Vec<u8>> {
     seal(Kind::Rays, record)
 }
 
-/// The record of bytes.
+/// Decodes a record from bytes.
 ///
 /// # Errors
 /// `BadSnapshot`.

@@ -1,4 +1,4 @@
-//! The class `RayTree`: a tree of supporting hyperplanes that rays grow.
+//! The class `RayTree`: a tree of supporting hyperplanes that grows where rays go.
 
 use num_bigint::BigInt;
 use numpy::{PyArray1, PyReadonlyArray1};
@@ -31,7 +31,7 @@ enum Stabbed {
     Triangles(StabTree<Dim3, 3>),
 }
 
-/// Calls a generic expression with the tree of the right dimension.
+/// Evaluates an expression with the tree, whatever its dimension.
 macro_rules! with_tree {
     ($stabbed:expr, $tree:ident => $body:expr) => {
         match $stabbed {
@@ -42,10 +42,10 @@ macro_rules! with_tree {
     };
 }
 
-/// Nodes, leaves and tests of each ray, one row after the other.
+/// The numbers of nodes, leaves and tests of each ray, one ray after the other.
 type Counts<'py> = Bound<'py, PyArray1<i64>>;
 
-/// A tree that rays grow, those of several calls at the same time. See `_core.pyi`.
+/// A tree that grows where rays go, also with rays of several calls at a time. See `_core.pyi`.
 #[pyclass(frozen, module = "bspcsg._core")]
 pub struct RayTree {
     tree: Stabbed,
@@ -54,9 +54,11 @@ pub struct RayTree {
 
 #[pymethods]
 impl RayTree {
-    /// `hits` are counters to begin with; `threshold` is None for a tree that rays do not change;
-    /// `limit` is the most nodes of a tree that is completed at once, None to leave one leaf;
-    /// `grown` is what `dump` returned for a tree over the same facets.
+    /// Make a tree over facets.
+    ///
+    /// `hits` are initial counters; `threshold` is None for a tree that rays do not change; `limit` is the
+    /// largest number of nodes of a tree that is completed at once, None for a tree of one leaf; `grown` is
+    /// what `dump` returned for a tree over the same facets.
     #[new]
     #[pyo3(signature = (dimension, corners, pitch=None, threshold=None, hits=None, limit=None, grown=None))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
@@ -104,7 +106,7 @@ impl RayTree {
         )
     }
 
-    /// The first hit of each ray, and what it cost.
+    /// Return the first hit of each ray, and its cost.
     fn test<'py>(
         &self,
         py: Python<'py>,
@@ -122,8 +124,8 @@ impl RayTree {
         Ok((columns.arrays(py), PyArray1::from_vec(py, counts)))
     }
 
-    /// The first hit of a ray, what it cost, and each step: kind, node, facet, a count or flag,
-    /// and the lists of a division (in the cut, minus, plus).
+    /// Return the first hit of a ray, its cost, and each step: kind, node, facet, a count or flag, and the
+    /// lists of a division (in the cut, minus, plus).
     fn test_watched<'py>(
         &self,
         py: Python<'py>,
@@ -143,8 +145,8 @@ impl RayTree {
         Ok((columns.arrays(py), PyArray1::from_vec(py, counts), rows))
     }
 
-    /// The nodes in the order in which they were made, as columns; each leaf with its list and
-    /// each inner node with what lies in its cut.
+    /// Return the nodes in the order in which they were made, as columns; for a leaf its list, for an inner
+    /// node the facets in its cut.
     fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = self.read(
             py,
@@ -166,7 +168,7 @@ impl RayTree {
         Ok(dict)
     }
 
-    /// The cuts and counters as bytes; facets and threshold are not kept.
+    /// Return the cuts and counters as bytes, without facets and threshold.
     fn dump<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let record = self.read(py, |tree| with_tree!(tree, tree => tree.record()))?;
         let bytes = store::to_bytes(&record).map_err(|e| to_python(py, &e))?;
@@ -184,7 +186,7 @@ impl RayTree {
 }
 
 impl RayTree {
-    /// Looks at the tree with the GIL released, which a thread that changes the tree may need.
+    /// Reads the tree with the GIL released, which a thread that changes the tree may need.
     fn read<T: Send>(
         &self,
         py: Python<'_>,
@@ -195,7 +197,7 @@ impl RayTree {
     }
 }
 
-/// Kind, node, facet, count; the lists of a division.
+/// Kind, node, facet, count or flag; the lists of a division.
 type StabRow = (&'static str, u32, i64, u64, Option<[Vec<u32>; 3]>);
 
 fn stab_row(event: StabEvent) -> StabRow {
@@ -228,7 +230,7 @@ struct NodeColumns {
     offsets: Vec<i64>,
     facets: Vec<i64>,
     hits: Vec<i64>,
-    /// Normal and offset of each inner node's hyperplane, in lattice steps; empty for leaves.
+    /// The normal and the offset of each inner node's hyperplane, in lattice steps; empty for leaves.
     rows: Vec<Row>,
 }
 

@@ -1,4 +1,4 @@
-//! A set of any dimension: what Python's one class `ObjectTree` holds.
+//! A set of any dimension, behind Python's one class `ObjectTree`.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ use crate::tree::partition::{
 use crate::tree::plane::tree_of;
 
 impl Set {
-    /// The set inside a boundary.
+    /// Makes the set inside a boundary of facets.
     pub fn build(dimension: usize, input: &Input, pitch: Pitch) -> Result<Self> {
         match dimension {
             1 => {
@@ -50,7 +50,7 @@ impl Set {
         }
     }
 
-    /// Everything, or nothing.
+    /// Makes the set of all points, or the empty set.
     pub fn uniform(dimension: usize, full: bool) -> Result<Self> {
         let label = Label::from_inside(full);
         match dimension {
@@ -61,14 +61,14 @@ impl Set {
         }
     }
 
-    /// The minus side of a hyperplane.
+    /// Makes the minus side of a hyperplane.
     pub fn half_space(hyperplane: &[BigInt]) -> Result<Self> {
         let [minus, _] =
             Self::uniform(hyperplane.len().saturating_sub(1), true)?.split(hyperplane)?;
         Ok(minus)
     }
 
-    /// The dimension.
+    /// The dimension: 1, 2 or 3.
     pub fn dimension(&self) -> usize {
         match self {
             Self::Line(_) => 1,
@@ -77,7 +77,7 @@ impl Set {
         }
     }
 
-    /// The number of nodes or, in the plane, of edges.
+    /// The number of cuts of the tree or, in the plane, of edges of the boundary.
     pub fn size(&self) -> usize {
         match self {
             Self::Line(tree) => stats(tree).cuts,
@@ -86,12 +86,12 @@ impl Set {
         }
     }
 
-    /// Size figures.
+    /// Counts the cuts, leaves and facets of the tree.
     pub fn stats(&self) -> Result<TreeStats> {
         Ok(each!(self, tree => stats(tree)))
     }
 
-    /// Return true if everything is inside, false if nothing is, and `None` otherwise.
+    /// Returns true if the set has all points, false if it is empty, `None` otherwise.
     pub fn uniform_label(&self) -> Option<bool> {
         let label = match self {
             Self::Line(tree) => tree.label(),
@@ -101,7 +101,7 @@ impl Set {
         label.map(|label| label == Label::In)
     }
 
-    /// Return whether the set fits into some box.
+    /// Returns true if the set fits into a box.
     pub fn is_bounded(&self) -> bool {
         match self {
             Self::Line(tree) => is_bounded(tree),
@@ -110,7 +110,7 @@ impl Set {
         }
     }
 
-    /// Everything else.
+    /// Returns the complement of the set.
     pub fn complement(&self) -> Self {
         match self {
             Self::Line(tree) => Self::Line(tree.complement()),
@@ -119,7 +119,7 @@ impl Set {
         }
     }
 
-    /// The set operation by merging trees.
+    /// Applies a set operation by merging trees.
     pub fn merge(&self, other: &Self, op: SetOp) -> Result<Self> {
         match (self, other) {
             (Self::Line(a), Self::Line(b)) => Ok(Self::Line(merge(a, b, op)?)),
@@ -131,7 +131,8 @@ impl Set {
         }
     }
 
-    /// The set operation by whatever is faster: in the plane also by a sweep over boundaries.
+    /// Applies a set operation by the faster method: merging trees or, in the plane, also a sweep over
+    /// boundaries.
     pub fn combined(&self, other: &Self, op: SetOp) -> Result<Self> {
         match (self, other) {
             (Self::Plane(a), Self::Plane(b)) => combined(a, b, op).map(Self::Plane),
@@ -139,13 +140,13 @@ impl Set {
         }
     }
 
-    /// The union of sets of the plane.
+    /// Returns the union of sets of the plane.
     pub fn composed<'a>(sets: impl Iterator<Item = &'a Self>) -> Result<Self> {
         let sets = sets.map(Self::plane).collect::<Result<Vec<_>>>()?;
         composed(&sets).map(Self::Plane)
     }
 
-    /// Return whether both are the same set of points.
+    /// Returns true if two sets have the same points.
     pub fn equals(&self, other: &Self) -> Result<bool> {
         match (self, other) {
             (Self::Plane(a), Self::Plane(b)) => equal(a, b),
@@ -156,7 +157,7 @@ impl Set {
         }
     }
 
-    /// The same set with a hyperplane in its root.
+    /// Returns the same set as a tree with a hyperplane at its root.
     pub fn partitioned(&self, cut: &[BigInt]) -> Result<Self> {
         Ok(match self {
             Self::Line(tree) => Self::Line(rooted(tree, &on_line(cut)?)?),
@@ -165,7 +166,7 @@ impl Set {
         })
     }
 
-    /// The parts of the set on the minus and the plus side of a hyperplane.
+    /// Returns the parts of the set on the minus and on the plus side of a hyperplane.
     pub fn split(&self, cut: &[BigInt]) -> Result<[Self; 2]> {
         Ok(match self {
             Self::Line(tree) => halves(tree, &on_line(cut)?)?.map(Self::Line),
@@ -176,7 +177,7 @@ impl Set {
         })
     }
 
-    /// The name of the case that the root and a hyperplane are.
+    /// Returns the name of the case that describes how the root's cut lies to a hyperplane.
     pub fn split_case(&self, cut: &[BigInt]) -> Result<&'static str> {
         let case = match self {
             Self::Line(tree) => split_case(tree, &span::<Dim1>(&on_line(cut)?)?),
@@ -186,7 +187,7 @@ impl Set {
         case.map(SplitCase::name)
     }
 
-    /// The same set as a tree of a size that its boundary asks for; in space the tree itself.
+    /// Returns the same set with a tree made from its boundary; in space the tree is unchanged.
     pub fn condensed(&self) -> Result<Self> {
         match self {
             Self::Line(tree) => condensed_line(tree).map(Self::Line),
@@ -195,7 +196,7 @@ impl Set {
         }
     }
 
-    /// The image under a map of the lattice.
+    /// Returns the image of the set under a motion of the lattice.
     pub fn moved(&self, motion: &Motion) -> Result<Self> {
         let end = |h: &_| motion.end(h).ok_or_else(too_large);
         let line = |h: &_| motion.line(h).ok_or_else(too_large);
@@ -210,7 +211,7 @@ impl Set {
         })
     }
 
-    /// The same set on a finer lattice; nothing and everything live on any.
+    /// Returns the same set on a finer lattice; the empty set and the set of all points fit any lattice.
     pub fn refined(&self, own: Pitch, finer: Pitch) -> Result<Self> {
         if finer == own || self.uniform_label().is_some() {
             return Ok(self.clone());
@@ -244,7 +245,8 @@ fn rooted<S: AxisSpace>(tree: &PartitionTree<S>, cut: &S::Hyperplane) -> Result<
     partition_tree(tree, span::<S>(cut)?)
 }
 
-/// Both halves as sets of the whole space: the hyperplane in the root, the other side empty.
+/// Returns the parts of a set on both sides of a hyperplane as sets of the whole space, with the hyperplane
+/// at the root.
 fn halves<S: AxisSpace>(
     tree: &PartitionTree<S>,
     cut: &S::Hyperplane,
@@ -273,7 +275,7 @@ fn mapped<S: AxisSpace>(
         })
     });
     let image = from_preorder(&moved.collect::<Result<Vec<_>>>()?, S::universe())?;
-    // Inside the frame the image is right; a bounded set must not lose what lies beyond.
+    // The image is right inside the frame; a bounded set must not lose a part outside it.
     if is_bounded(tree) && stats(&image).cuts != stats(tree).cuts {
         let text = "the moved or refined set does not fit the lattice of 2^53 steps";
         return Err(Error::new(ErrorKind::TooLarge, text));

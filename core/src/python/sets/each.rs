@@ -1,22 +1,22 @@
-//! The tree of a set, and one expression for it, whatever its dimension.
+//! A set of any dimension, and a macro that evaluates one expression for its tree.
 
 use crate::geometry::spaces::dim1::Dim1;
 use crate::geometry::spaces::dim3::Dim3;
 use crate::tree::partition::PartitionTree;
 use crate::tree::plane::PlaneSet;
 
-/// A set of points as a partition tree, or in the plane as what makes one.
+/// A set of points: a partition tree or, in the plane, a boundary or a tree.
 #[derive(Clone, Debug)]
 pub enum Set {
-    /// On the line.
+    /// A set on the line.
     Line(PartitionTree<Dim1>),
-    /// In the plane.
+    /// A set in the plane.
     Plane(PlaneSet),
-    /// In space.
+    /// A set in space.
     Space(PartitionTree<Dim3>),
 }
 
-/// The value of an expression generic over the space, inside a function that may fail.
+/// Evaluates an expression with the tree of a set, whatever its dimension, inside a function that may fail.
 macro_rules! each {
     ($set:expr, $tree:ident => $value:expr) => {
         match $set {

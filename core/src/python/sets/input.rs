@@ -1,4 +1,4 @@
-//! The input that a set is made from: names, rows of doubles, hyperplanes.
+//! Reads the input that a set is made from: names, rows of doubles, hyperplanes.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::spaces::axis::AxisSpace;
@@ -14,28 +14,28 @@ use crate::python::hyperplanes::{shape, Row};
 use crate::query::region::solid;
 use crate::tree::partition::{enclosed, Facet, PartitionTree, PivotPolicy, Plan};
 
-/// A rule by which winding numbers are inside.
+/// A rule that says which winding numbers are inside.
 pub type Rule = fn(i32) -> bool;
 
-/// The choice of the facets' hyperplanes, and whether axis-parallel cuts come above them.
+/// How hyperplanes of facets are chosen, and whether axis-parallel cuts come before them.
 pub type Policy = (PivotPolicy, bool);
 
-/// The input that a set is built from.
+/// The input that a set is made from.
 #[derive(Debug)]
 pub struct Input {
     /// Points with orientations (1D), ends of segments (2D), or vertices (3D).
     pub facets: Vec<Vec<f64>>,
-    /// Triangles, in space.
+    /// Triangles as vertex numbers, for a set in space.
     pub faces: Vec<[i64; 3]>,
-    /// Hyperplanes to be cut along first.
+    /// Hyperplanes that are cut along first.
     pub cuts: Vec<Row>,
-    /// The rule by which winding numbers are inside.
+    /// The rule that says which winding numbers are inside.
     pub rule: Rule,
-    /// The policy by which the rest is divided.
+    /// How regions are divided after the given cuts.
     pub policy: Policy,
 }
 
-/// The rule of this name.
+/// Returns the winding rule with this name.
 pub fn rule(name: &str) -> Result<Rule> {
     match name {
         "positive" => Ok(|number| number > 0),
@@ -49,7 +49,7 @@ pub fn rule(name: &str) -> Result<Rule> {
     }
 }
 
-/// The policy of this name.
+/// Returns the policy with this name.
 pub fn policy(name: &str, seed: u64) -> Result<Policy> {
     match name {
         "balanced" => Ok((PivotPolicy::Random(seed), true)),
@@ -63,7 +63,7 @@ pub fn policy(name: &str, seed: u64) -> Result<Policy> {
     }
 }
 
-/// The set operation of this name.
+/// Returns the set operation with this name.
 pub fn operation(name: &str) -> Result<SetOp> {
     match name {
         "union" => Ok(SetOp::Union),
@@ -81,7 +81,7 @@ fn unknown(name: &str, what: &str, known: &str) -> Error {
     shape(format!("'{name}' is not {what}; use {known}"))
 }
 
-/// Refuses operands of different pitch.
+/// Returns an error if two pitches differ.
 pub fn same_lattice(a: Pitch, b: Pitch) -> Result<()> {
     if a == b {
         return Ok(());
@@ -94,13 +94,13 @@ pub fn same_lattice(a: Pitch, b: Pitch) -> Result<()> {
     Err(Error::new(ErrorKind::PitchMismatch, text))
 }
 
-/// The map of the lattice that signed axis numbers from 1 and a shift describe.
+/// Returns the motion of the lattice given by signed axis numbers from 1 and a shift.
 pub fn lattice_map(dimension: usize, axes: &[i64], shift: &[i64]) -> Result<Motion> {
     let found = Motion::of_axes(axes, shift).filter(|_| axes.len() == dimension);
     found.ok_or_else(|| shape("the axes and the shift do not map the lattice to itself"))
 }
 
-/// Rows made into something, the first failure if there is one.
+/// Converts each row; returns the first error, if there is one.
 pub fn all<N, T>(rows: &[Vec<N>], make: impl Fn(&[N]) -> Result<T>) -> Result<Vec<T>> {
     rows.iter().map(|row| make(row)).collect()
 }
@@ -110,7 +110,7 @@ fn numbers<const N: usize>(row: &[f64]) -> Result<[f64; N]> {
         .map_err(|_| shape(format!("a row must have {N} numbers, not {}", row.len())))
 }
 
-/// The set inside facets.
+/// Makes the set inside facets.
 pub fn inside_of<S: AxisSpace>(
     facets: Vec<Facet<S>>,
     input: &Input,
@@ -125,7 +125,7 @@ pub fn inside_of<S: AxisSpace>(
     enclosed(facets, 0, input.rule, &plan)
 }
 
-/// Facets with the numbers of their rows; rows without a facet are left out.
+/// Converts rows to facets with the numbers of their rows; rows without a facet are left out.
 fn facets<S: AxisSpace>(
     input: &Input,
     make: impl Fn(&[f64]) -> Result<Option<S::Fragment>>,
@@ -138,7 +138,7 @@ fn facets<S: AxisSpace>(
     Ok(facets)
 }
 
-/// Rows (x, ±1): +1 where the inside begins, −1 where it ends.
+/// Converts rows (x, ±1) to facets: +1 where the inside begins, −1 where it ends.
 pub fn points(input: &Input, pitch: Pitch) -> Result<Vec<Facet<Dim1>>> {
     facets(input, |row| {
         let [x, sign] = numbers(row)?;
@@ -151,7 +151,8 @@ pub fn points(input: &Input, pitch: Pitch) -> Result<Vec<Facet<Dim1>>> {
     })
 }
 
-/// Rows (x, y, x', y'), the inside on the left; those the lattice shrinks to a point are left out.
+/// Converts rows (x, y, x', y') to segments with the inside on the left, without those that snapping shrinks
+/// to a point.
 pub fn segments(input: &Input, pitch: Pitch) -> Result<Vec<Facet<Dim2>>> {
     facets(input, |row| {
         let [a, b, c, d] = numbers(row)?;
@@ -161,7 +162,7 @@ pub fn segments(input: &Input, pitch: Pitch) -> Result<Vec<Facet<Dim2>>> {
     })
 }
 
-/// Rows (x, y, x', y') of segments that close, the inside on the left.
+/// Converts rows (x, y, x', y'), segments of closed outlines with the inside on the left.
 pub fn outlines(rows: &[[f64; 4]], pitch: Pitch) -> Result<Outlines> {
     let mut outlines = Outlines::default();
     let mut known = ([f64::NAN; 2], [0; 2]);
@@ -175,7 +176,8 @@ pub fn outlines(rows: &[[f64; 4]], pitch: Pitch) -> Result<Outlines> {
     Ok(outlines)
 }
 
-/// The lattice point of a corner. Most segments begin where the one before ends, which is known.
+/// Snaps a corner to the lattice. Most segments begin where the one before ends, whose lattice point is
+/// `known`.
 #[allow(
     clippy::float_cmp,
     reason = "the same corner is given by the same doubles"
@@ -187,7 +189,7 @@ fn corner(at: [f64; 2], known: ([f64; 2], Lattice2), pitch: Pitch) -> Result<Lat
     Ok([pitch.snap(at[0])?, pitch.snap(at[1])?])
 }
 
-/// The faces of a closed mesh.
+/// Converts a closed mesh to facets.
 pub fn triangles(input: &Input, pitch: Pitch) -> Result<Vec<Facet<Dim3>>> {
     let vertices = all(&input.facets, numbers)?;
     solid::facets(&import(&vertices, &input.faces, Some(pitch))?)

@@ -46,7 +46,7 @@ impl ObjectTree {
         }
     }
 
-    /// The outlines of a region, made once.
+    /// Returns the outlines of a region; computes them on the first call.
     fn loops(&self, py: Python<'_>) -> PyResult<Arc<Vec<Outline>>> {
         if let Some(known) = self.outlines.get() {
             return Ok(Arc::clone(known));
@@ -68,8 +68,7 @@ impl ObjectTree {
         Self::of(set, self.pitch)
     }
 
-    /// The exception of work; the report of a defect holds the sets.
-    /// Do some work with this set and another of its lattice; a defect tells of both.
+    /// Runs work with this set and another on the same lattice; the report of a defect contains both.
     fn compared<T: Send>(
         &self,
         py: Python<'_>,
@@ -82,7 +81,7 @@ impl ObjectTree {
             .map_err(|e| self.with_report(py, e, &[self, other]))
     }
 
-    /// The result of a set operation with another set, by one of the ways to carry it out.
+    /// Applies a set operation with another set, by the function `way`.
     fn operated<T: Send>(
         &self,
         py: Python<'_>,
@@ -181,7 +180,7 @@ impl ObjectTree {
         Ok(self.with(set))
     }
 
-    /// The region inside closed segments, by its boundary; the tree is made when it is asked for.
+    /// Return the region inside closed segments, given by its boundary; the tree is made on demand.
     #[classmethod]
     fn region(
         _cls: &Bound<'_, PyType>,
@@ -201,13 +200,13 @@ impl ObjectTree {
         Ok(Self::of(set, pitch))
     }
 
-    /// The set operation by whatever is faster, merging trees or sweeping over boundaries.
+    /// Return the result of a set operation by the faster method, merging trees or sweeping over boundaries.
     fn combined(&self, py: Python<'_>, other: PyRef<'_, Self>, op: &str) -> PyResult<Self> {
         let set = self.operated(py, &other, op, Set::combined)?;
         Ok(self.with(set))
     }
 
-    /// The union of this region and others of its lattice, by one sweep over all boundaries.
+    /// Return the union of this region and others on the same lattice, by one sweep over all boundaries.
     fn composed(&self, py: Python<'_>, others: Vec<PyRef<'_, Self>>) -> PyResult<Self> {
         for other in &others {
             input::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
@@ -220,8 +219,8 @@ impl ObjectTree {
         Ok(self.with(set))
     }
 
-    /// The result of an operation, and the steps of merging the trees: kind, two roots or a node,
-    /// what is done, and why. Roots are nodes in preorder, −1 an Out leaf, −2 an In leaf.
+    /// Return the result of an operation, and the steps of merging the trees: kind, two roots or a node, the
+    /// action, and the reason. Roots are nodes in preorder, −1 an Out leaf, −2 an In leaf.
     fn merge_steps(
         &self,
         py: Python<'_>,
@@ -232,7 +231,7 @@ impl ObjectTree {
         Ok((self.with(set), steps.iter().map(step_row).collect()))
     }
 
-    /// The rows of the inner nodes' hyperplanes in preorder: normal and offset in lattice steps.
+    /// Return the hyperplanes of the inner nodes in preorder: rows of normal and offset in lattice steps.
     fn hyperplanes(&self, py: Python<'_>) -> PyResult<Vec<Row>> {
         self.work(py, |set, _| set.hyperplanes())
     }
@@ -312,12 +311,12 @@ impl ObjectTree {
         Ok(self.work(py, Set::moments)?.map(ratio).into())
     }
 
-    /// Two fractions between which the area lies, far nearer to each other than doubles are.
+    /// Return two fractions that enclose the area, far closer to each other than neighbouring doubles.
     fn area_bounds(&self, py: Python<'_>) -> PyResult<[Ratio; 2]> {
         Ok(self.work(py, Set::area_bounds)?.map(ratio))
     }
 
-    /// The point of the boundary that is nearest to each point, in model units, rounded.
+    /// Return for each point the nearest point of the boundary, in model units, rounded.
     fn nearest<'py>(
         &self,
         py: Python<'py>,

@@ -1,22 +1,22 @@
-//! Lists of convex pieces or outlines as flat arrays.
+//! Stores lists of convex pieces or outlines as flat arrays.
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// Pieces one after another: coordinates of all corners, the number of corners of each piece, and
-/// a number that each piece carries.
+/// A list of pieces: the coordinates of all corners, the number of corners of each piece, and a tag of each
+/// piece.
 #[derive(Debug, Default)]
 pub struct PieceList {
-    /// Coordinates, `dimension` for each corner.
+    /// The coordinates of all corners, `dimension` for each.
     pub coordinates: Vec<f64>,
-    /// The place where each piece begins, counted in corners, and where the last one ends.
+    /// The index of each piece's first corner; the last entry is the number of corners.
     pub offsets: Vec<i64>,
-    /// The owner of each piece: a node, a cell or a parent.
+    /// The tag of each piece: the number of its node or cell, or of the outline around it.
     pub tags: Vec<i64>,
 }
 
 impl PieceList {
-    /// An empty list.
+    /// Makes an empty list.
     pub fn new() -> Self {
         Self {
             offsets: vec![0],
@@ -24,7 +24,7 @@ impl PieceList {
         }
     }
 
-    /// Adds a piece.
+    /// Adds a piece with its corners and its tag.
     pub fn push<const D: usize>(&mut self, corners: impl IntoIterator<Item = [f64; D]>, tag: i64) {
         self.coordinates.extend(corners.into_iter().flatten());
         self.offsets.push((self.coordinates.len() / D) as i64);
@@ -32,14 +32,14 @@ impl PieceList {
     }
 }
 
-/// Vertices (n, d), offsets (k + 1,), tags (k,).
+/// Vertices (n, d), offsets (k + 1,) and tags (k,) of k pieces.
 pub type Pieces<'py> = (
     Bound<'py, PyArray2<f64>>,
     Bound<'py, PyArray1<i64>>,
     Bound<'py, PyArray1<i64>>,
 );
 
-/// The arrays of a list.
+/// Converts a list of pieces to arrays.
 pub fn arrays(py: Python<'_>, list: PieceList, dimension: usize) -> PyResult<Pieces<'_>> {
     let count = list.coordinates.len() / dimension;
     let vertices = PyArray1::from_vec(py, list.coordinates).reshape([count, dimension])?;

@@ -1,4 +1,4 @@
-//! The answers of sets: pieces, outlines, measures, places.
+//! Queries of sets: pieces, outlines, measures, locations.
 
 use super::each::Set;
 use super::pieces::PieceList;
@@ -22,7 +22,7 @@ use crate::tree::partition::{boundary_of, cells, classify, Location, PartitionTr
 use crate::tree::plane::PlaneSet;
 
 impl Set {
-    /// The boundary in convex pieces, each with the preorder number of its node.
+    /// Returns the boundary in convex pieces, each with the preorder number of its node.
     pub fn boundary(&self, pitch: Pitch) -> Result<PieceList> {
         let mut list = PieceList::new();
         match self {
@@ -45,7 +45,7 @@ impl Set {
         Ok(list)
     }
 
-    /// The faces of the convex cells, each with the number of its cell.
+    /// Returns the faces of the convex cells, each with the number of its cell.
     pub fn cells(&self, pitch: Pitch) -> Result<PieceList> {
         if !self.is_bounded() {
             let text =
@@ -61,7 +61,7 @@ impl Set {
         Ok(list)
     }
 
-    /// The maximal edges of a plane region's boundary, the region on their left.
+    /// Returns the maximal edges of a plane region's boundary, with the region on their left.
     pub fn edges(&self, pitch: Pitch) -> Result<PieceList> {
         let mut list = PieceList::new();
         let boundary = self.plane()?.boundary()?;
@@ -72,12 +72,12 @@ impl Set {
         Ok(list)
     }
 
-    /// The outlines of a plane region.
+    /// Returns the outlines of a plane region.
     pub fn outlines(&self) -> Result<Vec<Outline>> {
         outlines(self.plane()?.boundary()?)
     }
 
-    /// The exact length, area or volume.
+    /// Returns the exact length, area or volume, in powers of model units.
     pub fn measure(&self, pitch: Pitch) -> Result<Fraction> {
         match self {
             Self::Line(tree) => moments::length(tree, pitch),
@@ -86,19 +86,19 @@ impl Set {
         }
     }
 
-    /// Two fractions between which the area of a plane region lies.
+    /// Returns two fractions that enclose the area of a plane region.
     pub fn area_bounds(&self, pitch: Pitch) -> Result<[Fraction; 2]> {
         moments::area_bounds(self.plane()?.boundary()?, pitch)
     }
 
-    /// The area of a plane region and its first moments.
+    /// Returns the area of a plane region and its two first moments, ∫x and ∫y.
     pub fn moments(&self, pitch: Pitch) -> Result<[Fraction; 3]> {
         let boundary = self.plane()?.boundary()?;
         let [x, y] = moments::moments(boundary, pitch)?;
         Ok([moments::area(boundary, pitch)?, x, y])
     }
 
-    /// The point of a plane region's boundary that is nearest to each point, in model units.
+    /// Returns for each point the nearest point of a plane region's boundary, in model units.
     pub fn nearest(&self, points: &[[f64; 2]], pitch: Pitch) -> Result<Vec<[f64; 2]>> {
         let boundary = self.plane()?.boundary()?;
         let segment = |edge| boundary.points(edge).map(|p| pitch.position_in_plane(p));
@@ -107,7 +107,7 @@ impl Set {
         found.ok_or_else(|| shape("the set has no boundary, so no nearest boundary point"))
     }
 
-    /// The stretches of a line inside a plane region.
+    /// Returns the intervals of a line inside a plane region, as segments.
     pub fn cast(&self, origin: [f64; 2], direction: [f64; 2], pitch: Pitch) -> Result<PieceList> {
         let line = line_along([pitch.snap(origin[0])?, pitch.snap(origin[1])?], direction)?;
         let mut list = PieceList::new();
@@ -117,7 +117,7 @@ impl Set {
         Ok(list)
     }
 
-    /// Locate points, given as rows of so many columns, snapped to the lattice.
+    /// Returns the location of each point; points are given as rows of `columns` numbers, and are snapped.
     pub fn classify(&self, points: &[f64], columns: usize, pitch: Pitch) -> Result<Vec<Location>> {
         if !points.is_empty() && columns != self.dimension() {
             return Err(shape(format!(
@@ -145,7 +145,7 @@ impl Set {
     }
 }
 
-/// The corners of outlines, each with the number of the one around it, or −1.
+/// Returns the corners of outlines, each with the number of the outline directly around it, or −1.
 pub fn outline_pieces(outlines: &[Outline], pitch: Pitch) -> PieceList {
     let mut list = PieceList::new();
     for outline in outlines {
@@ -155,7 +155,7 @@ pub fn outline_pieces(outlines: &[Outline], pitch: Pitch) -> PieceList {
     list
 }
 
-/// The corners of an outline, exactly.
+/// Returns the corners of an outline as exact fractions.
 pub fn exact_corners(outline: &Outline, pitch: Pitch) -> Vec<[Fraction; 2]> {
     let exact = |point: &Point2| {
         let (x, w) = point.coordinates();

@@ -1,4 +1,4 @@
-//! Sets as nodes in preorder: arrays to look at, bytes to keep.
+//! Sets as nodes in preorder: as arrays for inspection, and as bytes for storage.
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -17,11 +17,11 @@ use crate::python::calls::errors::to_python;
 use crate::store::sealed::{seal, unseal, Kind};
 use crate::tree::partition::{from_preorder, preorder, Entry, Label, PartitionTree};
 
-/// The widths of a plane's coefficients.
+/// The bits of the coefficients of a plane's normal, and of its offset.
 const NORMAL: u32 = normal(COORDINATE_BITS);
 const OFFSET: u32 = offset(COORDINATE_BITS);
 
-/// Hyperplanes (n, d + 1), minus children (n,), plus children (n,).
+/// The hyperplanes (n, d + 1), minus children (n,) and plus children (n,) of n nodes.
 pub type Nodes<'py> = (
     Bound<'py, PyArray2<f64>>,
     Bound<'py, PyArray1<i64>>,
@@ -42,7 +42,7 @@ enum StoredNode {
 }
 
 impl Set {
-    /// The set as bytes; coplanar sets are not kept.
+    /// Encodes the set as bytes, without coplanar sets.
     pub fn to_bytes(&self, pitch: Pitch) -> Result<Vec<u8>> {
         let nodes = match self {
             Self::Line(tree) => stored(tree, |p| {
@@ -64,7 +64,7 @@ impl Set {
         seal(Kind::Set, &stored)
     }
 
-    /// The set and its pitch from bytes.
+    /// Decodes a set and its pitch from bytes.
     ///
     /// # Errors
     /// `BadSnapshot`.
@@ -100,7 +100,7 @@ impl Set {
         Ok((set, pitch))
     }
 
-    /// The inner nodes in preorder: hyperplanes normal·x = offset with normals of length 1, in model
+    /// Returns the inner nodes in preorder: hyperplanes normal·x = offset with normals of length 1, in model
     /// units, and the numbers of the children, −1 for an Out leaf and −2 for an In leaf.
     pub fn nodes<'py>(&self, py: Python<'py>, pitch: Pitch) -> PyResult<Nodes<'py>> {
         let unit = pitch.coordinate(1);
@@ -181,13 +181,13 @@ fn scaled(normal: &[f64], constant: f64, unit: f64) -> Vec<f64> {
     row
 }
 
-/// The rows of the inner nodes, one after another, and their children's numbers.
+/// Returns the rows of the inner nodes, one after another, and the numbers of their children.
 fn listed<S: AxisSpace>(
     tree: &PartitionTree<S>,
     row: impl Fn(&S::Hyperplane) -> Vec<f64>,
 ) -> (Vec<f64>, Vec<[i64; 2]>) {
     let (mut rows, mut children) = (Vec::new(), Vec::<[i64; 2]>::new());
-    // The place of the child that comes next: whose it is, and on which side.
+    // The children that are still to come: the parent of each, and its side.
     let mut open: Vec<(usize, usize)> = Vec::new();
     for entry in preorder(tree) {
         let number = match &entry {

@@ -1,4 +1,4 @@
-//! The merging of two sets, as plain tuples.
+//! Converts the steps of merging two sets to plain tuples.
 
 use super::each::{each, Set};
 use crate::error::Result;
@@ -9,11 +9,11 @@ use crate::merge::{merge_watched, SetOp};
 use crate::python::hyperplanes::{row_of, shape, Row};
 use crate::tree::partition::{preorder, Entry, Label, PartitionTree};
 
-/// Kind, two numbers, what is done, why.
+/// The kind of a step, two numbers, the action, and the reason.
 pub type StepRow = (&'static str, i64, i64, &'static str, &'static str);
 
 impl Set {
-    /// The set operation by merging trees, and its steps.
+    /// Applies a set operation by merging trees; returns the result and the steps.
     pub fn merge_steps(&self, other: &Self, op: SetOp) -> Result<(Self, Vec<MergeStep>)> {
         match (self, other) {
             (Self::Line(a), Self::Line(b)) => {
@@ -30,7 +30,7 @@ impl Set {
         }
     }
 
-    /// The hyperplanes of the inner nodes in preorder.
+    /// Returns the hyperplanes of the inner nodes in preorder.
     pub fn hyperplanes(&self) -> Result<Vec<Row>> {
         Ok(each!(self, tree => rows(tree)))
     }

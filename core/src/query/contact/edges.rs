@@ -1,4 +1,4 @@
-//! Edges of a surface that lie in the middle of its faces.
+//! Finds edges of a surface that lie inside faces of the same surface.
 
 use std::sync::Arc;
 
@@ -18,11 +18,11 @@ use crate::mesh::handle::{FaceId, VertexId};
 use crate::mesh::topology::{ends, Topology, NONE};
 use crate::tree::solid::Solid;
 
-/// Return the reflex edges of a reduced solid's surface that lie in the middle of a face: there two
-/// parts of the solid touch, and the face extends over both. Exact.
+/// Returns the reflex edges of a reduced solid's surface that lie inside a face: there two parts of the
+/// solid touch, and the face extends over both. Exact.
 ///
-/// An edge is reflex if the solid fills more than half of its surroundings. Other edges touch a
-/// face from outside and separate nothing.
+/// An edge is reflex if the solid fills more than half of the space around it. Other edges touch a face from
+/// outside and separate nothing.
 ///
 /// # Cost
 /// The mesh, the pairs of a reflex edge and a flat part of the surface whose boxes overlap, and the
@@ -60,17 +60,17 @@ pub fn edge_contacts(solid: &Solid, patches: &Patches) -> Result<Vec<EdgeContact
     Ok(folds.contacts().into_iter().map(contact).collect())
 }
 
-/// An edge at which the inside spans more than a half turn.
+/// An edge around which the solid fills more than a half turn.
 struct ReflexEdge {
     ends: [Vertex; 2],
-    /// The numbers of the ends.
+    /// The vertex numbers of the two ends.
     vertices: [VertexId; 2],
-    /// The triangles that meet in it.
+    /// The two triangles that share the edge.
     beside: [u32; 2],
 }
 
 impl ReflexEdge {
-    /// A reflex edge by its half-edges.
+    /// Makes a reflex edge of its two half-edges.
     fn of([half, mate]: [u32; 2], surface: &Surface) -> Self {
         let vertices = <[VertexId; 2]>::from(ends(surface.triangles(), half));
         Self {
@@ -80,14 +80,15 @@ impl ReflexEdge {
         }
     }
 
-    /// Return whether it lies in the plane of a triangle. Most near pairs share a corner.
+    /// Returns true if the edge lies in the plane of a triangle; most pairs that are compared share a
+    /// corner.
     fn lies_in_plane_of(&self, triangle: u32, surface: &Surface) -> bool {
         let corners = surface.triangles()[triangle as usize];
         let mut ends = self.ends.iter().zip(&self.vertices);
         ends.all(|(end, v)| corners.contains(v) || surface.side(triangle, end) == Side::On)
     }
 
-    /// The edge as a triangle without area.
+    /// The edge as a triangle without area, for boxes.
     fn corners(&self) -> [Vertex; 3] {
         let [from, to] = &self.ends;
         [from.clone(), to.clone(), to.clone()]
@@ -101,7 +102,7 @@ impl ReflexEdge {
     }
 }
 
-/// The reflex edges of a surface, and its flat parts.
+/// The reflex edges of a surface, and its flat parts, connected coplanar triangles of one patch.
 struct Folds<'a> {
     surface: &'a Surface<'a>,
     topology: Topology,
@@ -138,8 +139,8 @@ impl<'a> Folds<'a> {
         }
     }
 
-    /// Numbers of a reflex edge and a triangle: at least one pair for each flat part in whose
-    /// middle the edge lies.
+    /// Returns pairs of a reflex edge and a triangle whose interior, or that of its flat part, contains the
+    /// edge; at least one for each such edge and flat part.
     fn contacts(&self) -> Vec<[u32; 2]> {
         let mut found = Vec::new();
         for run in self.in_planes().chunk_by(|a, b| a[0] == b[0]) {
@@ -155,8 +156,8 @@ impl<'a> Folds<'a> {
         found
     }
 
-    /// Pairs of a flat part and a reflex edge whose boxes overlap; the edge lies in the part's
-    /// plane and does not bound it.
+    /// Returns pairs of a flat part and a reflex edge whose boxes overlap; the edge lies in the plane of the
+    /// part and is not on the part's boundary.
     fn in_planes(&self) -> Vec<[u32; 2]> {
         if self.reflex.is_empty() {
             return Vec::new();
@@ -191,8 +192,8 @@ impl<'a> Folds<'a> {
         found
     }
 
-    /// Adds a pair for each edge that lies in the middle of a triangle at one of its ends; returns
-    /// the other edges.
+    /// Adds a pair for each edge that lies inside a triangle at one of its ends; returns the edges without
+    /// such a triangle.
     fn at_corners(
         &self,
         edges: impl Iterator<Item = u32>,
@@ -216,7 +217,7 @@ impl<'a> Folds<'a> {
         edges.filter(is_left).collect()
     }
 
-    /// Adds the pairs of an edge and a triangle in whose middle it lies.
+    /// Adds all pairs of an edge and a triangle for which [`Self::is_in_middle`] is true.
     fn compare(&self, edges: &[u32], triangles: &[u32], found: &mut Vec<[u32; 2]>) {
         let reflex = |edge: &u32| &self.reflex[*edge as usize];
         let mut elements: Vec<Element> = edges.iter().map(|e| reflex(e).element()).collect();
@@ -241,8 +242,8 @@ impl<'a> Folds<'a> {
         });
     }
 
-    /// Return whether an edge in a triangle's plane has a point in its interior, or runs along one
-    /// of its edges across which the flat part continues.
+    /// Returns true if an edge in a triangle's plane has a point in the triangle's interior, or overlaps an
+    /// edge of the triangle that is inside the flat part.
     fn is_in_middle(&self, edge: u32, triangle: u32) -> bool {
         poll();
         let ends = self.reflex[edge as usize].ends.each_ref();
@@ -257,13 +258,13 @@ impl<'a> Folds<'a> {
     }
 }
 
-/// The flat parts of a surface, each connected across edges.
+/// The flat parts of a surface: coplanar triangles that are connected across edges.
 struct FlatParts {
-    /// The triangles, grouped by part.
+    /// The triangles, grouped by flat part.
     order: Vec<u32>,
-    /// Where each part starts in `order`, and where the last one ends.
+    /// The index in `order` at which each part starts; the last entry is the end.
     starts: Vec<usize>,
-    /// The part of each triangle.
+    /// The number of the part of each triangle.
     of: Vec<u32>,
 }
 
@@ -285,18 +286,18 @@ impl FlatParts {
         Self { order, starts, of }
     }
 
-    /// The numbers of all parts.
+    /// The numbers of all flat parts.
     fn all(&self) -> std::ops::Range<u32> {
         0..as_number(self.starts.len() - 1)
     }
 
-    /// The triangles of a part.
+    /// The triangles of a flat part.
     fn triangles(&self, part: u32) -> &[u32] {
         let [start, end] = [0, 1].map(|i| self.starts[part as usize + i]);
         &self.order[start..end]
     }
 
-    /// The part that holds a triangle.
+    /// The number of the part that contains a triangle.
     fn holding(&self, triangle: u32) -> u32 {
         self.of[triangle as usize]
     }
@@ -311,7 +312,7 @@ mod tests {
     use crate::merge::scenes::{cuboid, made_of, prism, tetrahedron};
     use crate::mesh::surfaces::counts;
 
-    /// A box with a groove whose inner edge lies at y = `tip`.
+    /// A box with a groove whose inner edge lies at y = `tip`; it touches the opposite wall if that is 8.
     fn grooved(tip: i64) -> Solid {
         let wedge = prism(&[[2, 0, 0], [6, 0, 0], [4, tip, 0]], 4);
         made_of(&[cuboid([0; 3], [8, 8, 4]), wedge], Term::Xor)

@@ -1,4 +1,4 @@
-//! Triangles of exact points, and whether two of them meet.
+//! Triangles with exact corners, and exact tests of whether two of them meet.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -11,16 +11,16 @@ use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 
-/// A triangle of exact corners.
+/// A triangle with exact corners, and its plane.
 pub struct Facet {
     /// The corners.
     pub corners: [Vertex; 3],
-    /// Its plane; either side may be outside.
+    /// The plane of the triangle; the outside of the solid may be on either side.
     pub plane: Arc<Plane>,
 }
 
 impl Facet {
-    /// Return whether two triangles have a point in common: then an edge of one meets the other.
+    /// Returns true if two triangles have a point in common; then an edge of one meets the other.
     pub fn meets(&self, other: &Self) -> bool {
         poll();
         let ours = self.sides_of(other);
@@ -31,13 +31,13 @@ impl Facet {
         !is_beside(theirs) && (self.meets_edges(other, ours) || other.meets_edges(self, theirs))
     }
 
-    /// The sides of this triangle's plane on which the corners of another lie.
+    /// Returns the side of this triangle's plane on which each corner of `other` lies.
     fn sides_of(&self, other: &Self) -> [Side; 3] {
         other.corners.each_ref().map(|p| p.side_of(&self.plane))
     }
 
-    /// Return whether an edge of another triangle meets this one, given the sides of this one's
-    /// plane on which its corners lie.
+    /// Returns true if an edge of `other` meets this triangle; `sides` are the sides of this triangle's
+    /// plane on which the corners of `other` lie.
     fn meets_edges(&self, other: &Self, sides: [Side; 3]) -> bool {
         (0..3).any(|i| {
             let j = (i + 1) % 3;
@@ -51,8 +51,8 @@ impl Facet {
         })
     }
 
-    /// Return whether a segment from one side of the plane to the other runs through the triangle:
-    /// all edges turn one way around it.
+    /// Returns true if a segment with its ends on different sides of the plane meets the triangle: all edges
+    /// then turn in one direction around it.
     fn is_pierced(&self, [from, to]: [&Vertex; 2]) -> bool {
         let around = |i: usize| {
             let (a, b) = (&self.corners[i], &self.corners[(i + 1) % 3]);
@@ -61,7 +61,7 @@ impl Facet {
         !is_split(each_axis(around))
     }
 
-    /// Return whether a point of the plane lies in the triangle.
+    /// Returns true if a point of the triangle's plane lies in the triangle.
     fn holds(&self, point: &Vertex) -> bool {
         let turns = each_axis(|i| {
             let (a, b) = (&self.corners[i], &self.corners[(i + 1) % 3]);
@@ -70,7 +70,7 @@ impl Facet {
         !is_split(turns)
     }
 
-    /// Return whether a segment in the plane enters the triangle's interior: each edge has an end
+    /// Returns true if a segment in the triangle's plane has a point in the interior: each edge has an end
     /// of the segment on its inner side, and the segment's line has corners on both sides.
     pub fn has_inside(&self, [from, to]: [&Vertex; 2]) -> bool {
         let turn = |a, b, c| points::turn([a, b, c], self.view());
@@ -85,7 +85,7 @@ impl Facet {
         is_split && (0..3).all(enters)
     }
 
-    /// Return whether a segment in the plane overlaps an edge in more than a point.
+    /// Returns true if a segment in the triangle's plane overlaps an edge in more than one point.
     pub fn has_along(&self, edge: usize, [from, to]: [&Vertex; 2]) -> bool {
         let [u, v] = self.view();
         let (a, b) = (&self.corners[edge], &self.corners[(edge + 1) % 3]);
@@ -105,15 +105,15 @@ impl Facet {
         is_on(from) && is_on(to) && sorted(first, high) && sorted(low, last)
     }
 
-    /// Return whether a segment in the plane meets the triangle: an end lies in it, or the segment
-    /// crosses an edge.
+    /// Returns true if a segment in the triangle's plane meets the triangle: one end lies in it, or the
+    /// segment crosses an edge.
     fn meets_flat(&self, [from, to]: [&Vertex; 2]) -> bool {
         let turn = |a, b, c| points::turn([a, b, c], self.view());
         let is_across = |i: usize| {
             let (a, b) = (&self.corners[i], &self.corners[(i + 1) % 3]);
             let ends = [turn(from, to, a), turn(from, to, b)];
             let sides = [turn(a, b, from), turn(a, b, to)];
-            // An edge on the segment's line does not count: the segment also meets its neighbours,
+            // An edge on the segment's line does not count: the segment also meets the neighbouring edges,
             // or one of its ends lies on the edge.
             ends != [Sign::Zero; 2]
                 && ends[0] * ends[1] != Sign::Positive
@@ -122,19 +122,19 @@ impl Facet {
         self.holds(from) || self.holds(to) || (0..3).any(is_across)
     }
 
-    /// The axes of the projection that shows the plane largest.
+    /// The two axes of the coordinate plane in which the triangle's projection is largest.
     fn view(&self) -> [usize; 2] {
         let axis = self.plane.main_axis();
         [(axis + 1) % 3, (axis + 2) % 3]
     }
 }
 
-/// Return whether all points lie strictly on one side of a plane.
+/// Returns true if three points lie strictly on one side of a plane, the same for all.
 fn is_beside(sides: [Side; 3]) -> bool {
     sides[0] != Side::On && sides.iter().all(|side| *side == sides[0])
 }
 
-/// Return whether points lie on both sides.
+/// Returns true if points lie strictly on both sides of a plane.
 fn is_split(sides: [Side; 3]) -> bool {
     sides.contains(&Side::Plus) && sides.contains(&Side::Minus)
 }
@@ -154,8 +154,8 @@ mod tests {
         })
     }
 
-    /// Return whether triangles have a point in common: no plane through the origin has all
-    /// differences of their points strictly on one side.
+    /// Returns true if two triangles have a point in common: no plane through the origin has all differences
+    /// of their points strictly on one side.
     fn touch(p: &[Lattice; 3], q: &[Lattice; 3]) -> bool {
         let differences: Vec<[i64; 3]> = p
             .iter()
@@ -170,7 +170,7 @@ mod tests {
         let faces = [cross(own[0], own[1]), cross(other[0], other[1])];
         let mut normals: Vec<[i64; 3]> = faces.to_vec();
         normals.extend(own.iter().flat_map(|e| other.iter().map(|f| cross(*e, *f))));
-        // For triangles of one plane.
+        // For two triangles in one plane.
         normals.extend(own.iter().map(|e| cross(*e, faces[0])));
         normals.extend(other.iter().map(|e| cross(*e, faces[1])));
         let separates = |n: &[i64; 3]| {
@@ -187,13 +187,13 @@ mod tests {
         [point(), point(), point()]
     }
 
-    /// Return whether a segment has a point inside a left-turning triangle in the floor: there its
-    /// three turns with the edges, linear along the segment, are all positive.
+    /// Returns true if a segment has a point inside a left-turning triangle of the plane z = 0: the three
+    /// turns of a point there with the edges are all positive.
     fn enters([a, b, c]: &[Lattice; 3], [from, to]: &[Lattice; 2]) -> bool {
         let turn = |p: &Lattice, q: &Lattice, r: &Lattice| {
             (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
         };
-        // Parameters at which one of the turns is zero, and those between, over one denominator.
+        // The parameters at which a turn is zero, and the middles between them, as fractions.
         let turns = [(a, b), (b, c), (c, a)].map(|(p, q)| [turn(p, q, from), turn(p, q, to)]);
         let zeros = turns.iter().filter(|t| t[0] != t[1]);
         let mut shares: Vec<(i64, i64)> = zeros.map(|t| (t[0], t[0] - t[1])).collect();

@@ -1,4 +1,4 @@
-//! Contact of surfaces: points that two share, and edges of one in the middle of its own faces.
+//! Contact of surfaces: common points of two surfaces, and edges of a surface inside its own faces.
 
 mod edges;
 mod facet;
@@ -16,7 +16,7 @@ use surface::Surface;
 /// Return whether the surfaces of two reduced solids on one lattice have a point in common; exact.
 ///
 /// # Cost
-/// Both meshes, and the pairs of their triangles whose boxes overlap, up to the first that meets.
+/// Both meshes, and the pairs of triangles whose boxes overlap, up to the first pair that meets.
 ///
 /// # Errors
 /// `Unbounded`.

@@ -1,4 +1,4 @@
-//! Elements of exact points whose boxes overlap.
+//! Finds pairs of elements with exact points whose boxes overlap.
 
 use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::geometry::axes::each_axis;
@@ -6,7 +6,7 @@ use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
 use crate::merge::pairs::{pairs_of_many, shift_of, Boxed, Part, Swept};
 
-/// A box of lattice points, its ends included.
+/// A box with lattice corners, which belong to it.
 #[derive(Clone, Copy)]
 pub struct LatticeBox {
     low: Lattice,
@@ -14,13 +14,13 @@ pub struct LatticeBox {
 }
 
 impl LatticeBox {
-    /// A box that holds nothing.
+    /// The empty box.
     pub const NOTHING: Self = Self {
         low: [i64::MAX; 3],
         high: [i64::MIN; 3],
     };
 
-    /// The smallest box around points.
+    /// The smallest lattice box that contains all points.
     pub fn around<'a>(points: impl IntoIterator<Item = &'a Vertex>) -> Self {
         let spaces = points.into_iter().map(Self::around_point);
         spaces.fold(Self::NOTHING, |all, one| all.with(&one))
@@ -40,7 +40,7 @@ impl LatticeBox {
         }
     }
 
-    /// The smallest box around this and another.
+    /// The smallest box around this box and another.
     #[must_use]
     pub fn with(&self, other: &Self) -> Self {
         Self {
@@ -49,7 +49,7 @@ impl LatticeBox {
         }
     }
 
-    /// The intersection with another box.
+    /// The intersection of this box and another; empty if they have no common point.
     #[must_use]
     pub fn within(&self, other: &Self) -> Self {
         Self {
@@ -58,17 +58,17 @@ impl LatticeBox {
         }
     }
 
-    /// Return whether two boxes have a point in common.
+    /// Returns true if two boxes have a common point.
     pub fn overlaps(&self, other: &Self) -> bool {
         (0..3).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
     }
 
-    /// The ends relative to a point.
+    /// The two corners of the box relative to a point.
     fn from(&self, origin: &Lattice) -> [Lattice; 2] {
         [&self.low, &self.high].map(|end| each_axis(|i| end[i] - origin[i]))
     }
 
-    /// The length of the longest side.
+    /// The length of the longest side, in lattice steps.
     fn size(&self) -> u64 {
         let side = |i: usize| self.high[i].checked_sub(self.low[i]).unwrap_or(0);
         each_axis(side)
@@ -79,18 +79,18 @@ impl LatticeBox {
     }
 }
 
-/// An element of one of two operands, with a box around it.
+/// A part of one of two operands, with a box around it.
 pub struct Element {
-    /// The operand; elements are grouped by it.
+    /// The number of the operand; elements of one operand follow each other.
     pub operand: usize,
-    /// The box.
+    /// A box that contains the element.
     pub space: LatticeBox,
 }
 
-/// Calls `meet` for all pairs of elements of different operands whose boxes overlap; stops if it
-/// returns `None`. A pair may be found more than once, in either order.
+/// Calls `meet` for all pairs of elements of different operands whose boxes overlap; stops with `None` if it
+/// returns `None`. A pair may come more than once, in either order.
 ///
-/// `corners` gives points whose convex hull contains an element, if known.
+/// `corners` gives three points whose convex hull contains an element, or `None`.
 pub fn near_pairs(
     elements: &[Element],
     corners: impl Fn(u32) -> Option<[Vertex; 3]>,
@@ -117,7 +117,7 @@ pub fn near_pairs(
     pairs_of_many(Part::of(boxes, shift), swept, meet)
 }
 
-/// Corners relative to a point, if they are lattice points.
+/// The corners relative to a point, in lattice steps; `None` if one is not a lattice point.
 fn relative(corners: &[Vertex; 3], origin: &Lattice) -> Option<[[f64; 3]; 3]> {
     let [a, b, c] = corners.each_ref().map(Vertex::as_lattice);
     let from = |p: &Lattice| each_axis(|i| as_double(p[i] - origin[i]));

@@ -1,4 +1,4 @@
-//! The surface of a solid with exact corners.
+//! The triangulated surface of a solid with exact corners.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use crate::mesh::handle::{OrientedFace, VertexId};
 use crate::query::exact;
 use crate::tree::solid::Solid;
 
-/// The surface of a solid.
+/// The triangulated surface of a solid with exact corners.
 pub struct Surface<'a> {
     solid: &'a Solid,
     patches: &'a Patches,
@@ -25,7 +25,7 @@ pub struct Surface<'a> {
 }
 
 impl<'a> Surface<'a> {
-    /// The surface of a bounded solid; each triangle lies in faces of one patch.
+    /// Makes the surface of a bounded solid; each triangle lies in faces of one patch.
     pub fn of(solid: &'a Solid, patches: &'a Patches) -> Result<Self> {
         let mesh = assemble_patches(solid, patches)?;
         Ok(Self {
@@ -35,7 +35,7 @@ impl<'a> Surface<'a> {
         })
     }
 
-    /// The triangles.
+    /// The vertices of each triangle.
     pub fn triangles(&self) -> &[[VertexId; 3]] {
         &self.mesh.triangles
     }
@@ -45,29 +45,30 @@ impl<'a> Surface<'a> {
         self.mesh.vertices.len()
     }
 
-    /// A vertex.
+    /// The exact position of a vertex.
     pub fn vertex(&self, vertex: VertexId) -> Vertex {
         exact::vertex(self.solid, &self.mesh, vertex)
     }
 
-    /// The face that a triangle lies in.
+    /// The source face that a triangle lies in.
     pub fn face(&self, triangle: u32) -> OrientedFace {
         self.mesh.faces[triangle as usize]
     }
 
-    /// The patch that a triangle lies in.
+    /// The patch number of the face that a triangle lies in.
     pub fn patch(&self, triangle: u32) -> u32 {
         let face = self.face(triangle).face;
         self.patches.of(face, self.solid.sources().get(face.slot))
     }
 
-    /// The plane of a triangle; either side may be outside.
+    /// The plane of a triangle; the outside of the solid may be on either side.
     pub fn plane(&self, triangle: u32) -> Arc<Plane> {
         let face = self.face(triangle);
         self.solid.sources().get(face.slot()).plane(face.id())
     }
 
-    /// The side of a triangle's plane on which a point lies; `Plus` is outside.
+    /// Returns on which side of a triangle's plane a point lies; `Plus` is outside the solid at the
+    /// triangle.
     pub fn side(&self, triangle: u32, point: &Vertex) -> Side {
         let [a, b, c] = self.corners(triangle).map(|corner| corner.approx());
         points::clear_side([a, b, c, point.approx()]).or_exact(|| {
@@ -85,7 +86,7 @@ impl<'a> Surface<'a> {
         self.mesh.triangles[triangle as usize].map(|vertex| self.vertex(vertex))
     }
 
-    /// A triangle.
+    /// A triangle with its corners and plane.
     pub fn facet(&self, triangle: u32) -> Facet {
         Facet {
             corners: self.corners(triangle),
@@ -93,7 +94,7 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// A box around all of it.
+    /// A box around the whole surface.
     pub fn space(&self) -> LatticeBox {
         let vertices = VertexId::all().take(self.mesh.vertices.len());
         vertices.fold(LatticeBox::NOTHING, |all, vertex| {
@@ -102,7 +103,7 @@ impl<'a> Surface<'a> {
         })
     }
 
-    /// A box around some triangles.
+    /// A box around the given triangles.
     pub fn space_of(&self, triangles: &[u32]) -> LatticeBox {
         let spaces = triangles
             .iter()
@@ -110,7 +111,7 @@ impl<'a> Surface<'a> {
         spaces.fold(LatticeBox::NOTHING, |all, one| all.with(&one))
     }
 
-    /// The triangles whose boxes overlap a box, each with its own.
+    /// Returns the triangles whose boxes overlap `space`, each with its own box.
     pub fn triangles_in(&self, space: &LatticeBox) -> Vec<(u32, LatticeBox)> {
         let boxed = |triangle: u32| {
             poll();

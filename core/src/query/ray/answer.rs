@@ -1,4 +1,4 @@
-//! Exact hits as doubles.
+//! Rounds exact hits of rays to doubles.
 
 use super::first::{Found, Nearest};
 use super::line::Ray;
@@ -6,7 +6,7 @@ use super::narrow::Narrow;
 use super::scene::{in_lengths, Scene};
 use crate::arith::{ratio_to_f64, Int};
 
-/// The part of a facet in which a ray meets it.
+/// The part of a facet that contains the point of a hit: its interior, an edge or a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// In the facet's relative interior.
@@ -17,22 +17,22 @@ pub enum Kind {
     Vertex,
 }
 
-/// A hit in model units.
+/// A hit of a ray on a facet, in model units.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<const D: usize> {
-    /// The facet's place in the input.
+    /// The index of the facet in the input.
     pub number: u32,
-    /// The point is origin + t · direction; correctly rounded (but for subnormal numbers).
+    /// The parameter: the point is origin + t · direction; correctly rounded, except for subnormal numbers.
     pub t: f64,
-    /// The part of the facet.
+    /// The part of the facet in which the point lies.
     pub kind: Kind,
-    /// Barycentric coordinates, correctly rounded; zero only where exactly zero.
+    /// The barycentric coordinates of the point, correctly rounded; zero only where exactly zero.
     pub weights: [f64; D],
-    /// The point, by the weights.
+    /// The point, computed from the barycentric coordinates.
     pub point: [f64; D],
 }
 
-/// Rounds an exact hit.
+/// Rounds an exact hit to doubles.
 pub fn hit<const D: usize>(scene: &Scene<D>, ray: &Ray<D>, found: &Found<D>) -> Hit<D> {
     let exact = &found.meeting.weights;
     let sum = exact.iter().fold(Int::ZERO, |sum, w| sum + *w);
@@ -46,7 +46,7 @@ pub fn hit<const D: usize>(scene: &Scene<D>, ray: &Ray<D>, found: &Found<D>) -> 
     }
 }
 
-/// The hit of the nearest facet, by narrow integers where they suffice.
+/// Returns the hit of the nearest facet, with narrow integers if they suffice; `None` if the ray misses it.
 #[inline]
 pub fn nearest_hit<const D: usize>(
     scene: &Scene<D>,
@@ -86,7 +86,8 @@ fn kind<const D: usize, const N: usize>(weights: &[Int<N>; D]) -> Kind {
     of_zeros(zeros, D)
 }
 
-/// The part of a facet at which `zeros` of its `corners` weights are zero.
+/// Returns the part of a facet that a point lies in, if `zeros` of its `corners` barycentric weights are
+/// zero.
 fn of_zeros(zeros: usize, corners: usize) -> Kind {
     match zeros {
         0 => Kind::Interior,

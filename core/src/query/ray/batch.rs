@@ -14,33 +14,34 @@ use crate::interrupt::{carried, spend};
 use crate::merge::rule::Rule;
 use crate::mesh::tasks::in_pool;
 
-/// Rays processed at a time: some ten kB.
+/// The number of rays that a thread reads and casts together: some ten kB.
 const RAYS_PER_CHUNK: usize = 64;
 
-/// The fewest chunks that one thread takes.
+/// The least number of chunks of rays that a thread takes at once.
 const MIN_CHUNKS_PER_THREAD: usize = 8;
 
-/// A stretch inside, in doubles: parameters, and the facets' places in the input.
+/// An interval of a ray inside a closed set, with its ends in doubles and the indices of the facets there.
 #[derive(Clone, Copy, Debug)]
 pub struct Inside {
-    /// The parameters at which it begins and ends; infinite where it does not.
+    /// The parameters at which the interval begins and ends; infinite if it has no end.
     pub t: [f64; 2],
-    /// The facets at the ends; −1 where the ray starts inside or stays there.
+    /// The input indices of the facets at its ends; −1 if the ray starts inside, or never leaves.
     pub facets: [i64; 2],
 }
 
-/// Rays as flat arrays: origins, and directions or targets.
+/// Rays as two flat arrays: their origins, and their directions or targets.
 #[derive(Clone, Copy, Debug)]
 pub struct Rays<'a> {
-    /// Coordinates of the origins, one ray after the other.
+    /// The coordinates of the origins, one origin after the other.
     pub origins: &'a [f64],
-    /// Directions or targets, likewise.
+    /// The coordinates of the directions or targets, one after the other.
     pub heads: &'a [f64],
 }
 
 impl Rays<'_> {
-    /// Answers all rays. `answer` gets rays with their numbers; `ray` makes one of a snapped origin
-    /// and a head, and `along` its rough direction, for sorting.
+    /// Casts all rays and returns their answers. `answer` gets rays with their numbers; `ray` makes a ray of
+    /// a snapped origin and a head (direction or target), and `along` gives its rough direction, for
+    /// sorting.
     fn map<const D: usize, T: Send>(
         &self,
         scene: &Scene<D>,
@@ -65,7 +66,7 @@ impl Rays<'_> {
         };
         match in_order(&order, &read, &made, &answer) {
             Ok(answers) => Ok(restored(&order, answers)),
-            // Another error may come first in the order of the input.
+            // A different error may come first in the order of the input.
             Err(_) => in_order(&given, &read, &made, &answer),
         }
     }
@@ -79,7 +80,7 @@ impl Rays<'_> {
         self.map(scene, |_, direction| direction, ray, answer)
     }
 
-    /// The first hit of each ray.
+    /// Returns the first hit of each ray; `None` for a ray without a hit.
     ///
     /// # Errors
     /// `Shape`; `NonFinite`, `TooLarge` and `BadNormal` with the ray's number; `Cancelled`.
@@ -89,7 +90,7 @@ impl Rays<'_> {
         })
     }
 
-    /// The place in the input of the first facet on each ray; −1 for none.
+    /// Returns the input index of the first facet on each ray; −1 for a ray without a hit.
     ///
     /// # Errors
     /// As for `first`.
@@ -101,7 +102,7 @@ impl Rays<'_> {
         })
     }
 
-    /// All hits of each ray in order; `merge` keeps the first of those at one point.
+    /// Returns all hits of each ray in order; with `merge`, only the first of several at one point.
     ///
     /// # Errors
     /// As for `first`.
@@ -118,7 +119,7 @@ impl Rays<'_> {
         })
     }
 
-    /// The stretches of each ray inside the bounded set; `outside` is the winding number far away.
+    /// Returns the intervals of each ray inside a bounded set; `outside` is the winding number far away.
     ///
     /// # Errors
     /// As for `first`; `NotClosed` if the facets are not closed.
@@ -142,7 +143,7 @@ impl Rays<'_> {
         self.cast(scene, |_, rays| rays.iter().map(of_ray).collect())
     }
 
-    /// Mark the origins whose targets something strictly between hides; both are snapped.
+    /// Returns for each origin whether a facet lies strictly between it and its target; both are snapped.
     ///
     /// # Errors
     /// As for `first`; `BadNormal` where origin and target are one lattice point.
@@ -155,7 +156,7 @@ impl Rays<'_> {
         )
     }
 
-    /// Mark the rays that something blocks at a parameter strictly between 0 and the limit.
+    /// Returns for each ray whether it meets a facet at a parameter strictly between 0 and its limit.
     ///
     /// # Errors
     /// As for `first`; `Shape` unless there is one limit for each ray.
@@ -172,7 +173,7 @@ impl Rays<'_> {
     }
 }
 
-/// Answers rays in an order, or returns the first error in it, whatever the threads do.
+/// Casts rays in the given order; returns their answers, or the first error in this order.
 fn in_order<const D: usize, T: Send>(
     order: &[u32],
     read: &(impl Fn(u32) -> [[f64; D]; 2] + Sync),
@@ -181,7 +182,7 @@ fn in_order<const D: usize, T: Send>(
 ) -> Result<Vec<T>> {
     let chunk = carried(|numbers: &[u32]| {
         spend(RAYS_PER_CHUNK);
-        // Reads side by side, so that their cache misses overlap.
+        // Reads all rays first, so that their cache misses overlap.
         let mut given = [[[0.0; D]; 2]; RAYS_PER_CHUNK];
         for (place, i) in given.iter_mut().zip(numbers) {
             *place = read(*i);
@@ -209,7 +210,7 @@ fn in_order<const D: usize, T: Send>(
     Ok(all)
 }
 
-/// Answers in the order of the input.
+/// Puts answers in the order of the input.
 fn restored<T>(order: &[u32], answers: Vec<T>) -> Vec<T> {
     let mut places: Vec<Option<T>> = Vec::new();
     places.resize_with(order.len(), || None);

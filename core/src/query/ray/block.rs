@@ -1,21 +1,22 @@
-//! A few facets side by side, so that one ray is tested against all of them at once.
+//! Stores a few facets coordinate by coordinate, so that one ray is tested against all of them at once.
 
 use super::facet::Facet;
 
-/// Facets in a block.
+/// The number of facets in a block.
 pub const LANES: usize = 4;
 
-/// Up to [`LANES`] facets, coordinate by coordinate.
+/// Up to [`LANES`] facets, stored coordinate by coordinate.
 #[derive(Clone, Debug)]
 pub struct Block<const D: usize> {
-    /// By corner, axis and lane, in lattice steps; lanes without a facet repeat the first.
+    /// The coordinates, by corner, axis and lane, in lattice steps; lanes without a facet repeat the first
+    /// facet.
     pub corners: [[[f64; LANES]; D]; D],
     facets: [u32; LANES],
     len: u32,
 }
 
 impl<const D: usize> Block<D> {
-    /// The block of these facets of a scene, at least one and at most [`LANES`].
+    /// Makes a block of the facets with the indices in `list`, at least one and at most [`LANES`].
     pub fn of(scene: &[Facet<D>], list: impl IntoIterator<Item = u32>) -> Self {
         let mut facets = [0; LANES];
         let mut len = 0;
@@ -35,13 +36,13 @@ impl<const D: usize> Block<D> {
         }
     }
 
-    /// The facets' indices in the scene.
+    /// The indices of the facets in the scene.
     #[inline]
     pub fn facets(&self) -> &[u32] {
         &self.facets[..self.len as usize]
     }
 
-    /// The corners of the facet in a lane.
+    /// The corners of the facet in a lane of the block.
     #[inline]
     pub fn lane(&self, lane: usize) -> Facet<D> {
         let mut facet = [[0.0; D]; D];

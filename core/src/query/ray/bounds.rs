@@ -13,16 +13,17 @@ pub const DIRECTION_BITS: u32 = 113;
 /// Limbs of the numerator of a ray's parameter at a facet.
 pub const NUMERATOR_LIMBS: usize = 3;
 
-/// Limbs of its denominator, and of the weights of the facet's corners that add up to it.
+/// Limbs of the denominator of a ray's parameter at a facet, and of the weights of corners that add up to
+/// it.
 pub const DENOMINATOR_LIMBS: usize = 4;
 
-/// Limbs of a numerator of one parameter times the denominator of another.
+/// Limbs of the product of one parameter's numerator with another's denominator, for comparing them.
 pub const COMPARE_LIMBS: usize = 7;
 
-/// Limbs of the weights of the corners where a ray runs within a facet's hyperplane.
+/// Limbs of the weights of a facet's corners if the ray runs in the facet's hyperplane.
 pub const WEIGHT_LIMBS: usize = 5;
 
-/// Bits of the largest power of ten by which a pitch scales.
+/// The bits of the largest power of ten by which a lattice step scales.
 const PITCH_BITS: u32 = 74;
 
 const fn det2(columns: [u32; 2]) -> u32 {
@@ -33,37 +34,37 @@ const fn det3(columns: [u32; 3]) -> u32 {
     columns[0] + columns[1] + columns[2] + 2
 }
 
-/// The weight of a corner: the direction and two relative corners.
+/// The bits of a corner's weight, a determinant of the direction and two relative corners.
 pub const fn weight(p: u32) -> u32 {
     det3([DIRECTION_BITS, p + 1, p + 1])
 }
 
-/// The sum of three weights.
+/// The bits of the sum of three weights.
 pub const fn denominator(p: u32) -> u32 {
     weight(p) + 2
 }
 
-/// The determinant of three relative corners.
+/// The bits of the determinant of three relative corners.
 pub const fn numerator(p: u32) -> u32 {
     det3([p + 1, p + 1, p + 1])
 }
 
-/// The order of two parameters.
+/// The bits of the products by which two parameters are compared.
 pub const fn comparison(p: u32) -> u32 {
     numerator(p) + denominator(p)
 }
 
-/// A corner's weight at the origin of a ray within the facet's plane.
+/// The bits of a corner's weight at the origin of a ray in the facet's plane.
 pub const fn value_within(p: u32) -> u32 {
     det2([p + 1, p + 1])
 }
 
-/// Bound the change of that weight along the ray.
+/// The bits of the change of a corner's weight along a ray in the facet's plane.
 pub const fn slope_within(p: u32) -> u32 {
     det2([DIRECTION_BITS, p + 2])
 }
 
-/// The weight at a parameter along the ray, times the parameter's denominator.
+/// The bits of a corner's weight at a parameter along a ray in the facet's plane, times the denominator.
 pub const fn weight_within(p: u32) -> u32 {
     value_within(p) + slope_within(p) + 1
 }

@@ -1,42 +1,44 @@
-//! Rays that go together, in single precision: a conservative test of the boxes that they meet.
+//! Bundles of similar rays, in single precision: a conservative test of which boxes they meet.
 //!
 //! # Error
-//! In the frame a scene lies in [−1, 1]. A ray is taken from where it enters that stretch of its
-//! main axis. So it meets the scene only at main distances t from 0 to 2, and moves by at most t on
-//! each axis. Let u = 2^-24. The distance of a box's plane is a difference times an inverse that
-//! was rounded once: off by less than 4u of itself, as if the plane had moved by 8u < 2^-21. An
-//! inverse that is cut at [`MAX_INVERSE_SLOPE`] moves the ray by 2·2^-40. The start is found in doubles, off by
-//! less than 2^-49 of the way from the origin. The slack of [`Starts::views`] exceeds the sum of
-//! these errors and of rounding to single precision. So a ray that meets a box passes the test of
-//! each slab, which tries all starts within the slack.
+//! In the frame a scene lies in [−1, 1]. A ray is taken from where it enters this interval on its main axis.
+//! So it meets the scene only at main distances t from 0 to 2, and moves by at most t on each axis. Let u =
+//! 2^-24. The distance of a box's plane is a difference times an inverse that was rounded once: its relative
+//! error is below 4u, as if the plane had moved by 8u < 2^-21. An inverse that is cut at
+//! [`MAX_INVERSE_SLOPE`] moves the ray by 2·2^-40. The start is found in doubles, with an error below 2^-49
+//! of its distance from the origin. The slack of [`Starts::views`] exceeds the sum of these errors and of
+//! rounding to single precision. So a ray that meets a box passes the test of each slab, which tries all
+//! starts within the slack.
 
 use super::cell::{above, Frame};
 use super::line::{Near, Ray};
 use super::treelet::{Wide, CHILDREN_PER_NODE};
 
-/// The largest inverse slope.
+/// The largest inverse of a slope; larger ones are replaced by it.
 const MAX_INVERSE_SLOPE: f64 = (1u64 << 40) as f64;
 
-/// The constant part of a start's slack.
+/// The constant part of the slack of a ray's start.
 const START_SLACK: f64 = 1.0 / (1u64 << 20) as f64;
 
-/// The slack per unit of the way to a start.
+/// The slack of a ray's start per unit of its distance from the origin.
 const SLACK_PER_WAY: f64 = 1.0 / (1u64 << 49) as f64;
 
-/// A bound on what a place in the frame loses in single precision, per unit of its size.
+/// A bound on the error of rounding a coordinate in the frame to single precision, relative to the
+/// coordinate.
 const NARROWING: f64 = 1.0 / (1u64 << 23) as f64;
 
-/// Rays in the frame, side by side, where they enter its stretch of their main axis.
+/// Up to `N` rays in the frame, side by side, from where they enter the interval [−1, 1] on their main axis.
 struct Starts<const D: usize, const N: usize> {
     at: [[f64; N]; D],
     slope: [[f64; N]; D],
-    /// The main distances from the origins.
+    /// The distances, along the main axis, of the starts from the rays' origins.
     skipped: [f64; N],
     slack: [f64; N],
 }
 
 impl<const D: usize, const N: usize> Starts<D, N> {
-    /// Takes at least one ray and at most `N`, all like the first, which fills the other lanes.
+    /// Takes 1 to `N` rays with the main axis and signs of the first ray, which also fills the lanes left
+    /// over.
     #[inline]
     fn of(rays: &[Ray<D>], frame: &Frame<D>) -> Self {
         let lead = &rays[0].near;
@@ -73,7 +75,7 @@ impl<const D: usize, const N: usize> Starts<D, N> {
         }
     }
 
-    /// Bound the rays' differences on an axis from the start to one unit on.
+    /// Bounds how much the rays differ on an axis, between their starts and one unit farther.
     #[inline]
     fn spread(&self, axis: usize) -> f64 {
         let range = |of: &[f64; N]| {
@@ -87,7 +89,7 @@ impl<const D: usize, const N: usize> Starts<D, N> {
         range(&self.at[axis]) + range(&self.slope[axis])
     }
 
-    /// For boxes seen from all starts within the slack: near and far starts, inverse slopes.
+    /// Returns near starts, far starts and inverse slopes, for boxes seen from all starts within the slack.
     #[inline]
     fn views(&self, axis: usize) -> [[f32; N]; 3] {
         let backward = self.slope[axis][0] < 0.0;
@@ -96,7 +98,7 @@ impl<const D: usize, const N: usize> Starts<D, N> {
         } else {
             MAX_INVERSE_SLOPE
         };
-        // Seen from beyond, near planes are nearer and far planes farther.
+        // Seen from behind the start, near planes are nearer and far planes farther.
         let sign = if backward { -1.0 } else { 1.0 };
         let (mut near, mut far, mut inverse) = ([0.0; N], [0.0; N], [0.0; N]);
         for i in 0..N {
@@ -111,7 +113,7 @@ impl<const D: usize, const N: usize> Starts<D, N> {
     }
 }
 
-/// Return whether slopes have the same signs and the same main axis.
+/// Returns true if two rays have the same main axis and slopes of the same signs.
 #[inline]
 fn alike<const D: usize>(a: &Ray<D>, b: &Ray<D>) -> bool {
     let (a, b) = (&a.near, &b.near);
@@ -119,7 +121,7 @@ fn alike<const D: usize>(a: &Ray<D>, b: &Ray<D>) -> bool {
     a.main == b.main && (0..D).all(|k| falls(a, k) == falls(b, k))
 }
 
-/// Starts for near and far planes along an axis, and the inverse slopes.
+/// The starts for near planes and for far planes along an axis, and the inverse slopes, for a whole bundle.
 #[derive(Clone, Copy, Debug, Default)]
 struct View {
     near: f32,
@@ -129,7 +131,7 @@ struct View {
 }
 
 impl View {
-    /// The view of rays that go the same way.
+    /// Bounds the starts and inverse slopes of all rays of a bundle along an axis.
     #[inline]
     fn around<const N: usize>([near, far, inverse]: &[[f32; N]; 3], backward: bool) -> Self {
         let (late, early): (Choice<N>, Choice<N>) = if backward {
@@ -158,14 +160,14 @@ fn most<const N: usize>(of: &[f32; N]) -> f32 {
     of.iter().fold(of[0], |a, b| if *b > a { *b } else { a })
 }
 
-/// Up to `N` rays of one octant, and the beam around them.
+/// Up to `N` similar rays with directions in one octant, and a beam that contains them.
 #[derive(Clone, Debug)]
 pub struct Bundle<const D: usize, const N: usize> {
-    /// The side of a box that is met first: 1, the high one, where slopes are negative.
+    /// For each axis the side of a box that rays meet first: 1, the high side, if slopes are negative.
     first: [usize; D],
-    /// By axis: the starts for near planes and for far planes, and inverse slopes.
+    /// By axis: the starts for near planes, the starts for far planes, and the inverse slopes.
     views: [[[f32; N]; 3]; D],
-    /// The distances beyond which nothing matters to each ray.
+    /// For each ray the distance after which boxes no longer matter.
     limits: [f32; N],
     beam: [View; D],
     scale: f64,
@@ -173,8 +175,8 @@ pub struct Bundle<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> Bundle<D, N> {
-    /// The bundle of 1 to `N` rays, with the depths beyond which nothing matters; `None` if they do
-    /// not go the same way or stray farther apart than `width`.
+    /// Makes the bundle of 1 to `N` rays, with the depth after which boxes no longer matter to each; `None`
+    /// if their octants or main axes differ, or they are more than `width` apart.
     #[inline]
     pub fn of(
         rays: &[Ray<D>],
@@ -219,7 +221,7 @@ impl<const D: usize, const N: usize> Bundle<D, N> {
         bundle
     }
 
-    /// The distance beyond which nothing matters to any ray.
+    /// The largest distance, of all rays, after which boxes no longer matter.
     #[inline]
     pub fn limit(&self) -> f32 {
         self.limits.iter().fold(
@@ -228,13 +230,13 @@ impl<const D: usize, const N: usize> Bundle<D, N> {
         )
     }
 
-    /// Sets the depth beyond which nothing matters to a ray.
+    /// Sets the depth after which boxes no longer matter to a ray.
     #[inline]
     pub fn set_limit(&mut self, ray: usize, depth: f64) {
         self.limits[ray] = above(depth * self.scale - self.skipped[ray]);
     }
 
-    /// The distances at which the beam enters the boxes of a node, and whether it does.
+    /// Returns, for each box of a node, the distance at which the bundle enters it, and whether it does.
     #[inline]
     pub fn enters(
         &self,
@@ -263,7 +265,7 @@ impl<const D: usize, const N: usize> Bundle<D, N> {
         (from, enters)
     }
 
-    /// Mark the rays that enter a box of a node.
+    /// Returns for each ray whether it enters the box in a lane of a node.
     #[inline]
     pub fn entering(&self, node: &Wide<D>, lane: usize) -> [bool; N] {
         let mut from = [0.0f32; N];

@@ -1,4 +1,4 @@
-//! Boxes in lattice steps, and the frame in which boxes of single precision stand.
+//! Boxes in lattice steps, and boxes of single precision in a frame around the scene.
 
 use super::facet::Facet;
 
@@ -17,7 +17,7 @@ impl<const D: usize> Cell<D> {
         high: [f64::NEG_INFINITY; D],
     };
 
-    /// The smallest box around facets; inside out if there is none.
+    /// The smallest box around facets; `low` is above `high` if there is none.
     pub fn around<'a>(facets: impl IntoIterator<Item = &'a Facet<D>>) -> Self {
         let mut cell = Self::NOTHING;
         for corner in facets.into_iter().flatten() {
@@ -40,7 +40,7 @@ pub struct Frame<const D: usize> {
 }
 
 impl<const D: usize> Frame<D> {
-    /// The frame of what lies in a box.
+    /// Makes the frame of a box.
     pub fn of(cell: &Cell<D>) -> Self {
         if (0..D).any(|k| cell.low[k] > cell.high[k]) {
             let (centre, scale) = ([0.0; D], 1.0);
@@ -56,13 +56,13 @@ impl<const D: usize> Frame<D> {
         Self { centre, scale }
     }
 
-    /// A coordinate in the frame.
+    /// Maps a coordinate into the frame.
     #[inline]
     pub fn inward(&self, axis: usize, x: f64) -> f64 {
         (x - self.centre[axis]) * self.scale
     }
 
-    /// The smallest box of single precision around corners.
+    /// The smallest box of single precision around the corners of a facet, in the frame.
     #[inline]
     pub fn span(&self, corners: &Facet<D>) -> Span {
         let mut span = Span::NOTHING;
@@ -76,7 +76,7 @@ impl<const D: usize> Frame<D> {
         span
     }
 
-    /// A box of the frame in lattice steps.
+    /// Converts a box of the frame to lattice steps.
     pub fn outward(&self, span: &Span) -> Cell<D> {
         let back = |axis: usize, x: f32| f64::from(x) / self.scale + self.centre[axis];
         Cell {
@@ -96,13 +96,13 @@ pub struct Span {
 }
 
 impl Span {
-    /// No box: farther out than any coordinate of a frame, and inside out.
+    /// The empty box: farther out than any coordinate of a frame, with `low` above `high`.
     pub const NOTHING: Self = Self {
         low: [4.0; 4],
         high: [-4.0; 4],
     };
 
-    /// The smallest box around two.
+    /// The smallest box around this box and another.
     #[inline]
     #[must_use]
     pub fn with(&self, other: &Self) -> Self {
@@ -114,14 +114,14 @@ impl Span {
         }
     }
 
-    /// The smallest box around several.
+    /// The smallest box around boxes.
     pub fn around<'a>(spans: impl IntoIterator<Item = &'a Self>) -> Self {
         spans
             .into_iter()
             .fold(Self::NOTHING, |all, span| all.with(span))
     }
 
-    /// The measure of the boundary up to a factor: area in 3D, length in 2D and 1D.
+    /// The measure of the box's boundary up to a factor: half its area in 3D, a length in 2D and 1D.
     #[inline]
     pub fn surface<const D: usize>(&self) -> f32 {
         let size = |k: usize| (self.high[k] - self.low[k]).max(0.0);

@@ -1,17 +1,17 @@
-//! The check that facets are closed, so that "inside" along a ray has a meaning.
+//! Checks that facets are closed, so that rays have intervals inside.
 
 use super::facet::Facet;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::grid::Pitch;
 use crate::mesh::import::import;
 
-/// Refuses facets that have a border on the lattice; `number` gives a facet's place in the input.
+/// Refuses facets that are not closed on the lattice; `number` gives a facet's index in the input.
 ///
-/// Triangles must cancel along the lines of their edges, segments end where others begin, and
-/// points of the line come in pairs.
+/// Triangles must cancel along the lines of their edges, as many segments must end at each point as begin
+/// there, and the number of points on the line must be even.
 ///
 /// # Errors
-/// `NotClosed` with the places in the input of facets at the border.
+/// `NotClosed` with the indices in the input of facets at the border.
 pub fn require_closed<const D: usize>(
     facets: &[Facet<D>],
     number: impl Fn(u32) -> u32,
@@ -58,7 +58,7 @@ fn triangles<const D: usize>(facets: &[Facet<D>], number: impl Fn(u32) -> u32) -
     let vertices: Vec<_> = facets.iter().flatten().map(corner).collect();
     let face = |k: i64| [3 * k, 3 * k + 1, 3 * k + 2];
     let faces: Vec<_> = (0..facets.len() as i64).map(face).collect();
-    // Corners are whole steps already.
+    // The corners are integers already.
     let steps = Pitch::new(0)?;
     match import(&vertices, &faces, Some(steps)) {
         Err(e) if e.kind() == ErrorKind::NotClosed => Err(at_input(number, &e)),

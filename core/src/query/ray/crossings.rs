@@ -1,4 +1,4 @@
-//! Stretches of a ray that are inside: winding numbers between the crossings of closed surfaces.
+//! Finds the intervals of a ray inside closed surfaces, by winding numbers between crossings.
 
 use super::facet::cross;
 use super::first::likely;
@@ -8,15 +8,15 @@ use super::scene::Scene;
 use crate::arith::Sign;
 use crate::merge::rule::Rule;
 
-/// A stretch of a ray that is inside.
+/// An interval of a ray that is inside a closed set.
 #[derive(Clone, Debug)]
 pub struct Stretch {
-    /// The parameter at which it begins.
+    /// The parameter at which the interval begins.
     pub from: Ratio,
-    /// The facet through which the ray enters; none where it starts inside.
+    /// The facet through which the ray enters; `None` if it starts inside.
     pub entry: Option<u32>,
-    /// The parameter at which it ends, and the facet through which the ray leaves; none for a
-    /// stretch without end.
+    /// The parameter at which the interval ends, and the facet through which the ray leaves; `None` if it
+    /// never leaves.
     pub end: Option<(Ratio, u32)>,
 }
 
@@ -26,11 +26,10 @@ struct Crossing {
     step: i32,
 }
 
-/// The stretches inside, in order; none is empty, and no two touch.
+/// Returns the intervals of a ray inside a closed set, in order; none is empty, and no two touch.
 ///
-/// The facets must be closed; `outside` is the winding number far along every ray. The ray is
-/// shifted infinitesimally, by (ε, ε², ε³): one that runs within a facet is inside there if the
-/// points beside it in that direction are.
+/// The facets must be closed; `outside` is the winding number far along every ray. The ray is shifted
+/// infinitesimally, by (ε, ε², ε³): a ray that runs in a facet is inside there if the shifted points are.
 pub fn stretches<const D: usize>(
     scene: &Scene<D>,
     ray: &Ray<D>,
@@ -61,7 +60,7 @@ fn stretch(from: Ratio, entry: Option<u32>, end: Option<(Ratio, u32)>) -> Stretc
     Stretch { from, entry, end }
 }
 
-/// The crossings at positive parameters, by parameter, then input; +1 where the ray leaves.
+/// Returns the crossings at positive parameters, by parameter, then input order; `step` is +1 for leaving.
 fn crossings<const D: usize>(scene: &Scene<D>, ray: &Ray<D>) -> Vec<Crossing> {
     let facets = likely(scene, std::slice::from_ref(ray))
         .pop()

@@ -1,4 +1,4 @@
-//! The division of a list of boxes: by the surface area heuristic.
+//! Divides a list of boxes in two by the surface area heuristic.
 //!
 //! # Source
 //! Bins of centres: Wald 2007, "On fast construction of SAH-based bounding volume hierarchies".
@@ -6,16 +6,16 @@
 use super::block::LANES;
 use super::cell::Span;
 
-/// Bins on each axis, whose borders are the candidate cuts.
+/// The number of bins on each axis, whose borders are the candidate cuts.
 const BINS: usize = 16;
 
-/// About how many facets of a longer list are sampled to choose a cut.
+/// Of a longer list about this many facets are sampled to choose a cut.
 const FACETS_SAMPLED: usize = 4096;
 
-/// Lists of at most this many facets make two blocks: they are divided in the middle.
+/// A list of at most this many facets makes two blocks: it is divided in the middle.
 const MAX_FACETS_OF_TWO_BLOCKS: usize = 2 * LANES;
 
-/// After this many cuts lists are halved, which soon ends: no scene should get there.
+/// After this many cuts in succession lists are halved, which soon ends; no real scene needs as many.
 const MAX_LEVELS_OF_CUTS: u32 = 64;
 
 /// A facet and its box.
@@ -23,24 +23,24 @@ const MAX_LEVELS_OF_CUTS: u32 = 64;
 pub struct Item {
     /// The facet's index in the scene.
     pub facet: u32,
-    /// Its box.
+    /// The box of the facet.
     pub span: Span,
 }
 
 impl Item {
-    /// A facet with its box.
+    /// Makes an item of a facet and its box.
     pub fn new(facet: u32, span: Span) -> Self {
         Self { facet, span }
     }
 
-    /// Twice the middle of the box on an axis.
+    /// Twice the centre of the box on an axis.
     #[inline]
     fn centre(&self, axis: usize) -> f32 {
         self.span.low[axis] + self.span.high[axis]
     }
 }
 
-/// Partitions a list into two nonempty parts; returns the length of the first and both boxes.
+/// Divides a list into two nonempty parts; returns the length of the first part and the boxes of both.
 pub fn divide<const D: usize>(items: &mut [Item], whole: &Span, level: u32) -> (usize, [Span; 2]) {
     let cut = match items.len() {
         ..=MAX_FACETS_OF_TWO_BLOCKS => None,
@@ -58,12 +58,12 @@ pub fn divide<const D: usize>(items: &mut [Item], whole: &Span, level: u32) -> (
     (count, [around(below), around(above)])
 }
 
-/// Successive divisions: a small tree of cuts, whose leaves are parts.
+/// Cuts chosen for a long list, as a small tree whose leaves are parts of the list.
 pub struct Cuts<const D: usize> {
     cuts: Vec<(Cut, [Way; 2])>,
 }
 
-/// The part, or the next cut, on a side of a cut.
+/// The next cut, or the part, on a side of a cut.
 #[derive(Clone, Copy)]
 enum Way {
     Cut(usize),
@@ -71,7 +71,7 @@ enum Way {
 }
 
 impl<const D: usize> Cuts<D> {
-    /// Cuts a long list into up to `parts` parts, chosen by a sample; `None` if that finds no cut.
+    /// Chooses, by a sample, cuts that divide a long list into up to `parts` parts; `None` if there is none.
     pub fn of(items: &[Item], parts: usize) -> Option<Self> {
         let mut sample: Vec<Item> = sample(items).copied().collect();
         let mut open = vec![(0..sample.len(), around(&sample).surface::<D>(), None)];
@@ -102,7 +102,7 @@ impl<const D: usize> Cuts<D> {
         (!cuts.is_empty()).then_some(Self { cuts })
     }
 
-    /// The items of each part, and the box around them.
+    /// Returns the items of each part, with the box around them.
     pub fn divided(&self, items: &[Item]) -> Vec<(Vec<Item>, Span)> {
         let mut parts = vec![(Vec::new(), Span::NOTHING); self.cuts.len() + 1];
         for item in items {
@@ -130,7 +130,7 @@ fn around(items: &[Item]) -> Span {
     Span::around(items.iter().map(|item| &item.span))
 }
 
-/// Moves the items below to the front; returns their number.
+/// Moves the items for which `below` is true to the start of the list; returns their number.
 fn partition(items: &mut [Item], below: impl Fn(&Item) -> bool) -> usize {
     let mut count = 0;
     for at in 0..items.len() {
@@ -142,7 +142,7 @@ fn partition(items: &mut [Item], below: impl Fn(&Item) -> bool) -> usize {
     count
 }
 
-/// Halves a list along the axis that gives the smallest boxes.
+/// Halves a list by the centres of its boxes on the longest axis of the box `whole`.
 fn halve<const D: usize>(items: &mut [Item], whole: &Span) -> (usize, [Span; 2]) {
     let middle = items.len().div_ceil(2);
     let order = |axis: usize| {
@@ -158,11 +158,11 @@ fn halve<const D: usize>(items: &mut [Item], whole: &Span) -> (usize, [Span; 2])
     (middle, [around(first), around(rest)])
 }
 
-/// A cut between bins.
+/// A cut between two bins of an axis, with its cost.
 struct Cut {
     axis: usize,
     bins: Bins,
-    /// The first bin above.
+    /// The first bin above the cut.
     at: usize,
     spans: [Span; 2],
     cost: f32,
@@ -174,7 +174,7 @@ impl Cut {
     }
 }
 
-/// The range of centres on an axis in equal parts.
+/// Divides the range of centres on an axis into equal bins.
 #[derive(Clone, Copy)]
 struct Bins {
     low: f32,
@@ -184,7 +184,7 @@ struct Bins {
 impl Bins {
     #[inline]
     fn of(self, centre: f32) -> usize {
-        // Centres beyond the range of a sample go to the end bins.
+        // Centres outside the range of the sample go to the first or the last bin.
         (((centre - self.low) * self.factor) as usize).min(BINS - 1)
     }
 }
@@ -207,7 +207,7 @@ impl Bin {
         self.count += count;
     }
 
-    /// Return the cost of a ray that meets the box: whole blocks are tested.
+    /// Returns the cost of testing the bin's blocks, weighted by the chance that a ray meets the box.
     fn cost<const D: usize>(&self) -> f32 {
         self.span.surface::<D>() * self.count.div_ceil(LANES as u32) as f32
     }
@@ -217,7 +217,7 @@ fn sample(items: &[Item]) -> impl Iterator<Item = &Item> {
     items.iter().step_by((items.len() / FACETS_SAMPLED).max(1))
 }
 
-/// The cut of least cost for a sample; none if all its centres are equal.
+/// Returns the cut of least cost for a sample of a list; `None` if all its centres are equal.
 fn best<const D: usize>(items: &[Item]) -> Option<Cut> {
     let sample = || sample(items);
     let (mut low, mut high) = ([f32::INFINITY; D], [f32::NEG_INFINITY; D]);

@@ -1,10 +1,10 @@
-//! The meeting of a ray and a facet, in integers.
+//! Decides in integers where a ray meets a facet.
 //!
-//! Notation: v₀ … are the facet's corners relative to the ray's origin, d the direction. By
-//! Cramer's rule the ray meets the facet's hyperplane at s = det(v) / Σ wᵢ, where wᵢ = det(v with
-//! vᵢ replaced by d), and the wᵢ are the barycentric weights of that point. Facets are closed: the
-//! ray meets them where no two weights have opposite signs. Σ wᵢ is d times the facet's normal,
-//! which points to the right of a segment and by the right-hand rule from a triangle.
+//! Notation: v₀ … are the facet's corners relative to the ray's origin, d is the direction. By Cramer's rule
+//! the ray meets the facet's hyperplane at s = det(v) / Σ wᵢ, where wᵢ = det(v with vᵢ replaced by d), and
+//! the wᵢ are the barycentric weights of that point. Facets are closed: the ray meets them where no two
+//! weights have opposite signs. Σ wᵢ is d times the facet's normal, which points to the right of a segment
+//! and follows the right-hand rule for a triangle.
 
 use super::bounds::{DENOMINATOR_LIMBS, NUMERATOR_LIMBS, WEIGHT_LIMBS};
 use super::line::Ray;
@@ -14,23 +14,23 @@ use crate::arith::{Int, Sign};
 /// The corners of a facet: a point in 1D, a segment in 2D, a triangle in 3D.
 pub type Facet<const D: usize> = [[f64; D]; D];
 
-/// Corners relative to a ray's origin.
+/// The corners of a facet relative to a ray's origin, in lattice steps.
 pub type Corners<const D: usize> = [[i64; D]; D];
 
 type Weight = Int<DENOMINATOR_LIMBS>;
 
-/// The first point of a facet on a ray.
+/// Where a ray first meets a facet, exactly.
 #[derive(Clone, Debug)]
 pub struct Meeting<const D: usize> {
     /// The parameter along the ray, not negative.
     pub at: Ratio,
-    /// The last parameter at which the ray is on the facet: `at` unless it runs within it.
+    /// The last parameter at which the ray is on the facet: `at`, unless the ray runs in its hyperplane.
     pub until: Ratio,
     /// The barycentric weights, not negative; their sum is positive.
     pub weights: [Int<WEIGHT_LIMBS>; D],
 }
 
-/// The facet's corners relative to the ray's origin.
+/// Returns the corners of a facet relative to a ray's origin.
 #[inline]
 pub fn relative<const D: usize>(ray: &Ray<D>, facet: &[[f64; D]; D]) -> Corners<D> {
     let mut v = [[0; D]; D];
@@ -43,7 +43,7 @@ pub fn relative<const D: usize>(ray: &Ray<D>, facet: &[[f64; D]; D]) -> Corners<
     v
 }
 
-/// The first point where a ray meets a closed facet.
+/// Returns the first point at which a ray meets a closed facet; `None` if it does not.
 pub fn meet<const D: usize>(ray: &Ray<D>, facet: &[[f64; D]; D]) -> Option<Meeting<D>> {
     let v = relative(ray, facet);
     let weights = weights(&v, ray.direction());
@@ -73,11 +73,11 @@ fn meet_across<const D: usize>(
     })
 }
 
-/// Return where the line of the ray, shifted by (ε, ε², ε³), crosses the facet, and in which
-/// direction.
+/// Returns the parameter at which a ray's line, shifted by (ε, ε², ε³), crosses a facet, and in which
+/// direction; `None` if it does not.
 ///
-/// Shifted so, the line meets no edge, no vertex and no facet lengthwise, so that the signs along
-/// it add up to winding numbers. The parameter is the limit for ε → 0 and can be negative.
+/// The shifted line meets no edge and no vertex, and runs in no facet, so that the signs along it add up to
+/// winding numbers. The parameter is the limit for ε → 0 and can be negative.
 pub fn cross<const D: usize>(ray: &Ray<D>, facet: &[[f64; D]; D]) -> Option<(Ratio, Sign)> {
     let v = relative(ray, facet);
     let weights = weights(&v, ray.direction());
@@ -106,7 +106,7 @@ fn weights<const D: usize>(v: &Corners<D>, d: &[i128; D]) -> [Weight; D] {
     })
 }
 
-/// d × v in the plane.
+/// The cross product d × v in the plane.
 fn planar(dx: i128, dy: i128, x: i64, y: i64) -> Int<NUMERATOR_LIMBS> {
     let product = |a: i128, b: i64| Int::<2>::from_i128(a).mul_i64::<NUMERATOR_LIMBS>(b);
     product(dx, y) - product(dy, x)
@@ -116,7 +116,7 @@ fn product(a: i128, b: i128) -> Weight {
     Int::<2>::from_i128(a).mul_i128(b)
 }
 
-/// The cross product of two relative corners.
+/// The cross product of two corners relative to a ray's origin.
 fn normal<const D: usize>(a: &[i64; D], b: &[i64; D]) -> [i128; 3] {
     [0, 1, 2].map(|k| minor(a, b, (k + 1) % 3, (k + 2) % 3))
 }
@@ -137,7 +137,7 @@ fn determinant<const D: usize>(v: &Corners<D>) -> Int<NUMERATOR_LIMBS> {
     }
 }
 
-/// The sign of a zero weight of a corner after the origin moves by (ε, ε², ε³).
+/// Returns the sign that a zero weight of a corner gets when the origin moves by (ε, ε², ε³).
 ///
 /// In space w = d · (a × b) with the opposite edge from a to b, which grows by ε⃗ · ((a − b) × d);
 /// in the plane w₀ = d × b and w₁ = a × d, which grow by ∓ d × ε⃗.
@@ -160,7 +160,7 @@ fn shifted_sign<const D: usize>(v: &Corners<D>, d: &[i128; D], i: usize) -> Sign
     }
 }
 
-/// A corner's weight along a ray within the facet's hyperplane: value + s · slope, inside where ≥ 0.
+/// A corner's weight along a ray in the facet's hyperplane: value + s · slope, at least 0 on the facet.
 struct Rim {
     value: Int<NUMERATOR_LIMBS>,
     slope: Int<NUMERATOR_LIMBS>,
@@ -178,7 +178,7 @@ impl Rim {
     }
 }
 
-/// The first point of a facet on a ray parallel to it: none unless the ray is in its hyperplane.
+/// Returns the first point of a facet on a ray parallel to it; `None` unless the ray runs in its hyperplane.
 fn meet_within<const D: usize>(v: &Corners<D>, d: &[i128; D]) -> Option<Meeting<D>> {
     if !determinant(v).is_zero() {
         return None;
@@ -192,7 +192,8 @@ fn meet_within<const D: usize>(v: &Corners<D>, d: &[i128; D]) -> Option<Meeting<
     Some(Meeting { at, until, weights })
 }
 
-/// The first and last parameters, from 0 on, at which all weights are non-negative.
+/// Returns the first and last parameters, from 0 on, at which all weights are non-negative; `None` if none
+/// is.
 fn stretch<const D: usize>(rims: &[Rim; D]) -> Option<(Ratio, Ratio)> {
     let (mut from, mut until) = (Ratio::ZERO, None::<Ratio>);
     for rim in rims {
@@ -203,7 +204,7 @@ fn stretch<const D: usize>(rims: &[Rim; D]) -> Option<(Ratio, Ratio)> {
             Sign::Negative => until = Some(until.map_or(rim.zero(), |u| u.min(rim.zero()))),
         }
     }
-    // The weights add up to a constant, so that one of them falls along the ray.
+    // The weights add up to a constant, so one of them decreases along the ray.
     until.filter(|u| from <= *u).map(|u| (from, u))
 }
 

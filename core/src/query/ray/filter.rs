@@ -1,4 +1,4 @@
-//! The ray against a facet in doubles: certain answers, or doubt.
+//! Tests a ray against facets in doubles, with certain answers or doubt.
 //!
 //! # Source
 //! Woop, Benthin, Wald 2013, "Watertight ray/triangle intersection": corners relative to the
@@ -26,16 +26,16 @@ use super::line::Ray;
 /// The unit roundoff of doubles.
 pub const ROUNDING: f64 = f64::EPSILON / 2.0;
 
-/// The answer of doubles about a ray and a facet.
+/// The result of testing a ray against a facet in doubles.
 ///
-/// No `Filtered`: a hit is certain, but the error of its depth may still require integers.
+/// Not a `Filtered`: a hit is certain, but the error of its depth may still require integers.
 #[derive(Clone, Copy, Debug)]
 pub enum Probe {
     /// The ray does not meet the facet.
     Miss,
-    /// The ray meets the facet's interior at this depth, give or take the error.
+    /// The ray meets the facet's interior at this depth, up to the depth's error.
     Hit(Depth),
-    /// Integers must decide.
+    /// Doubles cannot decide; integers must.
     Doubt,
 }
 
@@ -44,23 +44,23 @@ pub enum Probe {
 pub struct Depth {
     /// The depth.
     pub z: f64,
-    /// The bound on its error.
+    /// The bound on the error of the depth.
     pub error: f64,
 }
 
 impl Depth {
-    /// The least that the exact depth can be.
+    /// The least value that the exact depth can have.
     pub fn low(&self) -> f64 {
         self.z - self.error
     }
 
-    /// The most that the exact depth can be.
+    /// The largest value that the exact depth can have.
     pub fn high(&self) -> f64 {
         self.z + self.error
     }
 }
 
-/// The filter of one ray in one scene.
+/// The constants for testing one ray against facets in doubles.
 #[derive(Clone, Debug)]
 pub struct Filter<const D: usize> {
     origin: [f64; D],
@@ -72,7 +72,7 @@ pub struct Filter<const D: usize> {
 }
 
 impl<const D: usize> Filter<D> {
-    /// The filter for facets within a box.
+    /// Prepares the tests of a ray against facets in a box.
     pub fn new(ray: &Ray<D>, low: &[f64; D], high: &[f64; D]) -> Self {
         let near = &ray.near;
         let span = |i: usize| (high[i] - near.origin[i]).max(near.origin[i] - low[i]);
@@ -93,14 +93,14 @@ impl<const D: usize> Filter<D> {
         }
     }
 
-    /// Doubles' answer for one facet.
+    /// Tests a facet in doubles.
     #[inline]
     pub fn probe(&self, facet: &[[f64; D]; D]) -> Probe {
         self.side_by_side(&facet.map(|corner| corner.map(|c| [c])))
             .probe(self, 0)
     }
 
-    /// Doubles' answers for the lanes of a block that are not certainly missed.
+    /// Tests the facets of a block in doubles; calls `answer` for each lane that is not certainly missed.
     #[inline]
     pub fn probe_block(&self, block: &Block<D>, mut answer: impl FnMut(usize, Probe)) {
         let seen: Seen<D, LANES> = self.side_by_side(&block.corners);
@@ -115,7 +115,7 @@ impl<const D: usize> Filter<D> {
         }
     }
 
-    /// Return the facets as they look along the ray; by corner, axis and lane.
+    /// Returns the facets in coordinates in which the ray runs along one axis; by corner, axis and lane.
     #[inline]
     fn side_by_side<const L: usize>(&self, corners: &[[[f64; L]; D]; D]) -> Seen<D, L> {
         let mut sheared = [[[0.0; L]; D]; D];
@@ -152,7 +152,7 @@ impl<const D: usize> Filter<D> {
     }
 }
 
-/// Facets seen along a ray: sheared corners, and the weights that they give to the ray.
+/// Facets in sheared coordinates, in which the ray runs along an axis, and the weights of their corners.
 struct Seen<const D: usize, const L: usize> {
     sheared: [[[f64; L]; D]; D],
     weights: [[f64; L]; D],
@@ -195,7 +195,7 @@ impl<const D: usize, const L: usize> Seen<D, L> {
     }
 }
 
-/// The weights of corners seen along the ray, up to a common factor.
+/// The weights of corners in sheared coordinates, up to a common factor.
 #[inline]
 fn planar_weights<const D: usize, const L: usize>(p: &[[[f64; L]; D]; D]) -> [[f64; L]; D] {
     let mut weights = [[1.0; L]; D];

@@ -1,4 +1,4 @@
-//! The first facet on a ray, all facets on a ray, and whether one lies before a target.
+//! Finds the first facet on a ray, all facets on a ray, and whether a facet lies before a target.
 
 use std::cmp::Ordering;
 
@@ -10,18 +10,18 @@ use super::scene::Scene;
 use super::walk::walk;
 use crate::arith::Sign;
 
-/// A facet on a ray, and where they meet.
+/// A facet that a ray meets, and where it meets it.
 #[derive(Clone, Debug)]
 pub struct Found<const D: usize> {
     /// The facet's index in the scene.
     pub facet: u32,
-    /// Its corners, in lattice steps.
+    /// The corners of the facet, in lattice steps.
     pub corners: Facet<D>,
-    /// The first point it has in common with the ray.
+    /// The first point that the facet has in common with the ray.
     pub meeting: Meeting<D>,
 }
 
-/// The nearest facet so far, its depth in doubles.
+/// The nearest facet found on a ray, with its depth in doubles.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate {
     /// The facet's index in the scene.
@@ -30,7 +30,7 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// The most that the exact depth can be.
+    /// The largest value that the exact depth can have.
     pub fn high(&self) -> f64 {
         self.depth.high()
     }
@@ -41,7 +41,7 @@ impl Candidate {
 pub struct Nearest<const D: usize> {
     /// The facet's index in the scene.
     pub facet: u32,
-    /// In lattice steps.
+    /// The corners of the facet, in lattice steps.
     pub corners: Facet<D>,
 }
 
@@ -54,22 +54,22 @@ impl<const D: usize> Nearest<D> {
         }
     }
 
-    /// The exact meeting with a ray.
+    /// Returns the exact meeting of the facet with a ray; `None` if there is none.
     pub fn met(&self, ray: &Ray<D>) -> Option<Found<D>> {
         exact(ray, self.facet, &self.corners)
     }
 }
 
-/// The end of a shadow test on the ray.
+/// Where on a ray a test for facets in between ends.
 #[derive(Clone, Copy, Debug)]
 pub enum Reach {
-    /// Before parameter 1, where the target is.
+    /// Just before parameter 1, where the target is.
     Target,
-    /// Before this parameter of the given direction, compared after rounding.
+    /// Just before this parameter of the given direction, compared after rounding.
     Parameter(f64),
 }
 
-/// A ray's questions to a scene.
+/// A ray, prepared for tests against the facets of a scene.
 pub struct Query<'a, const D: usize> {
     scene: &'a Scene<D>,
     ray: &'a Ray<D>,
@@ -77,27 +77,27 @@ pub struct Query<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Query<'a, D> {
-    /// Questions of this ray.
+    /// Prepares a ray for tests against a scene.
     pub fn new(scene: &'a Scene<D>, ray: &'a Ray<D>) -> Self {
         let cell = scene.cell();
         let filter = Filter::new(ray, &cell.low, &cell.high);
         Self { scene, ray, filter }
     }
 
-    /// The facet with the first point on the ray; of several there, the first of the input.
+    /// Returns the facet that the ray meets first; if several share that point, the first of the input.
     pub fn first(&self) -> Option<Found<D>> {
         let rays = std::slice::from_ref(self.ray);
         firsts(self.scene, rays, |ray, nearest| nearest?.met(ray)).pop()?
     }
 
-    /// Keeps a block's facet nearer than the best, if any; returns the depth of the best.
+    /// Tests a block against a ray, and updates the nearest facet `best`; returns the depth of `best`.
     #[inline]
     pub fn offer_block(&self, best: &mut Option<Candidate>, block: &Block<D>) -> f64 {
         self.try_block(best, block, |_, _| {});
         best.map_or(f64::INFINITY, |best| best.high())
     }
 
-    /// Tests a facet, keeps it if it is nearer than the best; returns its hit's depth.
+    /// Tests a facet, and updates the nearest facet `best`; returns the facet's depth if the ray meets it.
     #[inline]
     pub fn offer(&self, best: &mut Option<Candidate>, facet: u32) -> Option<Depth> {
         let found = self.candidate(facet, self.probe(facet))?;
@@ -105,7 +105,7 @@ impl<'a, const D: usize> Query<'a, D> {
         Some(found.depth)
     }
 
-    /// Tests the facets of a block, keeps the nearest, and reports each hit and its depth.
+    /// Tests the facets of a block, updates the nearest facet `best`, and calls `hit` for each facet met.
     #[inline]
     pub fn try_block(
         &self,
@@ -122,19 +122,19 @@ impl<'a, const D: usize> Query<'a, D> {
         });
     }
 
-    /// The exact meeting with the nearest facet.
+    /// Returns the exact meeting of the ray with its nearest facet.
     pub fn found(&self, nearest: &Candidate) -> Option<Found<D>> {
         Nearest::of(self.scene, nearest).met(self.ray)
     }
 
-    /// All facets on the ray in the order of their first points, then of the input.
+    /// Returns all facets on the ray in the order of their first points, then of the input.
     pub fn all(&self) -> Vec<Found<D>> {
         alls(self.scene, std::slice::from_ref(self.ray))
             .pop()
             .unwrap_or_default()
     }
 
-    /// Return whether a facet has a point strictly between the ray's start and its reach.
+    /// Returns true if a facet has a point strictly between the ray's start and `reach`.
     pub fn occluded(&self, reach: Reach) -> bool {
         blocked(self.scene, std::slice::from_ref(self.ray), |_| reach) == [true]
     }
@@ -178,7 +178,7 @@ impl<'a, const D: usize> Query<'a, D> {
     fn exactly_nearer(&self, old: Candidate, new: Candidate) -> Candidate {
         let order = match (self.meeting(new.facet), self.meeting(old.facet)) {
             (Some(a), Some(b)) => a.at.cmp(&b.at),
-            // Candidates do meet the ray.
+            // Both candidates meet the ray, so this does not happen.
             _ => Ordering::Equal,
         };
         if order.then_with(|| new.facet.cmp(&old.facet)) == Ordering::Less {
@@ -222,21 +222,21 @@ impl<'a, const D: usize> Query<'a, D> {
     }
 }
 
-/// An answer for each ray from the first facet on it.
+/// Computes an answer for each ray from the first facet on it.
 pub fn firsts<const D: usize, T>(
     scene: &Scene<D>,
     rays: &[Ray<D>],
     answer: impl Fn(&Ray<D>, Option<Nearest<D>>) -> T,
 ) -> Vec<T> {
     let best = candidates(scene, rays);
-    // Reads side by side, so that their cache misses overlap.
+    // Reads all corners first, so that their cache misses overlap.
     let nearest = |best: Option<Candidate>| Some(Nearest::of(scene, &best?));
     let nearest: Vec<Option<Nearest<D>>> = best.into_iter().map(nearest).collect();
     let pairs = rays.iter().zip(nearest);
     pairs.map(|(ray, nearest)| answer(ray, nearest)).collect()
 }
 
-/// The nearest facet on each ray.
+/// Returns the nearest facet on each ray, with its depth in doubles.
 pub fn candidates<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Option<Candidate>> {
     let queries = queries(scene, rays);
     let mut best = vec![None; rays.len()];
@@ -249,7 +249,7 @@ pub fn candidates<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Opti
     best
 }
 
-/// All facets on each ray in the order of their first points, then of the input.
+/// Returns all facets on each ray in the order of their first points, then of the input.
 pub fn alls<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Vec<Found<D>>> {
     let met = likely(scene, rays).into_iter();
     let exact = |(ray, facets): (&Ray<D>, Vec<u32>)| {
@@ -265,7 +265,7 @@ pub fn alls<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Vec<Found<
     rays.iter().zip(met).map(exact).collect()
 }
 
-/// The facets that each ray may meet, as far as doubles tell.
+/// Returns the facets on each ray that doubles do not certainly exclude.
 pub fn likely<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Vec<u32>> {
     let queries = queries(scene, rays);
     let mut met = vec![Vec::new(); rays.len()];
@@ -283,7 +283,7 @@ pub fn likely<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Vec<u32>
     met
 }
 
-/// Mark the rays with a point of a facet strictly between start and reach.
+/// Returns for each ray whether a facet has a point strictly between its start and its reach.
 pub fn blocked<const D: usize>(
     scene: &Scene<D>,
     rays: &[Ray<D>],
@@ -312,7 +312,7 @@ pub fn blocked<const D: usize>(
     blocked
 }
 
-/// The meeting with a facet, if there is one.
+/// Returns the exact meeting of a ray with a facet; `None` if there is none.
 fn exact<const D: usize>(ray: &Ray<D>, facet: u32, corners: &Facet<D>) -> Option<Found<D>> {
     let meeting = meet(ray, corners)?;
     let corners = *corners;
@@ -327,11 +327,11 @@ fn queries<'a, const D: usize>(scene: &'a Scene<D>, rays: &'a [Ray<D>]) -> Vec<Q
     rays.iter().map(|ray| Query::new(scene, ray)).collect()
 }
 
-/// A depth from a ray's parameter, which carries at most four roundings.
+/// Converts a ray's parameter, which carries at most four roundings, to a depth.
 fn depth_of<const D: usize>(ray: &Ray<D>, parameter: f64) -> Depth {
     let lead = ray.direction()[ray.near.main].unsigned_abs() as f64;
     let z = parameter * lead;
-    // Parameters too large for doubles are no limit; too small ones are below every step.
+    // A depth too large for a double is no limit; the error of one too small is below every step.
     let error = z.abs() * 16.0 * ROUNDING + f64::MIN_POSITIVE * lead;
     if z.is_finite() {
         Depth { z, error }

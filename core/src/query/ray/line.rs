@@ -1,13 +1,13 @@
-//! Rays: a lattice point and an integer direction, with what the double filter needs of them.
+//! Rays: a lattice point and an integer direction, with the doubles that the filter needs.
 
 use super::bounds::DIRECTION_BITS;
 use crate::arith::mantissa_and_exponent;
 use crate::error::{Error, ErrorKind, Result};
 
-/// A ray from a lattice point, exact, in `D` dimensions.
+/// An exact ray from a lattice point, in `D` dimensions.
 ///
-/// The direction is the given one times 2^`exponent`, in integers: scale-free and exact, except
-/// that components more than 2^60 times smaller than the largest are rounded to 2^-113 of it.
+/// The direction is the given one times 2^`exponent`, in integers. It is exact, except that components more
+/// than 2^60 times smaller than the largest are rounded to 2^-113 of it.
 #[derive(Clone, Debug)]
 pub struct Ray<const D: usize> {
     origin: [i64; D],
@@ -16,20 +16,20 @@ pub struct Ray<const D: usize> {
     pub(in crate::query) near: Near<D>,
 }
 
-/// The ray in doubles: origin and direction carry one rounding each at most, as `filter` supposes.
+/// A ray in doubles: origin and direction carry one rounding each at most, as `filter` supposes.
 #[derive(Clone, Debug)]
 pub(in crate::query) struct Near<const D: usize> {
     pub origin: [f64; D],
     /// The axis of the largest component of the direction.
     pub main: usize,
-    /// The sign of that component.
+    /// The sign of the largest component of the direction.
     pub heading: f64,
-    /// Each component over the largest one.
+    /// Each component of the direction divided by the largest one.
     pub shear: [f64; D],
 }
 
 impl<const D: usize> Ray<D> {
-    /// The ray from a lattice point along a direction in doubles.
+    /// Makes the ray from a lattice point along a direction in doubles.
     ///
     /// # Errors
     /// `NonFinite` for a direction that is not finite, `BadNormal` for one of length zero.
@@ -40,7 +40,7 @@ impl<const D: usize> Ray<D> {
             return Err(Error::new(ErrorKind::NonFinite, text));
         }
         if let Some((whole, exponent)) = exactly(direction) {
-            // Doubles give the sizes and quotients of the integers, without converting wide ones.
+            // Doubles give the magnitudes and quotients of the integers, without converting wide ones.
             let main = first_largest(direction, f64::abs);
             let near = Near::along(&origin, direction, main);
             return Ok(Self {
@@ -54,7 +54,7 @@ impl<const D: usize> Ray<D> {
         Ok(Self::of(origin, direction, exponent))
     }
 
-    /// The ray from one lattice point to another, which it reaches at parameter 1.
+    /// Makes the ray from one lattice point to another, which it reaches at parameter 1.
     ///
     /// # Errors
     /// `BadNormal` if the two points are the same.
@@ -82,7 +82,7 @@ impl<const D: usize> Ray<D> {
         &self.origin
     }
 
-    /// The direction, not zero, components below 2^113.
+    /// The direction, which is not zero; its components are below 2^113 in magnitude.
     pub fn direction(&self) -> &[i128; D] {
         &self.direction
     }
@@ -100,7 +100,7 @@ impl<const D: usize> Near<D> {
         let (mut near, mut shear) = ([0.0; D], [0.0; D]);
         for k in 0..D {
             near[k] = origin[k] as f64;
-            // Zeros become positive, as from integers.
+            // Negative zeros become positive, as they do in integers.
             shear[k] = (direction[k] + 0.0) / lead;
         }
         Self {
@@ -112,7 +112,7 @@ impl<const D: usize> Near<D> {
     }
 }
 
-/// The first axis of the largest component, so that equal rays take equal ways.
+/// Returns the first axis with the largest component, so that equal rays always get the same axis.
 #[inline]
 fn first_largest<C: Copy, S: PartialOrd, const D: usize>(
     direction: &[C; D],
@@ -132,8 +132,8 @@ fn zero_direction() -> Error {
     Error::new(ErrorKind::BadNormal, text)
 }
 
-/// The components scaled by a power of two to integers without a common factor of two, and its
-/// exponent; none for zero, or if they need more than `DIRECTION_BITS`.
+/// Scales components by a power of two to integers without a common factor of two; returns them and the
+/// exponent, `None` for zero, or if they need more than `DIRECTION_BITS`.
 #[inline]
 fn exactly<const D: usize>(direction: &[f64; D]) -> Option<([i128; D], i32)> {
     let (mut low, mut high) = (i32::MAX, i32::MIN);
@@ -168,7 +168,8 @@ fn scaled(m: i64, shift: i32) -> i128 {
     }
 }
 
-/// The integers nearest to the components times a common power of two, and its exponent.
+/// Rounds components times a common power of two to integers; returns them and the exponent, `None` for
+/// zero.
 fn rounded<const D: usize>(direction: &[f64; D]) -> Option<([i128; D], i32)> {
     let parts = direction.map(mantissa_and_exponent);
     let top = |(m, e): &(i64, i32)| (*m != 0).then(|| e + bits(*m));
@@ -183,7 +184,7 @@ fn bits(m: i64) -> i32 {
     64 - m.unsigned_abs().leading_zeros() as i32
 }
 
-/// The integer nearest to `m`·2^`shift`, halves upwards.
+/// The integer nearest to `m`·2^`shift`; halves are rounded up.
 fn shifted(m: i64, shift: i32) -> i128 {
     let wide = i128::from(m);
     match shift {

@@ -1,9 +1,9 @@
 //! Exact ray casting in one, two and three dimensions.
 //!
-//! A scene holds facets with lattice corners: points on the line, segments in the plane, triangles
-//! in space. A ray starts at a lattice point and has an integer direction. Whether and where it
-//! meets a facet is decided exactly; doubles replace integers only where they are certain. So the
-//! hierarchy over the facets affects the time of an answer, never the answer.
+//! A scene has facets with lattice corners: points on the line, segments in the plane, triangles in space. A
+//! ray starts at a lattice point and has an integer direction. Whether and where it meets a facet is decided
+//! exactly; doubles replace integers only where they are certain. So the hierarchy over the facets affects
+//! the time of an answer, never the answer.
 //!
 //! Layers, from the bottom: `bounds` < `line` < `facet` | `block` < `filter` | `cell` < `divide` <
 //! `treelet` < `closed` < `scene` < `bundle` | `order` | `view` < `walk` < `first` < `crossings` <

@@ -1,7 +1,7 @@
-//! The meeting of a ray and a triangle in narrow integers, and its rounding.
+//! Computes the meeting of a ray and a triangle in 128-bit integers, and rounds it.
 //!
-//! The same numbers as in `facet`, exact where they fit. Quotients come from leading bits, which
-//! mostly decide the rounding; otherwise, and for wider numbers, the integers of `facet` answer.
+//! The numbers are those of `facet`, exact if they fit. Quotients come from leading bits, which mostly
+//! decide the rounding; otherwise, and for wider numbers, the integers of `facet` are used.
 //!
 //! # Widths
 //! Let corners relative to the origin be below 2^p, p ≤ 41, and the direction below 2^q. Components
@@ -15,26 +15,26 @@ use super::line::Ray;
 use crate::arith::leading::{Leading, Split, SPLIT_BITS};
 use crate::mesh::grid::Pitch;
 
-/// The largest p of the derivation above.
+/// The largest p in the derivation of widths: the bits of a corner relative to the origin.
 const CORNER_BITS: u32 = 41;
 
-/// The largest 2p + q.
+/// The largest 2p + q in the derivation of widths: twice the bits of a corner plus those of the direction.
 const ALL_BITS: u32 = 161;
 
-/// The largest power of ten in a limb.
+/// The largest exponent of a power of ten that fits into a 64-bit limb.
 const LARGEST_POWER: u64 = 19;
 
-/// Exact weights and height of a ray over a triangle that it meets across.
+/// The exact weights and the height of a ray that crosses a triangle's plane inside the triangle.
 pub struct Narrow<const D: usize> {
     weights: [Split; D],
-    /// Their sum, positive.
+    /// The sum of the weights, positive.
     sum: Leading,
     height: i128,
 }
 
 impl<const D: usize> Narrow<D> {
-    /// The meeting; none if numbers are too wide, or the ray runs along the facet's plane or does not
-    /// meet it.
+    /// Computes the meeting; `None` if numbers are too wide, if the ray runs along the facet's plane, or if
+    /// it does not meet the facet.
     #[inline]
     pub fn of(ray: &Ray<D>, facet: &Facet<D>) -> Option<Self> {
         let v = relative(ray, facet);
@@ -69,7 +69,8 @@ impl<const D: usize> Narrow<D> {
         })
     }
 
-    /// The barycentric weights, rounded correctly.
+    /// Returns the barycentric weights, correctly rounded; `None` if their leading bits do not decide the
+    /// rounding.
     #[inline]
     pub fn weights(&self) -> Option<[f64; D]> {
         let mut rounded = [0.0; D];
@@ -81,13 +82,14 @@ impl<const D: usize> Narrow<D> {
         Some(rounded)
     }
 
-    /// The number of weights that are zero.
+    /// Returns how many weights are zero.
     #[inline]
     pub fn zeros(&self) -> usize {
         self.weights.iter().filter(|w| w.is_zero()).count()
     }
 
-    /// The parameter along the ray in model units, rounded correctly.
+    /// Returns the parameter along the ray in model units, correctly rounded; `None` if leading bits do not
+    /// decide.
     #[inline]
     pub fn parameter(&self, pitch: Pitch) -> Option<f64> {
         if self.height == 0 {
@@ -107,7 +109,7 @@ impl<const D: usize> Narrow<D> {
     }
 }
 
-/// Return whether all numbers fit the widths above.
+/// Returns true if all numbers fit into 128 bits, by the derivation at the head of this file.
 #[inline]
 fn fits<const D: usize>(v: &Corners<D>, ray: &Ray<D>) -> bool {
     let all = v.iter().flatten().fold(0, |all, c| all | c.unsigned_abs());

@@ -1,23 +1,23 @@
-//! An order for casting rays: those that start and go alike follow each other.
+//! Sorts rays for casting, so that rays with similar starts and directions follow each other.
 //!
-//! Unsorted rays each read memory of their own; sorted rays share it, and often form bundles. The
-//! order never shows: answers come in the order of the input.
+//! Unsorted rays each read different memory; sorted rays share it, and often form bundles. The order does
+//! not affect results: answers come in the order of the input.
 
 use super::cell::Frame;
 
-/// Bits of the place of entry on each axis.
+/// The bits of the point of entry on each axis.
 const BITS_PER_AXIS: u32 = 7;
 
 /// The smallest batch that is sorted: the nodes that fewer rays visit stay in the cache.
 const SORT_FROM: usize = 256;
 
-/// A batch stays unsorted if at least one in this many neighbouring pairs go alike.
+/// A batch stays unsorted if at least one in this many neighbouring pairs of rays is similar.
 const UNSORTED_IF_ONE_IN: usize = 2;
 
-/// One in this many pairs is sampled.
+/// The similarity of one in this many neighbouring pairs is sampled.
 const SAMPLED_IF_ONE_IN: usize = 16;
 
-/// The numbers of rays in the order to cast them; `None` for the order of the input.
+/// Returns the numbers of rays in the order in which to cast them; `None` for the order of the input.
 ///
 /// `ray` gives the origin and the direction, in lattice steps up to rounding.
 pub fn sorted<const D: usize>(
@@ -33,7 +33,7 @@ pub fn sorted<const D: usize>(
         let (origin, direction) = ray(i as usize);
         key(frame, &origin, &direction)
     };
-    // Alike keys share all but the last bit on each axis.
+    // Keys of similar rays agree in all but the last bit on each axis.
     let alike = |i: &u32| (key(*i) ^ key(*i + 1)) >> D == 0;
     let pairs = (0..count - 1).step_by(SAMPLED_IF_ONE_IN);
     if pairs.clone().filter(alike).count() * UNSORTED_IF_ONE_IN >= pairs.len() {
@@ -44,8 +44,8 @@ pub fn sorted<const D: usize>(
     Some(keys.into_iter().map(|(_, i)| i).collect())
 }
 
-/// The sort key: the octant of a direction, its main axis, and the place where the ray enters that
-/// axis' stretch, the bits of all axes interleaved.
+/// Returns the sort key: the octant of a direction, its main axis, and the point where the ray enters the
+/// scene's interval on that axis, with the bits of all axes interleaved.
 fn key<const D: usize>(frame: &Frame<D>, origin: &[f64; D], direction: &[f64; D]) -> u32 {
     let size = |k: &usize| direction[*k].abs();
     let main = (0..D)
@@ -60,7 +60,7 @@ fn key<const D: usize>(frame: &Frame<D>, origin: &[f64; D], direction: &[f64; D]
         let octant = u32::from(direction[k] < 0.0);
         key |= (octant << 1 | u32::from(k == main)) << (D as u32 * BITS_PER_AXIS + 2 * k as u32);
         let entry = at[k] + direction[k] / lead * skipped;
-        // Numbers beyond the range, and NaN, go to its ends.
+        // Coordinates outside the range, and NaN, go to its ends.
         cells[k] = ((entry + 1.0) * f64::from(1 << (BITS_PER_AXIS - 1)))
             .clamp(0.0, f64::from((1 << BITS_PER_AXIS) - 1)) as u32;
     }

@@ -1,4 +1,4 @@
-//! Parameters along a ray as exact fractions.
+//! Exact fractions, for parameters along a ray.
 
 use std::cmp::Ordering;
 
@@ -25,7 +25,7 @@ impl Ratio {
         denominator: Int::ONE,
     };
 
-    /// The fraction; the denominator must not be zero.
+    /// Makes a fraction; the denominator must not be zero, but may be negative.
     pub fn new(numerator: Int<NUMERATOR_LIMBS>, denominator: Int<DENOMINATOR_LIMBS>) -> Self {
         if denominator.is_negative() {
             let (numerator, denominator) = (-numerator, -denominator);

@@ -1,4 +1,4 @@
-//! The facets that rays are cast at, snapped to a lattice, with their tree.
+//! The facets that rays are cast at, snapped to a lattice, with a tree of boxes.
 
 use std::sync::OnceLock;
 
@@ -11,27 +11,27 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::interrupt::poll;
 use crate::mesh::grid::Pitch;
 
-/// Facets on a lattice, and a hierarchy of boxes over them that grows where rays go.
+/// Facets on a lattice, and a hierarchy of boxes over them, which is refined where rays are cast.
 ///
-/// Facets without extent (corners on one line, or equal) are left out: they are never hit.
+/// Facets without extent (corners on one line, or equal) are left out: no ray hits them.
 #[derive(Debug)]
 pub struct Scene<const D: usize> {
     pitch: Pitch,
-    /// In lattice steps, which doubles hold exactly.
+    /// The corners in lattice steps, which doubles represent exactly.
     facets: Vec<Facet<D>>,
-    /// The place of each facet in the input, ascending; empty if it is the index.
+    /// The index of each facet in the input, ascending; empty if all facets are in the scene.
     numbers: Vec<u32>,
     cell: Cell<D>,
     frame: Frame<D>,
-    /// The mean size of facets, in the frame.
+    /// The mean extent of facets, in the frame.
     mean_facet_size: f64,
     root: Deferred<D>,
-    /// Whether the facets are closed, once asked.
+    /// Whether the facets are closed; empty until a caller needs to know.
     closed: OnceLock<Result<()>>,
 }
 
 impl<const D: usize> Scene<D> {
-    /// Snaps facets, given in model units, to a lattice: the given one, or one that suits them.
+    /// Snaps facets, given in model units, to a lattice: the one with `pitch`, or one that suits them.
     ///
     /// # Errors
     /// `NonFinite` and `TooLarge` with the facet's number.
@@ -43,8 +43,8 @@ impl<const D: usize> Scene<D> {
         Self::over(facets, pitch, Deferred::over)
     }
 
-    /// The scene after its facets have moved, on the same lattice. It keeps the tree and refits its
-    /// boxes, unless the facets' number or the set of those with an extent has changed.
+    /// Makes the scene after its facets have moved, on the same lattice. Keeps the tree and refits its
+    /// boxes, unless the number of facets or the set of those with an extent has changed.
     ///
     /// # Errors
     /// As for [`Self::new`].
@@ -100,7 +100,7 @@ impl<const D: usize> Scene<D> {
         })
     }
 
-    /// The lattice's step.
+    /// The exponent of the lattice step.
     pub fn pitch(&self) -> Pitch {
         self.pitch
     }
@@ -110,7 +110,7 @@ impl<const D: usize> Scene<D> {
         &self.facets
     }
 
-    /// The place in the input of a facet.
+    /// The index in the input of a facet of the scene.
     pub fn number(&self, facet: u32) -> u32 {
         self.numbers.get(facet as usize).copied().unwrap_or(facet)
     }
@@ -120,36 +120,36 @@ impl<const D: usize> Scene<D> {
         &self.cell
     }
 
-    /// The frame of the boxes.
+    /// The frame in which the boxes of the tree are given.
     pub fn frame(&self) -> &Frame<D> {
         &self.frame
     }
 
-    /// Return the mean size of facets, in the frame.
+    /// Returns the mean extent of facets, in the frame.
     pub fn mean_facet_size(&self) -> f64 {
         self.mean_facet_size
     }
 
-    /// The tree's root.
+    /// The root of the tree of boxes.
     pub fn root(&self) -> &Deferred<D> {
         &self.root
     }
 
-    /// Refuses facets that are not closed; decided once.
+    /// Returns an error if the facets are not closed; decides it once.
     ///
     /// # Errors
-    /// `NotClosed` with the places in the input of facets at the border.
+    /// `NotClosed` with the indices in the input of facets at the border.
     pub fn require_closed(&self) -> Result<()> {
         if let Some(known) = self.closed.get() {
             return known.clone();
         }
-        // Not within `get_or_init`: a pool thread that waits there could steal a task that asks
-        // again.
+        // Not within `get_or_init`: a pool thread that waits there could steal a task that calls this
+        // function, too.
         let found = require_closed(&self.facets, |facet| self.number(facet));
         self.closed.get_or_init(|| found).clone()
     }
 
-    /// Divides all deferred leaves now, on all threads of the pool.
+    /// Divides all leaves of the tree that were not divided yet, on all threads of the pool.
     pub fn complete(&self) {
         self.root.complete(&self.facets);
     }
@@ -163,12 +163,12 @@ impl<const D: usize> Scene<D> {
         snap(self.pitch, point)
     }
 
-    /// A ray's parameter in model units per length of the given direction: correctly rounded.
+    /// Converts a ray's parameter to model units per length of the given direction, correctly rounded.
     pub fn parameter(&self, at: &Ratio, exponent: i32) -> f64 {
         parameter(self.pitch, at, exponent)
     }
 
-    /// The point with barycentric coordinates among corners in lattice steps, in model units.
+    /// Returns the point, in model units, with given barycentric coordinates among corners in lattice steps.
     pub fn position(&self, corners: &Facet<D>, weights: &[f64; D]) -> [f64; D] {
         let mut point = [0.0; D];
         for (corner, weight) in corners.iter().zip(weights) {
@@ -180,24 +180,25 @@ impl<const D: usize> Scene<D> {
     }
 }
 
-/// A ray's parameter in model units per length of the given direction: correctly rounded.
+/// Converts a ray's parameter to model units per length of the given direction, correctly rounded.
 pub fn parameter(pitch: Pitch, at: &Ratio, exponent: i32) -> f64 {
     in_lengths(at.scaled_to_f64(pitch.exponent()), exponent)
 }
 
-/// A parameter along a direction that was multiplied by 2^`exponent`, per length of the given one.
+/// Converts a parameter along a direction that was multiplied by 2^`exponent` to one along the given
+/// direction.
 pub fn in_lengths(parameter: f64, exponent: i32) -> f64 {
     // Two steps, because the scale alone can leave the range of doubles.
     let half = exponent / 2;
     parameter * power_of_two(half) * power_of_two(exponent - half)
 }
 
-/// 2^`exponent`, of a normal number.
+/// 2^`exponent`, which must be a normal double.
 fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((exponent + 1023) as u64) << 52)
 }
 
-/// The lattice that suits the facets' size, as for a mesh.
+/// Chooses a lattice for facets by their largest coordinate and extent, as import does for meshes.
 fn suited<const D: usize>(facets: &[Facet<D>]) -> Result<Pitch> {
     let (mut largest, mut extent) = (0.0f64, 0.0f64);
     for k in 0..D {
@@ -218,7 +219,7 @@ fn suited<const D: usize>(facets: &[Facet<D>]) -> Result<Pitch> {
     Pitch::suited(largest, extent)
 }
 
-/// The nearest lattice point.
+/// Returns the lattice point nearest to a point in model units.
 ///
 /// # Errors
 /// `NonFinite`, and `TooLarge` beyond 2^53 steps.
@@ -244,7 +245,7 @@ fn at_facet(error: &Error, number: usize) -> Error {
     Error::at(error.kind(), vec![number as u64], text)
 }
 
-/// The mean of the largest extents of facets.
+/// The mean, over all facets, of the largest extent along an axis.
 fn mean_facet_size<const D: usize>(facets: &[Facet<D>]) -> f64 {
     let extent = |facet: &Facet<D>| {
         let cell = Cell::around([facet]);
@@ -255,7 +256,7 @@ fn mean_facet_size<const D: usize>(facets: &[Facet<D>]) -> f64 {
     facets.iter().map(extent).sum::<f64>() / facets.len().max(1) as f64
 }
 
-/// Return whether the corners do not lie on one flat of two dimensions less.
+/// Returns true if the corners span the dimension of the facet: not all on a line in 3D, not equal in 2D.
 fn has_extent<const D: usize>(corners: &[[i64; D]; D]) -> bool {
     let edge = |i: usize| -> [i128; D] {
         std::array::from_fn(|k| i128::from(corners[i][k]) - i128::from(corners[0][k]))

@@ -1,4 +1,4 @@
-//! The wide hierarchy of boxes over blocks of facets: small trees that are made when first visited.
+//! The wide hierarchy of boxes over blocks of facets: small trees, each made when a ray first visits it.
 //!
 //! The shape of a tree depends on its list only, never on the order of visits, and answers never
 //! depend on the shape.
@@ -21,37 +21,37 @@ use crate::interrupt::{poll, spend, Task};
 use crate::mesh::handle::NodeId;
 use crate::mesh::tasks::in_pool;
 
-/// Children of a node.
+/// The number of children of a node.
 pub const CHILDREN_PER_NODE: usize = 8;
 
-/// A list of at most this many facets is one treelet: some 100 µs of work, within 100 kB.
+/// A list of at most this many facets becomes one treelet: some 100 µs of work, within 100 kB.
 const MAX_FACETS_PER_TREELET: usize = 1024;
 
-/// Lists of at least this length are split by a sample.
+/// A list of at least this many facets is divided by cuts that a sample decides.
 const SAMPLED_FROM: usize = 16 * MAX_FACETS_PER_TREELET;
 
-/// Longer lists are deferred where only the root is made.
+/// In a treelet of which only the root is made, children with more facets than this are deferred.
 const MAX_FACETS_INLINE: usize = LANES * CHILDREN_PER_NODE;
 
-/// The child of a node in a lane.
+/// A child of a node, in one of its lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Child {
-    /// Nothing.
+    /// No child.
     None,
-    /// A node of the same treelet.
+    /// A node of the same treelet, by its number.
     Node(NodeId),
-    /// Facets.
+    /// A block of facets, by its number in the treelet.
     Block(u32),
-    /// A treelet of its own.
+    /// A treelet of its own, by its number among the deferred ones.
     Deferred(u32),
 }
 
-/// Boxes side by side, with what is in them.
+/// A node: the boxes of its children side by side, and the children.
 #[derive(Clone, Debug)]
 pub struct Wide<const D: usize> {
-    /// Least coordinates, then largest ones: by axis and lane.
+    /// The least coordinates of all boxes, then the largest: by axis and lane.
     pub bounds: [[[f32; CHILDREN_PER_NODE]; D]; 2],
-    /// The child in each box; all behind the first `None` are `None`.
+    /// The child in each box; after the first `None` all are `None`.
     pub children: [Child; CHILDREN_PER_NODE],
 }
 
@@ -71,7 +71,7 @@ impl<const D: usize> Wide<D> {
         }
     }
 
-    /// The box in a lane.
+    /// The box of the child in a lane.
     pub fn span(&self, lane: usize) -> Span {
         let mut span = Span::NOTHING;
         for k in 0..D {
@@ -87,14 +87,14 @@ impl<const D: usize> Wide<D> {
     }
 }
 
-/// A small tree: the first node is its root, and children come after their parents.
+/// A small tree of boxes: the first node is its root, and children follow their parents.
 #[derive(Debug, Default)]
 pub struct Treelet<const D: usize> {
-    /// The nodes; none for an empty list.
+    /// The nodes; empty for an empty list of facets.
     pub nodes: Vec<Wide<D>>,
-    /// The facets.
+    /// The blocks of facets, which are the leaves.
     pub blocks: Vec<Block<D>>,
-    /// The treelets below.
+    /// The treelets below this one, some of them not made yet.
     pub deferred: Vec<Deferred<D>>,
 }
 
@@ -106,7 +106,7 @@ pub struct Deferred<const D: usize> {
 }
 
 impl<const D: usize> Deferred<D> {
-    /// The tree over these facets.
+    /// Makes the tree over facets, without dividing it yet.
     pub fn over(facets: &[Facet<D>], frame: &Frame<D>) -> Self {
         let item = |(facet, corners): (u32, _)| Item::new(facet, frame.span(corners));
         Self::pending((0..).zip(facets).map(item).collect())
@@ -119,7 +119,7 @@ impl<const D: usize> Deferred<D> {
         }
     }
 
-    /// The treelet, made on first use.
+    /// Returns the treelet, and makes it on the first call.
     #[inline]
     pub fn treelet(&self, facets: &[Facet<D>]) -> &Treelet<D> {
         match self.treelet.get() {
@@ -128,14 +128,14 @@ impl<const D: usize> Deferred<D> {
         }
     }
 
-    /// The treelet if it has been made.
+    /// Returns the treelet if it was already made.
     pub fn known(&self) -> Option<&Treelet<D>> {
         self.treelet.get()
     }
 
     #[cold]
     fn made(&self, facets: &[Facet<D>]) -> &Treelet<D> {
-        // Not in the closure: cancelling there would lose what is taken out of the slot.
+        // Not in the closure: a call that stops there would lose the list that is taken out of the slot.
         poll();
         self.treelet.get_or_init(|| {
             let mut slot = self.pending.lock().unwrap_or_else(PoisonError::into_inner);
@@ -144,7 +144,7 @@ impl<const D: usize> Deferred<D> {
         })
     }
 
-    /// Makes all treelets below, each level in parallel.
+    /// Makes all treelets below, level by level, each level in parallel.
     pub fn complete(&self, facets: &[Facet<D>]) {
         let mut level = vec![self];
         while !level.is_empty() {
@@ -162,7 +162,7 @@ impl<const D: usize> Deferred<D> {
         }
     }
 
-    /// The same tree over facets that have moved.
+    /// Returns the same tree over facets that have moved, with boxes refitted.
     #[must_use]
     pub fn refitted(&self, facets: &[Facet<D>], frame: &Frame<D>) -> Self {
         let mut order = vec![self];
@@ -203,8 +203,8 @@ impl<const D: usize> Deferred<D> {
 }
 
 impl<const D: usize> Treelet<D> {
-    /// The root over a long list, with all below it deferred; `None` for a list that is short or
-    /// has no cut.
+    /// Makes the root over a long list, with all below it deferred; `None` if the list is short or has no
+    /// cut.
     fn begun(facets: &[Facet<D>], items: &[Item]) -> Option<Self> {
         if items.len() < SAMPLED_FROM {
             return None;
@@ -227,7 +227,8 @@ impl<const D: usize> Treelet<D> {
         Some(treelet)
     }
 
-    /// This tree with boxes refitted to moved facets; `below` has the treelets below.
+    /// Returns this treelet with its boxes refitted to moved facets; `below` has the refitted treelets below
+    /// it.
     fn fitted(
         &self,
         facets: &[Facet<D>],
@@ -270,7 +271,7 @@ impl<const D: usize> Treelet<D> {
     }
 }
 
-/// Return how many facets a child takes at most, so that nodes below can be full.
+/// Returns the largest number of facets that a child takes so that the nodes below can be full.
 fn room(facets: usize) -> usize {
     let mut room = LANES;
     while room * CHILDREN_PER_NODE < facets {
@@ -279,16 +280,16 @@ fn room(facets: usize) -> usize {
     room
 }
 
-/// A treelet in the making.
+/// A treelet that is being made.
 struct Making<'a, const D: usize> {
     facets: &'a [Facet<D>],
     items: Vec<Item>,
     treelet: Treelet<D>,
-    /// True if only the root is made.
+    /// True if only the root is made, and long children are deferred.
     begun: bool,
 }
 
-/// A stretch of the items that becomes one child, and how many cuts are above it.
+/// A range of the items that becomes one child, its box, and the number of cuts above it.
 #[derive(Clone, Copy)]
 struct Part {
     from: usize,
@@ -345,7 +346,8 @@ impl<'a, const D: usize> Making<'a, D> {
         self.treelet
     }
 
-    /// Splits a list, the part with the largest box first, until the nodes below can be full.
+    /// Divides a list into the children of a node, the part with the largest box first, until no part is too
+    /// long.
     fn parts(&mut self, whole: Part) -> Vec<Part> {
         let room = if self.begun { LANES } else { room(whole.len()) };
         let mut parts = vec![whole];

@@ -1,4 +1,4 @@
-//! The nodes of a scene's tree, for inspection.
+//! Lists the nodes of a ray scene's tree, for inspection.
 
 use super::cell::Cell;
 use super::scene::Scene;
@@ -6,20 +6,20 @@ use super::treelet::{Child, Treelet};
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 
-/// A node as it is shown.
+/// A node of a ray scene's tree, for inspection.
 #[derive(Clone, Debug)]
 pub struct View<const D: usize> {
-    /// Its box, in lattice steps.
+    /// The box of the node, in lattice steps.
     pub cell: Cell<D>,
-    /// The node above, by its place in this list.
+    /// The index of the parent in the list of nodes; `None` for the root.
     pub parent: Option<NodeId>,
-    /// True if no ray has reached it yet.
+    /// True if the tree below this node was not made yet, because no ray has visited it.
     pub deferred: bool,
-    /// The facets of a leaf.
+    /// The indices of the facets of a leaf; empty for an inner node.
     pub facets: Vec<u32>,
 }
 
-/// The nodes made so far, in preorder.
+/// Returns the nodes of a scene's tree that were made already, in preorder.
 pub fn views<const D: usize>(scene: &Scene<D>) -> Vec<View<D>> {
     let mut found: Vec<View<D>> = Vec::new();
     let known = scene.root().known();
@@ -58,7 +58,7 @@ pub fn views<const D: usize>(scene: &Scene<D>) -> Vec<View<D>> {
     found
 }
 
-/// The root of a treelet as a child.
+/// The root of a treelet, as the child of a node; `None` if the treelet is empty.
 fn root<const D: usize>(treelet: &Treelet<D>) -> Child {
     if treelet.nodes.is_empty() {
         Child::None

@@ -1,7 +1,7 @@
 //! Visits blocks along rays, nearest first.
 //!
-//! A bundle descends as one beam; its rays are tested one by one only at blocks. The order of
-//! blocks affects how early a walk ends, never what it finds.
+//! A bundle of rays descends as one beam; its rays are tested one by one only at blocks. The order of blocks
+//! affects how early a walk ends, but not the hits.
 
 use smallvec::SmallVec;
 
@@ -14,11 +14,11 @@ use super::scene::Scene;
 use super::treelet::{Child, Treelet, CHILDREN_PER_NODE};
 use crate::mesh::handle::NodeId;
 
-/// Relative error of the depth of a plane: a difference, a quotient of two rounded numbers and a
-/// product, rounded.
+/// The relative error of the depth of a plane: a difference, a quotient of two rounded numbers and a
+/// product.
 const SLACK: f64 = 8.0 * ROUNDING;
 
-/// A lane of a node, and the distance at which the beam enters it.
+/// A child of a node that is still to be visited, and the distance at which the beam enters its box.
 #[derive(Clone, Copy)]
 struct Open<'a, const D: usize> {
     from: f32,
@@ -27,18 +27,18 @@ struct Open<'a, const D: usize> {
     treelet: &'a Treelet<D>,
 }
 
-/// Rays that go together.
+/// The number of neighbouring rays that may descend together.
 const RAYS_PER_BUNDLE: usize = 16;
 
-/// How far such rays may stray from each other, in mean sizes of facets.
+/// The largest distance between rays that descend together, in mean extents of facets.
 const MAX_BUNDLE_WIDTH: f64 = 8.0;
 
 type Stack<'a, const D: usize> = SmallVec<[Open<'a, D>; 64]>;
 
-/// Visits the blocks that rays meet, until all lie beyond their limits.
+/// Visits the blocks that rays meet, each ray's nearest first, until the rest lie farther than its limit.
 ///
-/// `depth` gives a ray's limit: the depth beyond which nothing matters, in lattice steps along its
-/// main axis. `visit` gets the number of a ray and a block, and returns the new limit.
+/// `depth` gives the limit of a ray, in lattice steps along its main axis. `visit` gets the number of a ray
+/// and a block, and returns the new limit.
 pub fn walk<const D: usize>(
     scene: &Scene<D>,
     rays: &[Ray<D>],
@@ -65,7 +65,7 @@ pub fn walk<const D: usize>(
     }
 }
 
-/// One bundle's way.
+/// Visits the blocks that one bundle of rays meets.
 fn descend<const D: usize, const N: usize>(
     scene: &Scene<D>,
     bundle: &mut Bundle<D, N>,
@@ -118,7 +118,7 @@ fn descend<const D: usize, const N: usize>(
     }
 }
 
-/// Pushes what the beam meets in a node, the nearest last.
+/// Pushes the children of a node that the beam enters, the nearest last.
 #[inline]
 fn enter<'a, const D: usize, const N: usize>(
     bundle: &Bundle<D, N>,
@@ -152,7 +152,7 @@ fn enter<'a, const D: usize, const N: usize>(
     }
 }
 
-/// The depths between which the ray may be in a box.
+/// Returns the depths between which a ray may be in a box; `None` if it misses the box.
 pub fn clip<const D: usize>(ray: &Ray<D>, cell: &Cell<D>) -> Option<(f64, f64)> {
     let (mut from, mut to) = (0.0f64, f64::INFINITY);
     for k in 0..D {

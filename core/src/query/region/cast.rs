@@ -1,4 +1,4 @@
-//! The stretches of a line inside a region.
+//! Finds the intervals of a line inside a region of the plane.
 
 use crate::error::Result;
 use crate::geometry::side::{Half, Split};
@@ -7,10 +7,10 @@ use crate::geometry::spaces::space::Space;
 use crate::interrupt::poll;
 use crate::tree::partition::{classify, Cut, Label, Location, PartitionTree};
 
-/// The maximal stretches of a line in the region's interior, in the order of its direction (−b, a).
+/// Returns the maximal segments of a line in a region's interior, in the order of its direction (−b, a).
 ///
-/// A stretch along the boundary is not inside. A single point of the boundary separates two
-/// stretches. The ends of an unbounded one lie on the frame's border.
+/// A segment along the boundary is not inside. A single boundary point on the line separates two segments.
+/// The ends of an unbounded segment lie on the frame's border.
 ///
 /// # Errors
 /// `Internal` for a broken tree.
@@ -43,7 +43,7 @@ pub fn cast(tree: &PartitionTree<Dim2>, line: &Line2) -> Result<Vec<[Point2; 2]>
     Ok(connected(tree, &whole, found))
 }
 
-/// The parts of a piece in a cut with the set on both sides.
+/// Returns the parts of a segment in a cut that have the set on both sides.
 fn inside_of_both(cut: &Cut<Dim2>, piece: &Segment2) -> Result<Vec<Segment2>> {
     let mut found = Vec::new();
     for (part, minus) in cut.child(Half::Minus).beside(*piece)? {
@@ -56,7 +56,7 @@ fn inside_of_both(cut: &Cut<Dim2>, piece: &Segment2) -> Result<Vec<Segment2>> {
     Ok(found)
 }
 
-/// Pieces in order, joined where the point between them is inside too.
+/// Sorts segments along the line, and joins two if the point between them is inside, too.
 fn connected(
     tree: &PartitionTree<Dim2>,
     whole: &Segment2,

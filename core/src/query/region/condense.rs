@@ -1,10 +1,10 @@
-//! A set rebuilt from its boundary, with a tree whose size fits that boundary.
+//! Rebuilds a set on the line from its boundary, so that the size of its tree fits the boundary.
 
 use crate::error::Result;
 use crate::geometry::spaces::dim1::Dim1;
 use crate::tree::partition::{classify_corner, enclosed, walls, Facet, Label, PartitionTree, Plan};
 
-/// The same set on the line as a balanced tree.
+/// Returns the same set of the line with a balanced tree, made from the set's boundary.
 ///
 /// # Errors
 /// `Internal` for a broken tree.

@@ -1,4 +1,4 @@
-//! Hyperplanes of lattice points.
+//! Hyperplanes with integer coefficients, or through lattice points.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::geometry::spaces::dim1::{Direction, Point1};
 use crate::geometry::spaces::dim2::Line2;
 use crate::mesh::half_space::{bounding_plane, out_of_reach};
 
-/// The point normal·x = offset with its minus side where normal·x is smaller.
+/// Makes the point normal·x = offset of the line, with its minus side where normal·x is smaller.
 ///
 /// # Errors
 /// `BadNormal` if the normal is not ±1, `TooLarge` if the point is beyond the lattice.
@@ -31,7 +31,7 @@ pub fn point(normal: i128, offset: &Int<3>) -> Result<Point1> {
         .ok_or_else(out_of_reach)
 }
 
-/// The line normal·x = offset with its minus side where normal·x is smaller.
+/// Makes the line normal·x = offset of the plane, with its minus side where normal·x is smaller.
 ///
 /// # Errors
 /// `BadNormal` if the normal is zero, `TooLarge` if it is too wide or the line misses the lattice.
@@ -45,7 +45,7 @@ pub fn line(normal: [i128; 2], offset: &Int<3>) -> Result<Line2> {
     line().ok_or_else(out_of_reach)
 }
 
-/// The plane normal·x = offset with its minus side where normal·x is smaller.
+/// Makes the plane normal·x = offset, with its minus side where normal·x is smaller.
 ///
 /// # Errors
 /// `BadNormal` if the normal is zero, `TooLarge` if it is too wide or the plane misses the lattice.
@@ -53,7 +53,8 @@ pub fn plane(normal: [i128; 3], offset: &Int<3>) -> Result<Arc<Plane>> {
     bounding_plane(normal, offset).map(Arc::new)
 }
 
-/// The line through a lattice point in a direction (−b, a), which is rounded to 53 bits.
+/// Makes the line through a lattice point in a direction (−b, a), for a normal (a, b); the direction is
+/// rounded to 53 bits.
 ///
 /// # Errors
 /// `BadNormal`.

@@ -1,4 +1,4 @@
-//! Questions to sets of the line and the plane: outlines, measures, lines through them, sections.
+//! Queries of sets of the line and the plane: outlines, measures, lines through them, sections.
 //!
 //! # Example
 //! ```

@@ -1,4 +1,4 @@
-//! Exact length, area, volume, and the first moments of the plane.
+//! Exact lengths, areas and volumes of sets, and the first moments of sets of the plane.
 
 use num_bigint::BigInt;
 use num_integer::Integer;
@@ -23,7 +23,7 @@ fn unbounded() -> Error {
     Error::new(ErrorKind::Unbounded, text)
 }
 
-/// The exact length of a bounded set on the line, in model units.
+/// Returns the exact length of a bounded set on the line, in model units.
 ///
 /// # Errors
 /// `Unbounded`.
@@ -41,7 +41,7 @@ pub fn length(tree: &PartitionTree<Dim1>, pitch: Pitch) -> Result<Fraction> {
     Ok(in_powers(BigInt::from(sum), one, pitch.exponent(), 1))
 }
 
-/// The exact area of a bounded set of the plane, in square model units.
+/// Returns the exact area of a bounded set of the plane, in square model units.
 ///
 /// # Errors
 /// `Unbounded`.
@@ -56,11 +56,11 @@ pub fn area(boundary: &Boundary, pitch: Pitch) -> Result<Fraction> {
     ))
 }
 
-/// Two fractions that enclose the area, in square model units, within 2^-127 square steps for each
-/// edge that ends in a constructed corner.
+/// Returns a lower and an upper bound of the area, in square model units; they differ by at most 2^-127
+/// square steps for each edge that ends in a constructed corner.
 ///
 /// # Cost
-/// One short quotient per such edge; the exact sum multiplies all denominators.
+/// One short quotient for each edge with a constructed corner; the exact sum multiplies all denominators.
 ///
 /// # Errors
 /// `Unbounded`.
@@ -74,16 +74,16 @@ pub fn area_bounds(boundary: &Boundary, pitch: Pitch) -> Result<[Fraction; 2]> {
     Ok([low, high].map(|bound| in_powers(bound, units.clone(), pitch.exponent(), 2)))
 }
 
-/// Binary places of each quotient that bounds an area.
+/// The number of binary places of each quotient that bounds an area.
 const BINARY_PLACES: usize = 128;
 
-/// Twice an area: the sum over lattice edges, and the shares of edges with constructed corners.
+/// Twice an area: the sum over edges between lattice points, and a fraction for each other edge.
 struct Doubled {
     whole: BigInt,
     cut: Vec<Ratio>,
 }
 
-/// Sums of this many products of lattice coordinates fit 127 bits.
+/// The sum of this many products of lattice coordinates fits into 127 bits.
 const CHUNK: usize = 1 << 16;
 
 impl Doubled {
@@ -112,7 +112,7 @@ fn lattice_cross([a, b]: Lattice2, [c, d]: Lattice2) -> i128 {
     i128::from(a) * i128::from(d) - i128::from(b) * i128::from(c)
 }
 
-/// The exact first moments ∫x and ∫y of a bounded set of the plane, in cubic model units.
+/// Returns the exact first moments ∫x and ∫y of a bounded set of the plane, in cubic model units.
 ///
 /// # Errors
 /// `Unbounded`.
@@ -132,7 +132,7 @@ pub fn moments(boundary: &Boundary, pitch: Pitch) -> Result<[Fraction; 2]> {
     }))
 }
 
-/// The exact volume of a bounded set in space, in cubic model units.
+/// Returns the exact volume of a bounded set in space, in cubic model units.
 ///
 /// # Errors
 /// `Unbounded`.
@@ -151,14 +151,14 @@ fn coordinate(point: &Point2, axis: usize) -> Ratio {
     (big(&x[axis]), big(w))
 }
 
-/// The cross product of two points.
+/// The cross product of two points as a fraction.
 fn doubled(p: &Point2, q: &Point2) -> Ratio {
     let [(a, v), (d, w)] = [coordinate(p, 0), coordinate(q, 1)];
     let [(b, _), (c, _)] = [coordinate(p, 1), coordinate(q, 0)];
     (a * d - b * c, v * w)
 }
 
-/// Six times the volumes of the tetrahedra from the origin over a convex polygon's triangles.
+/// Six times the volumes of the tetrahedra between the origin and the triangles of a convex polygon.
 fn fan(polygon: &Polygon) -> Vec<Ratio> {
     let corners: Vec<&Vertex> = polygon.corners().iter().map(|c| &*c.at).collect();
     let pairs = corners.windows(2).skip(1);

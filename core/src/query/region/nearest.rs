@@ -1,4 +1,4 @@
-//! The nearest point of many segments, in doubles.
+//! Finds the nearest point on many segments of the plane, in doubles.
 
 use std::cmp::Ordering;
 
@@ -7,22 +7,23 @@ use crate::interrupt::poll;
 
 type Point = [f64; 2];
 
-/// Segments in a hierarchy of boxes.
+/// Segments of the plane in a hierarchy of boxes, for finding the nearest point.
 #[derive(Debug)]
 pub struct Nearest {
-    /// The segments along a space-filling curve, with their numbers.
+    /// The segments, sorted along a space-filling curve, each with its number in the input.
     segments: Vec<(usize, [Point; 2])>,
-    /// The boxes around every [`ITEMS_PER_BOX`] items of the level below, from the segments up.
+    /// The boxes of each level, each around [`ITEMS_PER_BOX`] items of the level below, from the segments
+    /// up.
     levels: Vec<Vec<Extent>>,
 }
 
-/// Items in one box.
+/// The number of items in one box.
 const ITEMS_PER_BOX: usize = 8;
 
-/// Steps of the curve along each axis.
+/// The number of steps of the space-filling curve along each axis.
 const CURVE_STEPS: f64 = 65_535.0;
 
-/// A box is skipped only if it is farther by more than the rounding of doubles.
+/// A box is skipped only if it is farther than the best point by more than the rounding of doubles.
 const SLACK: f64 = 1.0 - 8.0 * f64::EPSILON;
 
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +33,7 @@ struct Extent {
 }
 
 impl Nearest {
-    /// An index of segments.
+    /// Builds the hierarchy of boxes over segments.
     pub fn of(segments: Vec<[Point; 2]>) -> Self {
         let all = Extent::around(segments.iter().map(Extent::of));
         let mut segments: Vec<_> = segments.into_iter().enumerate().collect();
@@ -48,7 +49,7 @@ impl Nearest {
         Self { segments, levels }
     }
 
-    /// The nearest point on any segment; of several, the one on the first segment.
+    /// Returns the point of all segments nearest to `point`; of several, the one on the first segment.
     pub fn to(&self, point: Point) -> Option<Point> {
         let mut best = (f64::INFINITY, usize::MAX, None);
         let mut pending: Vec<(f64, usize, usize)> = vec![(0.0, self.levels.len(), 0)];
@@ -70,7 +71,7 @@ impl Nearest {
         best.2
     }
 
-    /// Compares the segments in a box of the lowest level.
+    /// Compares the segments in a box of the lowest level with the best point.
     fn look(&self, place: usize, point: Point, best: &mut (f64, usize, Option<Point>)) {
         for (number, segment) in self
             .segments
@@ -88,7 +89,7 @@ impl Nearest {
     }
 }
 
-/// The boxes around every few boxes.
+/// Returns a box around each group of [`ITEMS_PER_BOX`] boxes.
 fn grouped(boxes: &[Extent]) -> Vec<Extent> {
     boxes
         .chunks(ITEMS_PER_BOX)
@@ -116,7 +117,7 @@ impl Extent {
         })
     }
 
-    /// Return a segment's place along a space-filling curve through this box.
+    /// Returns the index of a segment's middle on a space-filling curve through this box.
     fn place(&self, [p, q]: &[Point; 2]) -> u64 {
         let step = |axis: usize| {
             let size = self.high[axis] - self.low[axis];
@@ -129,7 +130,7 @@ impl Extent {
         })
     }
 
-    /// The squared distance of a point.
+    /// The squared distance of a point from the box.
     fn distance(&self, point: Point) -> f64 {
         let gap = |i: usize| {
             (self.low[i] - point[i])
@@ -144,7 +145,7 @@ fn squared(p: Point, q: Point) -> f64 {
     (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1])
 }
 
-/// The point of a segment that is nearest to a point.
+/// The point of a segment that is nearest to `point`.
 fn foot(point: Point, [p, q]: &[Point; 2]) -> Point {
     let along = [q[0] - p[0], q[1] - p[1]];
     let length = squared(*p, *q);
@@ -158,7 +159,8 @@ fn foot(point: Point, [p, q]: &[Point; 2]) -> Point {
     if t >= 1.0 {
         return *q;
     }
-    // On a segment far longer than its distance the first quotient is off by its length's rounding.
+    // On a segment far longer than its distance, the first quotient has an error of the rounding of the
+    // length.
     let near = moved(*p, t);
     moved(near, part(near))
 }

@@ -11,24 +11,24 @@ use crate::interrupt::poll;
 use crate::tree::partition::Label;
 use crate::tree::plane::{Boundary, Edge};
 
-/// A simple closed loop, the region on its left: outer loops run counterclockwise, holes clockwise.
+/// A simple closed loop with the region on its left: outer loops run counterclockwise, holes clockwise.
 #[derive(Clone, Debug)]
 pub struct Outline {
-    /// The corners, from the one smallest in x, then y.
+    /// The corners in order, starting with the one smallest in x, then y.
     pub corners: Vec<Point2>,
-    /// The loop around this one: the outer loop of a hole, the hole of an island.
+    /// The index of the loop directly around this one: the outer loop of a hole, the hole around an island.
     pub parent: Option<usize>,
-    /// True if it is a hole.
+    /// True if the loop bounds a hole.
     pub is_hole: bool,
 }
 
-/// The loops of a bounded region's boundary.
+/// Returns the loops of a bounded region's boundary.
 ///
-/// Loops touch each other in corners at most; a loop that would touch itself is split there.
-/// Where a corner of one loop lies on a side of another, both have a corner.
+/// Loops touch each other in corners at most; a loop that would touch itself is split there. If a corner of
+/// one loop lies on a side of another loop, both have a corner there.
 ///
 /// # Order
-/// By first corner; it depends on the set alone.
+/// By first corner; the order depends on the set alone.
 ///
 /// # Errors
 /// `Unbounded`.
@@ -49,7 +49,7 @@ pub fn outlines(boundary: &Boundary) -> Result<Vec<Outline>> {
     Ok(nested(boundary, &loops))
 }
 
-/// Closed walks along the boundary that keep to one part of the region.
+/// Returns closed walks along the boundary, each around one connected part of the region.
 fn traced(boundary: &Boundary) -> Result<Vec<Vec<usize>>> {
     let mut seen = vec![false; boundary.edges.len()];
     let mut walks = Vec::new();
@@ -70,7 +70,7 @@ fn traced(boundary: &Boundary) -> Result<Vec<Vec<usize>>> {
     Ok(walks)
 }
 
-/// The first edge, clockwise from an edge, of those that leave its last vertex.
+/// Returns the first edge, clockwise from `edge`, among the edges that leave the vertex where `edge` ends.
 fn next_edge(boundary: &Boundary, edge: &Edge) -> Option<usize> {
     let back = direction(edge).map(|d| -d);
     let mut leaving = boundary.leaving(edge.ends[1]);
@@ -94,7 +94,7 @@ fn cross(a: &[i128; 2], b: &[i128; 2]) -> i128 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// Order of two directions by the clockwise angle from a third, in (0, 2π].
+/// Compares two directions by their clockwise angles from a third one, in (0, 2π].
 fn clockwise(from: &[i128; 2], a: &[i128; 2], b: &[i128; 2]) -> Ordering {
     let quarter = |d: &[i128; 2]| {
         let along = from[0] * d[0] + from[1] * d[1];
@@ -109,7 +109,7 @@ fn clockwise(from: &[i128; 2], a: &[i128; 2], b: &[i128; 2]) -> Ordering {
     quarter(a).cmp(&quarter(b)).then_with(turn)
 }
 
-/// Splits a closed walk where it passes a vertex again.
+/// Splits a closed walk at each vertex that it passes twice.
 fn simple(boundary: &Boundary, walk: &[usize]) -> Vec<Vec<usize>> {
     let mut loops = Vec::new();
     let mut open: Vec<usize> = Vec::new();
@@ -135,7 +135,7 @@ fn rotate_to_first(boundary: &Boundary, edges: &mut [usize]) {
     edges.rotate_left(first.unwrap_or(0));
 }
 
-/// Return whether a loop that starts at its first corner runs clockwise: that corner is convex.
+/// Returns true if a loop runs clockwise; it starts at its first corner, which is convex.
 fn is_hole(boundary: &Boundary, edges: &[usize]) -> bool {
     let [first, last] = [edges[0], edges[edges.len() - 1]].map(|i| direction(&boundary.edges[i]));
     cross(&last, &first) < 0
@@ -143,7 +143,8 @@ fn is_hole(boundary: &Boundary, edges: &[usize]) -> bool {
 
 fn nested(boundary: &Boundary, loops: &[Vec<usize>]) -> Vec<Outline> {
     let holes: Vec<bool> = loops.iter().map(|l| is_hole(boundary, l)).collect();
-    // A part of the region has one outer loop; a part of the complement at most one hole around it.
+    // A connected part of the region has one outer loop; a part of the complement has at most one hole
+    // around it.
     let mut outer = HashMap::default();
     let mut around = HashMap::default();
     for (i, edges) in loops.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The section of a solid by a plane.
+//! Cuts a solid's boundary by planes.
 
 use num_bigint::BigInt;
 use num_integer::Integer;
@@ -18,16 +18,16 @@ use crate::mesh::handle::VertexId;
 use crate::query::exact::vertex;
 use crate::tree::solid::Solid;
 
-/// A bounded solid's boundary, read once for any number of sections.
+/// A bounded solid's boundary, prepared for any number of sections by planes.
 pub struct Sections {
     points: Vec<Vertex>,
-    /// The coordinates of lattice points; NaN for others.
+    /// The coordinates of lattice points; NaN for all other points.
     near: Vec<[f64; 3]>,
     triangles: Vec<[VertexId; 3]>,
 }
 
 impl Sections {
-    /// The boundary of a solid.
+    /// Reads the boundary of a solid.
     ///
     /// # Errors
     /// `Unbounded`.
@@ -43,12 +43,12 @@ impl Sections {
         })
     }
 
-    /// The directed edges in which a plane cuts the boundary.
+    /// Returns the directed edges in which a plane cuts the boundary, with lattice points as ends.
     ///
-    /// Seen from the plane's plus side the solid lies on the left. Faces and edges in the plane
-    /// count as lying above it, so that this is the section just below: the limit from the minus
-    /// side. Each end is the lattice point nearest to the exact one, halves rounded up; edges that
-    /// this shrinks to a point are left out.
+    /// Seen from the plane's plus side the solid lies on the left. Faces and edges in the plane count as
+    /// above it, so that this is the section just below: the limit from the minus side. Each end is the
+    /// lattice point nearest to the exact one, halves rounded up; edges that this shrinks to a point are
+    /// left out.
     ///
     /// # Cost
     /// One pass over vertices and triangles.
@@ -79,7 +79,7 @@ impl Sections {
         Ok(edges)
     }
 
-    /// Return whether a point lies below a plane.
+    /// Returns true if a point lies strictly on the minus side of a plane.
     fn is_below(&self, point: usize, plane: &Plane) -> bool {
         let ([a, b, c, d], [x, y, z]) = (plane.approx(), &self.near[point]);
         let (sum, size) = (
@@ -93,12 +93,12 @@ impl Sections {
     }
 }
 
-/// An edge of the mesh that the plane crosses, its lower end first.
+/// An edge of the mesh that the plane crosses: its end below the plane, then the other end.
 type Rung = [usize; 2];
 
-/// A triangle that the plane crosses.
+/// A triangle that the plane crosses, with the two edges at which the plane crosses it.
 struct Crossing {
-    /// The edges at which its outline comes back below the plane, and at which it leaves.
+    /// The edge at which the triangle's outline comes back below the plane.
     enter: Rung,
     leave: Rung,
     corners: [usize; 3],
@@ -116,13 +116,14 @@ impl Crossing {
         })
     }
 
-    /// The corner opposite an edge of the triangle.
+    /// Returns the corner of the triangle that is not on an edge.
     fn apex(&self, rung: Rung) -> Option<usize> {
         self.corners.into_iter().find(|c| !rung.contains(c))
     }
 }
 
-/// The first and last edges of runs of coplanar triangles: between them the section is straight.
+/// Returns the first and the last edge of each run of coplanar triangles; between them the section is
+/// straight.
 fn straight(points: &[Vertex], crossings: &[Crossing]) -> Vec<[Rung; 2]> {
     let next = successors(points, crossings);
     let mut follows = vec![false; crossings.len()];
@@ -137,7 +138,7 @@ fn straight(points: &[Vertex], crossings: &[Crossing]) -> Vec<[Rung; 2]> {
     heads.map(run).collect()
 }
 
-/// For each triangle the coplanar one beyond its last edge, if any.
+/// Returns for each crossed triangle the coplanar triangle across the edge where it leaves, if there is one.
 fn successors(points: &[Vertex], crossings: &[Crossing]) -> Vec<Option<usize>> {
     let mut entered: HashMap<Rung, Vec<usize>> = HashMap::default();
     for (i, crossing) in crossings.iter().enumerate() {
@@ -156,14 +157,14 @@ fn successors(points: &[Vertex], crossings: &[Crossing]) -> Vec<Option<usize>> {
     crossings.iter().map(beyond).collect()
 }
 
-/// Return whether four points lie in one plane.
+/// Returns true if four points lie in one plane.
 fn coplanar(points: [&Vertex; 4]) -> bool {
     if let [Some(p), Some(q), Some(r), Some(s)] = points.map(Vertex::as_lattice) {
         let [u, v, w] = [q, r, s].map(|other| [0, 1, 2].map(|i| other[i] - p[i]));
         return determinant(&u, &v, &w) == Sign::Zero;
     }
     let [p, q, r, s] = points.map(Wide::of);
-    // Differences to p, times both denominators.
+    // The differences to p, times both denominators.
     let [u, v, w] = [&q, &r, &s]
         .map(|other| [0, 1, 2].map(|i| -> BigInt { &other.x[i] * &p.w - &p.x[i] * &other.w }));
     let minor = |i: usize, j: usize| -> BigInt { &v[i] * &w[j] - &v[j] * &w[i] };
@@ -171,7 +172,7 @@ fn coplanar(points: [&Vertex; 4]) -> bool {
     sum == BigInt::ZERO
 }
 
-/// The lattice point nearest to where an edge meets a plane.
+/// Returns the lattice point nearest to where an edge meets a plane.
 fn meet(points: &[Vertex], edge: Rung, plane: &Plane) -> Result<Lattice> {
     if let [Some(p), Some(q)] = edge.map(|i| points[i].as_lattice())
         && let Some(near) = plane.short().and_then(|plane| meet_near(p, q, &plane))
@@ -197,7 +198,8 @@ fn meet_wide(ends: [&Vertex; 2], plane: &Plane) -> Result<Lattice> {
     Ok(meet)
 }
 
-/// The same point for lattice points with short values, in machine words.
+/// Computes the lattice point in 128-bit integers, for an edge between lattice points; `None` if it does not
+/// fit.
 fn meet_near(p: &Lattice, q: &Lattice, plane: &ShortPlane) -> Option<Lattice> {
     let (s, t) = (plane.value_at(p), plane.value_at(q));
     if s.unsigned_abs().max(t.unsigned_abs()) >= SHORT_VALUE {
@@ -212,7 +214,7 @@ fn meet_near(p: &Lattice, q: &Lattice, plane: &ShortPlane) -> Option<Lattice> {
     Some([p[0] + along(0)?, p[1] + along(1)?, p[2] + along(2)?])
 }
 
-/// Twice the product of such a value with a difference of coordinates, below 2^55, fits 127 bits.
+/// Twice the product of a value below this with a difference of coordinates, below 2^55, fits into 127 bits.
 const SHORT_VALUE: u128 = 1 << 70;
 
 struct Wide {
@@ -228,7 +230,7 @@ impl Wide {
         Self { x, w }
     }
 
-    /// The plane's value here, times w.
+    /// The value of the plane's equation at the point, times the point's weight `w`.
     fn value(&self, plane: &Plane) -> BigInt {
         let terms = (0..3).map(|i| BigInt::from(plane.normal()[i]) * &self.x[i]);
         terms.sum::<BigInt>() + big(plane.offset()) * &self.w

@@ -1,4 +1,4 @@
-//! Sets in space from meshes and to polygons.
+//! Faces of closed meshes as facets of sets in space.
 
 use crate::error::Result;
 use crate::geometry::polygon::Polygon;
@@ -7,7 +7,7 @@ use crate::mesh::handle::FaceId;
 use crate::mesh::source::Source;
 use crate::tree::partition::Facet;
 
-/// The faces of a closed mesh as facets, numbered as in its input.
+/// Returns the faces of a closed mesh as facets, with their numbers in the input.
 ///
 /// # Errors
 /// None; reserved for half-spaces, which have no mesh.

@@ -1,4 +1,4 @@
-//! Rays tested one after the other, because each may change the tree for the next.
+//! Tests rays in a stab tree one after another, because each may change the tree for the next.
 
 use super::cast::Cast;
 use super::trace::{StabEvent, Trace};
@@ -9,10 +9,10 @@ use crate::query::ray::answer::{hit, Hit};
 use crate::query::ray::Ray;
 use crate::tree::trace::Watcher;
 
-/// The hits of rays and what they cost, in the order of the rays.
+/// The first hit of each ray, and the cost of finding it, in the order of the rays.
 pub type Tested<const D: usize> = (Vec<Option<Hit<D>>>, Vec<Trace>);
 
-/// Tests rays given by flat arrays of origins and directions.
+/// Tests rays, given by flat arrays of origins and directions, in their order.
 ///
 /// # Errors
 /// `Shape`; `NonFinite`, `TooLarge`, `BadNormal` with the ray's number, before any ray is tested.
@@ -24,7 +24,7 @@ pub fn test_rays<S: Cast<D>, const D: usize>(
     test_rays_watched(tree, origins, directions, &mut ())
 }
 
-/// Tests rays as [`test_rays`] does, and reports each step.
+/// Tests rays as [`test_rays`] does, and reports each step to `watcher`.
 ///
 /// # Errors
 /// As for [`test_rays`].

@@ -1,4 +1,4 @@
-//! The trait of spaces whose hyperplanes rays stab.
+//! The trait of spaces with what stab trees need of facets and hyperplanes.
 
 use crate::arith::bounds::REACH;
 use crate::arith::Int;
@@ -12,23 +12,23 @@ use crate::geometry::spaces::dim3::Dim3;
 use crate::geometry::spaces::space::Space;
 use std::sync::Arc;
 
-/// A space of `D` dimensions whose facets have `D` lattice corners.
+/// A space of `D` dimensions in which stab trees are built over facets of `D` lattice corners.
 pub trait Cast<const D: usize>: Space {
-    /// Lattice coordinates are at most this large in magnitude.
+    /// The largest magnitude of a lattice coordinate.
     const REACH: i64;
 
-    /// The whole facet as a fragment.
+    /// Makes the fragment that covers a whole facet.
     ///
     /// # Errors
     /// `TooLarge` beyond [`Self::REACH`]; `Internal` for a facet without extent.
     fn fragment(corners: &[[i64; D]; D]) -> Result<Self::Fragment>;
 
-    /// Normal n and offset c of n·x + c = 0, positive on the plus side.
+    /// Returns normal n and offset c of the hyperplane n·x + c = 0; the value is positive on the plus side.
     fn coefficients(cut: &Self::Hyperplane) -> ([i128; D], Int<3>);
 
-    /// Return whether a fragment beside `cut` can have a point in the interior of a facet in `cut`.
+    /// Returns true if a fragment on one side of `cut` can have a point in the interior of a facet in `cut`.
     ///
-    /// It cannot if at most two of its corners lie in the cut, and these are the facet's.
+    /// It cannot if at most two of its corners lie in the cut, and these are corners of the facet.
     fn touches(piece: &Self::Fragment, cut: &Self::Hyperplane, facet: &[[i64; D]; D]) -> bool;
 }
 

@@ -1,5 +1,4 @@
-//! The crossing of a ray and a hyperplane: certain enough to choose children, exact where it
-//! matters.
+//! Where a ray crosses a hyperplane: in doubles that suffice to choose children, or exactly.
 
 use super::cast::Cast;
 use crate::arith::{Filtered, Int, Sign};
@@ -7,10 +6,10 @@ use crate::geometry::side::{Half, Side};
 use crate::query::ray::filter::{Depth, ROUNDING};
 use crate::query::ray::Ray;
 
-/// Relative error of a sum of four products of factors with two roundings each.
+/// The relative error of a sum of four products of factors with two roundings each.
 const FILTER: f64 = 12.0 * ROUNDING;
 
-/// A hyperplane, exact and in doubles.
+/// A hyperplane with exact coefficients and the same in doubles.
 #[derive(Clone, Debug)]
 pub struct Cut<const D: usize> {
     normal: [i128; D],
@@ -19,22 +18,22 @@ pub struct Cut<const D: usize> {
     near_offset: f64,
 }
 
-/// A ray against a hyperplane.
+/// How a ray lies to a hyperplane.
 #[derive(Clone, Copy, Debug)]
 pub enum Stab {
-    /// The ray keeps to one side or runs within.
+    /// The ray stays on one side of the hyperplane, or runs in it (`On`).
     Beside(Side),
-    /// The ray's line crosses at this depth, towards the plus side if `rising`.
+    /// The ray's line crosses the hyperplane.
     Through {
-        /// Along the ray's main axis, in lattice steps.
+        /// Where it crosses, along the ray's main axis, in lattice steps.
         depth: Depth,
-        /// True if the minus side comes first.
+        /// True if the line goes from the minus to the plus side.
         rising: bool,
     },
 }
 
 impl<const D: usize> Cut<D> {
-    /// The hyperplane of a space.
+    /// Converts the hyperplane of a space.
     pub fn of<S: Cast<D>>(cut: &S::Hyperplane) -> Self {
         let (normal, offset) = S::coefficients(cut);
         Self {
@@ -45,12 +44,13 @@ impl<const D: usize> Cut<D> {
         }
     }
 
-    /// Normal n and offset c of n·x + c = 0.
+    /// Normal n and offset c of the hyperplane n·x + c = 0.
     pub fn coefficients(&self) -> ([i128; D], Int<3>) {
         (self.normal, self.offset)
     }
 
-    /// The half-space that holds all corners of a facet; `Doubtful` if none or uncertain.
+    /// Returns the side on which all corners of a facet lie; `Doubtful` if there is none or doubles cannot
+    /// tell.
     #[inline]
     pub fn half(&self, facet: &[[f64; D]; D]) -> Filtered<Half> {
         let mut sides = [false; 2];
@@ -72,7 +72,7 @@ impl<const D: usize> Cut<D> {
         }
     }
 
-    /// Return the crossing of a ray.
+    /// Returns how a ray lies to the hyperplane.
     #[inline]
     pub fn stab(&self, ray: &Ray<D>) -> Stab {
         let near = &ray.near;
@@ -86,7 +86,7 @@ impl<const D: usize> Cut<D> {
         let value: f64 = (0..D).map(term).sum::<f64>() + self.near_offset;
         let size = (0..D).map(|k| term(k).abs()).sum::<f64>() + self.near_offset.abs();
         let z = -value / slope;
-        // |slope| is off by less than a quarter of itself.
+        // The relative error of the slope is less than a quarter.
         let error = (size * FILTER + z.abs() * slack) / slope.abs() * 2.0 + z.abs() * FILTER;
         let depth = Depth { z, error };
         let rising = slope > 0.0;

@@ -1,14 +1,13 @@
-//! The list L(v) of a preliminary leaf: fragments as a heap by their hit counters T(p).
+//! The list L(v) of a leaf: its fragments as a heap by their hit counters T(p).
 
-/// A fragment in a leaf.
+/// A fragment in the list of a leaf.
 #[derive(Clone, Debug)]
 pub struct Entry<F> {
-    /// The facet it is a part of.
+    /// The facet that the fragment is a part of.
     pub facet: u32,
-    /// The number of rays that have hit the facet in this leaf; parts inherit the count of the
-    /// whole.
+    /// The number of rays that have hit the facet in this leaf; parts of a split fragment inherit its count.
     pub hits: u64,
-    /// The part of the facet in the leaf's region; none for the whole facet.
+    /// The part of the facet in the leaf's region; `None` for the whole facet.
     pub fragment: Option<Box<F>>,
 }
 
@@ -18,7 +17,7 @@ impl<F> Entry<F> {
     }
 }
 
-/// A binary heap: most hits first, then in the order of the input.
+/// A binary heap of fragments: most hits first, then in the order of the input.
 #[derive(Clone, Debug)]
 pub struct Heap<F> {
     entries: Vec<Entry<F>>,
@@ -32,7 +31,7 @@ impl<F> Default for Heap<F> {
 }
 
 impl<F> Heap<F> {
-    /// The heap with these entries in this order, if they form one.
+    /// Makes a heap of entries in this order; `None` if they are not in heap order.
     pub fn of(entries: Vec<Entry<F>>) -> Option<Self> {
         let mut lower = entries.iter().enumerate().skip(1);
         let ordered = lower.all(|(place, entry)| !entry.precedes(&entries[(place - 1) / 2]));
@@ -44,17 +43,17 @@ impl<F> Heap<F> {
         self.entries.len()
     }
 
-    /// Return whether it is empty.
+    /// Returns true if the heap has no fragments.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
 
-    /// The fragments in the heap's order: a parent before its children.
+    /// The fragments in heap order: a parent before its children.
     pub fn entries(&self) -> &[Entry<F>] {
         &self.entries
     }
 
-    /// The place of a facet; tries `guess` first.
+    /// Returns the index of a facet in the heap; tries the index `guess` first.
     pub fn place(&self, facet: u32, guess: usize) -> Option<usize> {
         if self.entries.get(guess).is_some_and(|e| e.facet == facet) {
             return Some(guess);
@@ -62,13 +61,13 @@ impl<F> Heap<F> {
         self.entries.iter().position(|entry| entry.facet == facet)
     }
 
-    /// Adds a fragment.
+    /// Adds a fragment with its facet and hits.
     pub fn push(&mut self, entry: Entry<F>) {
         self.entries.push(entry);
         self.rise(self.entries.len() - 1);
     }
 
-    /// Counts a hit of the fragment at a place; later places stay as they are.
+    /// Counts a hit of the fragment at an index; entries after it stay where they are.
     pub fn count_hit(&mut self, place: usize) {
         self.entries[place].hits += 1;
         self.rise(place);
@@ -85,7 +84,7 @@ impl<F> Heap<F> {
         }
     }
 
-    /// The fragments in the heap's order.
+    /// Returns the fragments in heap order.
     pub fn into_entries(self) -> Vec<Entry<F>> {
         self.entries
     }

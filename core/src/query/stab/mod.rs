@@ -1,4 +1,5 @@
-//! Trees of supporting hyperplanes that rays stab: grown by their use, or complete from the start.
+//! Trees of supporting hyperplanes over facets, which rays cause to grow, or which are complete from the
+//! start.
 //!
 //! # Source
 //! The augmented BSP tree: Ar, Montag, Tal 2002, "Deferred, self-organizing BSP trees"; lecture

@@ -1,4 +1,4 @@
-//! The nodes of a tree that counts.
+//! The nodes of a stab tree, with their counters.
 
 use std::sync::atomic::AtomicU64;
 use std::sync::OnceLock;
@@ -8,30 +8,30 @@ use super::cut::Cut;
 use super::heap::Heap;
 use crate::mesh::handle::NodeId;
 
-/// When leaves are divided.
+/// When the leaves of a stab tree are divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Growth {
-    /// After more visits than this.
+    /// After a ray, if a leaf that it visited has more visits than this number.
     Visits(u64),
-    /// Not by rays.
+    /// Never by rays.
     Never,
 }
 
-/// The nodes of a tree.
+/// The nodes of a stab tree, by number.
 #[derive(Debug)]
 pub(super) struct Nodes<S: Cast<D>, const D: usize> {
     pub(super) all: Vec<Node<S, D>>,
-    /// Leaves divided so far.
+    /// The number of leaves divided since the tree was made.
     pub(super) subdivisions: u64,
 }
 
 #[derive(Debug)]
 pub(super) struct Node<S: Cast<D>, const D: usize> {
-    /// T(v); several rays may count it at once.
+    /// The number of visits T(v) of the node; several rays may count at once.
     pub(super) visits: AtomicU64,
     pub(super) depth: u32,
     pub(super) content: Content<S, D>,
-    /// The facets of a long list, ascending, each with its place when this was made.
+    /// The facets of a long list, ascending, each with its index in the list when this table was made.
     places: OnceLock<Vec<(u32, u32)>>,
 }
 
@@ -46,12 +46,12 @@ pub(super) struct Inner<const D: usize> {
     pub(super) cut: Cut<D>,
     pub(super) coplanar: Vec<u32>,
     pub(super) children: [NodeId; 2],
-    /// Per child, whether one of its facets may have a point in the interior of a facet in the cut.
+    /// For each child, whether one of its facets may have a point in the interior of a facet in the cut.
     pub(super) touched: [bool; 2],
 }
 
 impl<S: Cast<D>, const D: usize> Node<S, D> {
-    /// A preliminary leaf that no ray has visited.
+    /// Makes a leaf that no ray has visited.
     pub(super) fn leaf(list: Heap<S::Fragment>, depth: u32) -> Self {
         Self {
             visits: AtomicU64::new(0),
@@ -61,7 +61,7 @@ impl<S: Cast<D>, const D: usize> Node<S, D> {
         }
     }
 
-    /// The place of a facet in the list of this leaf, if it is there.
+    /// Returns the index of a facet in the list of this leaf; `None` if it is not there.
     pub(super) fn place(&self, list: &Heap<S::Fragment>, facet: u32) -> Option<usize> {
         let places = self.places.get_or_init(|| {
             let facets = list.entries().iter().map(|entry| entry.facet);
@@ -73,7 +73,7 @@ impl<S: Cast<D>, const D: usize> Node<S, D> {
         list.place(facet, places[at].1 as usize)
     }
 
-    /// Forgets the places in a list that is divided.
+    /// Drops the table of indices in a list that is divided.
     pub(super) fn forget_places(&mut self) {
         self.places = OnceLock::new();
     }

@@ -1,4 +1,4 @@
-//! The record of a tree, in numbers: with its facets it can be grown again.
+//! The record of a stab tree in numbers, from which the tree over the same facets is made again.
 
 use std::sync::atomic::Ordering;
 
@@ -12,11 +12,11 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::handle::NodeId;
 use crate::query::ray::Scene;
 
-/// The counters of a tree and where it was cut.
+/// The counters of a stab tree, and the facets at which it was cut.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Record {
     rays: u64,
-    /// In the order in which the nodes were made.
+    /// The nodes, in the order in which they were made.
     nodes: Vec<NodeRecord>,
 }
 
@@ -28,14 +28,14 @@ struct NodeRecord {
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 enum ContentRecord {
-    /// Facets in the order of the heap, with their hits.
+    /// The facets in the order of the heap, each with its hits.
     Leaf(Vec<(u32, u64)>),
-    /// The facets in the cut, the pivot first, and the minus child.
+    /// The facets in the cut, the pivot first, and the number of the minus child.
     Cut(Vec<u32>, NodeId),
 }
 
 impl<S: Cast<D>, const D: usize> StabTree<S, D> {
-    /// Return the record of the tree.
+    /// Returns the record of the tree.
     pub fn record(&self) -> Record {
         let content = |content: &Content<S, D>| match content {
             Content::Leaf(list) => {
@@ -55,10 +55,10 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
         }
     }
 
-    /// The tree of a record: its cuts are made again in their order.
+    /// Makes the tree of a record: repeats its cuts in their order, and restores the counters.
     ///
     /// # Errors
-    /// `BadSnapshot` if the record is not one of a tree over these facets; as for `new`.
+    /// `BadSnapshot` if the record does not belong to these facets; as for `new`.
     pub fn regrown(scene: Scene<D>, growth: Growth, record: &Record) -> Result<Self> {
         let tree = Self::new(scene, growth, None)?;
         tree.follow(record).ok_or_else(|| {
@@ -89,7 +89,8 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
 }
 
 impl Record {
-    /// Inner nodes, the facets in their cuts, and their first children, in order of division.
+    /// Returns the inner nodes, each with the facets in its cut and its first child, in the order of
+    /// division.
     fn cuts(&self) -> Vec<(NodeId, &[u32], NodeId)> {
         let mut cuts = Vec::new();
         for (at, node) in NodeId::all().zip(&self.nodes) {
@@ -102,7 +103,7 @@ impl Record {
     }
 }
 
-/// Sorts a node's list into the record's order; `None` if the record names other facets.
+/// Sorts a node's list into the record's order; `None` if the record names different facets.
 fn restore<S: Cast<D>, const D: usize>(
     content: &mut Content<S, D>,
     stored: &ContentRecord,
@@ -125,7 +126,7 @@ fn restore<S: Cast<D>, const D: usize>(
     Some(())
 }
 
-/// The entries in the order of the stored facets, with their hits.
+/// Sorts entries into the order of the stored facets, and sets their hits; `None` if the facets differ.
 fn rearranged<F>(mut entries: Vec<Entry<F>>, hits: &[(u32, u64)]) -> Option<Vec<Entry<F>>> {
     let mut order: Vec<usize> = (0..hits.len()).collect();
     order.sort_unstable_by_key(|place| hits[*place].0);

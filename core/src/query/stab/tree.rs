@@ -1,10 +1,10 @@
-//! The augmented tree: it starts as one preliminary leaf and divides where rays go.
+//! The augmented tree: it starts as one leaf, and its leaves are divided where rays go.
 //!
-//! Each inner node stores its cut H(v) and the facets in it, S(v); a preliminary leaf stores its
-//! list L(v) as a heap by hits, and its visits T(v). A leaf visited more often than a threshold is
-//! divided at the hyperplane of its most hit fragment, which splits the others exactly. The lists
-//! of leaves affect the time of an answer, never the answer: facets are tested whole, and every
-//! node that may hold a nearer hit is visited.
+//! Each inner node stores its cut H(v) and the facets in it, S(v); a leaf stores its list L(v) as a heap by
+//! hits, and its visits T(v). A leaf visited more often than a threshold is divided at the hyperplane of its
+//! most hit fragment, which splits the other fragments exactly. The lists of leaves affect the time of an
+//! answer, never the answer: facets are tested whole, and every node that may contain a nearer hit is
+//! visited.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
@@ -26,37 +26,37 @@ use crate::query::ray::walk::clip;
 use crate::query::ray::{Ray, Scene};
 use crate::tree::trace::Watcher;
 
-/// A tree of supporting hyperplanes over the facets of a scene.
+/// A tree of supporting hyperplanes over the facets of a scene, which counts rays and grows with them.
 #[derive(Debug)]
 pub struct StabTree<S: Cast<D>, const D: usize> {
     scene: Scene<D>,
-    /// Rays read them concurrently and change them afterwards.
+    /// Rays read the nodes concurrently, and change them afterwards.
     nodes: RwLock<Nodes<S, D>>,
     growth: Growth,
     pub(super) rays: AtomicU64,
 }
 
-/// The size and the history of a tree.
+/// The size and the counters of a stab tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shape {
-    /// Inner nodes and leaves.
+    /// The number of inner nodes and leaves.
     pub nodes: u64,
-    /// Leaves.
+    /// The number of leaves.
     pub leaves: u64,
-    /// The most cuts above a leaf.
+    /// The largest number of cuts above a leaf.
     pub depth: u64,
-    /// Fragments in leaves and cuts.
+    /// The number of fragments in leaves and cuts.
     pub fragments: u64,
-    /// Leaves divided so far.
+    /// The number of leaves divided since the tree was made.
     pub subdivisions: u64,
-    /// Rays tested so far.
+    /// The number of rays tested since the tree was made.
     pub rays: u64,
-    /// Visits of all nodes now in the tree.
+    /// The sum of the visits of all nodes.
     pub visits: u64,
 }
 
 impl<S: Cast<D>, const D: usize> StabTree<S, D> {
-    /// One leaf with all facets; `hits` are the initial counters, by place in the input.
+    /// Makes a tree of one leaf with all facets; `hits` are the initial counters, by index in the input.
     ///
     /// # Errors
     /// `TooLarge` for facets beyond the reach of the space.
@@ -66,7 +66,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
             poll();
             let beyond = |c: &f64| c.abs() > S::REACH as f64;
             if corners.iter().flatten().any(beyond) {
-                // Reports what is wrong.
+                // Returns the error that explains the refusal.
                 S::fragment(&lattice(corners))?;
             }
             let number = scene.number(facet) as usize;
@@ -89,22 +89,22 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
         })
     }
 
-    /// The facets.
+    /// The scene whose facets the tree divides.
     pub fn scene(&self) -> &Scene<D> {
         &self.scene
     }
 
-    /// The nodes, for reading.
+    /// Locks the nodes for reading.
     pub(super) fn nodes(&self) -> RwLockReadGuard<'_, Nodes<S, D>> {
         self.nodes.read().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The nodes, for writing.
+    /// Locks the nodes for writing.
     pub(super) fn nodes_mut(&self) -> RwLockWriteGuard<'_, Nodes<S, D>> {
         self.nodes.write().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Divides leaves until none has more than one fragment.
+    /// Divides leaves until each has at most one fragment.
     ///
     /// # Errors
     /// `TooLarge` if that takes more than `limit` nodes.
@@ -125,7 +125,8 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
         Ok(())
     }
 
-    /// The first facet on a ray; counts visits and hits, and divides the leaves that are due.
+    /// Finds the first facet on a ray; counts visits and hits, and divides the leaves that reached the
+    /// threshold.
     ///
     /// Several threads may test rays at the same time.
     pub fn test_ray(&self, ray: &Ray<D>) -> (Option<Found<D>>, Trace) {
@@ -160,15 +161,15 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
         (best.and_then(|best| query.found(&best)), trace)
     }
 
-    /// Counts what a ray has hit, and divides the leaves that are due.
+    /// Counts the hits of a ray, and divides the leaves that reached the threshold.
     fn apply_updates(&self, pending: &PendingUpdates, watcher: &mut impl Watcher<StabEvent>) {
         if pending.hits.is_empty() && pending.due.is_empty() {
             return;
         }
         let mut nodes = self.nodes_mut();
-        // Ascending in each leaf, because a count changes no later place.
+        // The hits are ascending in each leaf, because counting one changes no later index.
         for hit in &pending.hits {
-            // Another ray may have divided the leaf meanwhile.
+            // Another ray may have divided the leaf in the meantime.
             let Content::Leaf(list) = &mut nodes.all[hit.node.place()].content else {
                 continue;
             };
@@ -183,7 +184,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
         }
     }
 
-    /// Measures the tree.
+    /// Counts the nodes, fragments, rays and visits of the tree.
     pub fn shape(&self) -> Shape {
         let nodes = self.nodes();
         let mut shape = Shape {
@@ -208,7 +209,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
 }
 
 impl<S: Cast<D>, const D: usize> Nodes<S, D> {
-    /// Divides a leaf at its most hit fragment; one with a single fragment stays.
+    /// Divides a leaf at its most hit fragment; `None` if it has at most one fragment.
     fn divide(&mut self, scene: &Scene<D>, at: NodeId) -> Option<()> {
         let Content::Leaf(list) = &self.all[at.place()].content else {
             return None;
@@ -220,7 +221,7 @@ impl<S: Cast<D>, const D: usize> Nodes<S, D> {
         self.divide_by(scene, at, facet)
     }
 
-    /// Divides a leaf at the fragment of this facet; `None` if there is no such leaf or fragment.
+    /// Divides a leaf at the fragment of a given facet; `None` if there is no such leaf or fragment.
     pub(super) fn divide_by(&mut self, scene: &Scene<D>, at: NodeId, facet: u32) -> Option<()> {
         let (first, depth) = (self.all.len(), self.all.get(at.place())?.depth + 1);
         let Content::Leaf(list) = &mut self.all[at.place()].content else {
@@ -239,7 +240,7 @@ impl<S: Cast<D>, const D: usize> Nodes<S, D> {
         Some(())
     }
 
-    /// The event of the latest division.
+    /// Returns the event that describes the division of a node.
     fn division(&self, scene: &Scene<D>, node: NodeId) -> StabEvent {
         let number = |facet: &u32| scene.number(*facet);
         let list = |child: NodeId| match &self.all[child.place()].content {
@@ -264,7 +265,7 @@ fn lattice<const D: usize>(corners: &Facet<D>) -> [[i64; D]; D] {
     corners.map(|corner| corner.map(|c| c as i64))
 }
 
-/// The fragment of an entry, built for a whole facet; every facet of a scene has one.
+/// Returns the fragment of an entry; makes it if the entry is a whole facet.
 fn fragment<S: Cast<D>, const D: usize>(
     scene: &Scene<D>,
     entry: &Entry<S::Fragment>,
@@ -275,7 +276,7 @@ fn fragment<S: Cast<D>, const D: usize>(
     }
 }
 
-/// Divides a list: its inner node, and the lists of its `children`.
+/// Divides a list at a pivot: returns the inner node, and the lists of its `children`.
 fn parts<S: Cast<D>, const D: usize>(
     facet: u32,
     pivot: &S::Fragment,
@@ -290,7 +291,7 @@ fn parts<S: Cast<D>, const D: usize>(
     let [mut below, mut above] = [Heap::default(), Heap::default()];
     let mut touched = [false; 2];
     for entry in rest {
-        // Most facets are clearly on one side.
+        // Most facets lie clearly on one side.
         match cut.half(&scene.facets()[entry.facet as usize]) {
             Filtered::Certain(Half::Minus) => {
                 below.push(entry);
@@ -321,7 +322,7 @@ fn parts<S: Cast<D>, const D: usize>(
                 above.push(entry);
             }
             Split::Coplanar(_) => coplanar.push(facet),
-            // A facet that crosses the cut is met on both sides of it.
+            // A facet that crosses the cut goes to both sides.
             Split::Both { minus, plus } => {
                 below.push(part(minus));
                 above.push(part(plus));

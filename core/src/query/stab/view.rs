@@ -1,4 +1,4 @@
-//! The contents of each node of a tree that counts.
+//! The contents of each node of a stab tree, for inspection.
 
 use std::sync::atomic::Ordering;
 
@@ -8,24 +8,24 @@ use super::tree::StabTree;
 use crate::arith::Int;
 use crate::mesh::handle::NodeId;
 
-/// A node as it is now; facets by their places in the input.
+/// A node of a stab tree, for inspection; facets are given by their indices in the input.
 #[derive(Clone, Debug)]
 pub struct View<const D: usize> {
-    /// T(v).
+    /// The number of visits T(v).
     pub visits: u64,
-    /// The number of cuts above.
+    /// The number of cuts above the node.
     pub depth: u32,
-    /// Normal and offset of n·x + c = 0, and the children on the minus and the plus side; `None`
-    /// for a leaf.
+    /// The normal and the offset of the cut n·x + c = 0, and the children on its minus and its plus side;
+    /// `None` for a leaf.
     pub cut: Option<([i128; D], Int<3>, [NodeId; 2])>,
-    /// L(v) of a leaf in the order of its heap, or the facets in the cut, its pivot first.
+    /// The list L(v) of a leaf in the order of its heap, or the facets in the cut, the pivot first.
     pub facets: Vec<u32>,
-    /// T(p) of each of them; 0 for those in a cut.
+    /// The hits T(p) of each facet in `facets`; 0 for those in a cut.
     pub hits: Vec<u64>,
 }
 
 impl<S: Cast<D>, const D: usize> StabTree<S, D> {
-    /// All nodes in the order in which they were made.
+    /// Returns all nodes in the order in which they were made.
     pub fn views(&self) -> Vec<View<D>> {
         let number = |facet: u32| self.scene().number(facet);
         let view = |node: &super::node::Node<S, D>| {

@@ -1,4 +1,4 @@
-//! A ray through a tree that counts: near child, cut, far child.
+//! Takes a ray through a stab tree: near child, cut, far child.
 
 use std::sync::atomic::Ordering;
 
@@ -24,22 +24,22 @@ enum StackEntry {
     Cut { node: NodeId, from: f64, far: Far },
 }
 
-/// The entry of the stack below that of a cut.
+/// What lies on the stack directly below a cut.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Far {
-    /// Something else.
+    /// Not the child on the far side of the cut.
     No,
-    /// The child beyond the cut, by number.
+    /// The child on the far side of the cut, by its index.
     Child(usize),
 }
 
 type Stack = SmallVec<[StackEntry; 64]>;
 
-/// A leaf's list of up to this many facets is tested from end to end, as in the notes, in some 40
-/// µs; a longer list only where the ray meets the boxes of facets.
+/// A leaf's list of at most this many facets is tested from end to end, as in the lecture notes, in some 40
+/// µs; of a longer one only the facets whose boxes the ray meets.
 const MAX_FACETS_TESTED: usize = 4096;
 
-/// A facet that was hit within a leaf, and its place in the leaf's list.
+/// A facet that was hit within a leaf, and its index in the leaf's list.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hit {
     pub(super) node: NodeId,
@@ -47,14 +47,14 @@ pub(super) struct Hit {
     pub(super) place: usize,
 }
 
-/// What a ray leaves to be done: hits to count, and leaves that are due to be divided.
+/// The updates after a ray: hits to count, and leaves to divide.
 #[derive(Debug, Default)]
 pub(super) struct PendingUpdates {
     pub(super) hits: SmallVec<[Hit; 16]>,
     pub(super) due: SmallVec<[NodeId; 16]>,
 }
 
-/// One ray on its way.
+/// A ray on its path through a tree.
 pub(super) struct Walk<'a, S: Cast<D>, W, const D: usize> {
     pub(super) scene: &'a Scene<D>,
     pub(super) query: &'a Query<'a, D>,
@@ -62,7 +62,7 @@ pub(super) struct Walk<'a, S: Cast<D>, W, const D: usize> {
     pub(super) nodes: &'a [Node<S, D>],
     pub(super) growth: Growth,
     pub(super) best: Option<Candidate>,
-    /// All facets that the ray hits, computed for the first long list.
+    /// All facets that the ray hits, with depths; found when the first long list is reached.
     pub(super) met: Option<Vec<(u32, Depth)>>,
     pub(super) trace: Trace,
     pub(super) pending: PendingUpdates,
@@ -70,7 +70,7 @@ pub(super) struct Walk<'a, S: Cast<D>, W, const D: usize> {
 }
 
 impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
-    /// Visits what the ray meets between two depths, nearest first.
+    /// Visits the nodes that the ray meets between two depths, nearest first.
     pub(super) fn run(&mut self, span: Option<(f64, f64)>) {
         let mut open = Stack::new();
         open.extend(span.map(|(from, to)| StackEntry::Node {
@@ -109,7 +109,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
         }
     }
 
-    /// Tests the facets in a cut; returns true if nothing beyond the cut can matter.
+    /// Tests the facets in a cut; returns true if the child behind it can be skipped.
     fn test_cut(&mut self, node: NodeId, far: Far) -> bool {
         let Content::Inner(inner) = &self.nodes[node.place()].content else {
             return false;
@@ -125,12 +125,12 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
         let Far::Child(child) = far else {
             return false;
         };
-        // The ray hits the interior of the only facet, and nothing beyond touches it there.
+        // The ray hits the interior of the only facet, and no facet of the far child touches it there.
         let inside = |facet| matches!(self.query.probe(facet), Probe::Hit(_));
         !inner.touched[child] && inner.coplanar.len() == 1 && inside(inner.coplanar[0])
     }
 
-    /// Tests the facets of L(v) that the ray may hit; counts hits within the leaf.
+    /// Tests the facets in a leaf's list that the ray may hit; notes the hits within the leaf for counting.
     fn test_leaf(&mut self, node: NodeId, list: &Heap<S::Fragment>, visits: u64, to: f64) {
         self.trace.leaves += 1;
         let hits = if list.len() > MAX_FACETS_TESTED {
@@ -154,7 +154,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
         }
     }
 
-    /// Tests one facet after the other; returns the hits within the leaf.
+    /// Tests all facets of a list; returns the hits within the leaf.
     fn test_all(&mut self, node: NodeId, list: &Heap<S::Fragment>, to: f64) -> SmallVec<[Hit; 16]> {
         let mut hits = SmallVec::new();
         for (place, entry) in list.entries().iter().enumerate() {
@@ -173,7 +173,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
         hits
     }
 
-    /// The hits within the leaf, by place, among the facets whose boxes the ray meets.
+    /// Returns the hits within the leaf, by index, among the facets whose boxes the ray meets.
     fn search(&mut self, node: NodeId, list: &Heap<S::Fragment>, to: f64) -> SmallVec<[Hit; 16]> {
         let met = match self.met.take() {
             Some(met) => met,
@@ -191,7 +191,8 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
         hits
     }
 
-    /// Tests the facets of the scene whose boxes the ray meets; returns the hit ones.
+    /// Tests the facets of the scene whose boxes the ray meets; returns those that it hits, with their
+    /// depths.
     fn test_boxes(&mut self, node: NodeId) -> Vec<(u32, Depth)> {
         let mut met = Vec::new();
         let (query, scene) = (self.query, self.scene);
@@ -219,7 +220,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
     }
 }
 
-/// Pushes the parts of an inner node that the ray meets, the nearest last.
+/// Pushes the children and the cut of an inner node that the ray meets, the nearest last.
 #[inline]
 fn push_parts<const D: usize>(
     inner: &Inner<D>,

@@ -1,20 +1,21 @@
 //! Axis-parallel cuts for the top of a tree.
 //!
 //! # Source
-//! The notes' general partition. A convex body, a chain under autopartition, becomes a tree of logarithmic
-//! depth; in practice surface meshes are cut a constant number of times per facet.
+//! The lecture notes' general partition. A convex body, which becomes a chain by autopartition, gets a tree
+//! of logarithmic depth; in practice, each facet of a surface mesh is cut a constant number of times.
 
 use super::node::{NodeCut, Piece};
 use super::policy::Tally;
 use crate::geometry::spaces::affine::Affine;
 
-/// The cut at the median of the ends of the pieces' boxes, across the axis of the widest spread.
+/// The cut at the median of the pieces' lowest and highest corners, across the axis along which they are
+/// spread widest.
 ///
-/// Ends are corners, which cuts pass through: facets that meet there are not cut, and facets in the cut
+/// As the cut passes through corners, it does not cut facets that meet there, and facets that lie in the cut
 /// need no further division.
 ///
-/// `None` if no axis divides them well: each side must have at most three quarters of the pieces. This
-/// bounds the depth by log(n)/log(4/3), and with it the number of fragments.
+/// `None` if no axis divides the pieces well: each side may have at most three quarters of them. This bounds
+/// the depth by log(n)/log(4/3), and so the number of fragments.
 pub fn median_cut<S: Affine>(pieces: &[Piece<S>]) -> Option<(NodeCut, S::Hyperplane)> {
     let boxes: Vec<_> = pieces.iter().map(|p| S::bounds(&p.fragment)).collect();
     axes_by_spread::<S>(&boxes).into_iter().find_map(|axis| {
@@ -39,7 +40,7 @@ fn axes_by_spread<S: Affine>(boxes: &[[[f64; 3]; 2]]) -> Vec<usize> {
     axes
 }
 
-/// The median, rounded to the lattice.
+/// The median, rounded to the nearest integer; `None` if there are no values.
 fn median(values: impl Iterator<Item = f64>) -> Option<i64> {
     let mut values: Vec<f64> = values.collect();
     if values.is_empty() {
@@ -47,6 +48,6 @@ fn median(values: impl Iterator<Item = f64>) -> Option<i64> {
     }
     let middle = values.len() / 2;
     let (_, median, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
-    // On the lattice, hence far below 2^63.
+    // All values are lattice coordinates, hence far below 2^63.
     Some(median.round() as i64)
 }

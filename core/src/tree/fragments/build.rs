@@ -1,4 +1,4 @@
-//! From pieces to a tree, one node at a time from the root down.
+//! Builds a fragment tree from pieces, node by node from the root down.
 
 use super::choosing::Chooser;
 use super::node::{Crossing, Fragment, FragmentTree, Node, Piece};
@@ -12,21 +12,21 @@ use crate::mesh::handle::NodeId;
 use crate::tree::partition::SplitMix;
 use crate::tree::trace::Watcher;
 
-/// Builds a tree.
+/// Builds the tree that divides the pieces as the plan says.
 ///
 /// # Order
 /// The list of pieces and the plan determine the tree.
 ///
 /// # Cost
-/// Quadratic in the worst case for autopartition: a convex body becomes a chain.
+/// With autopartition, quadratic in the worst case: a convex body becomes a chain.
 ///
 /// # Errors
-/// `BadSnapshot` if given cuts do not suit the pieces.
+/// `BadSnapshot` if the plan's given cuts do not suit the pieces.
 pub fn build<S: Affine>(pieces: Vec<Piece<S>>, plan: Plan<S>) -> Result<FragmentTree<S>> {
     build_watched(pieces, plan, &mut ())
 }
 
-/// Builds a tree and reports each division; the tree is that of [`build`].
+/// Builds the same tree as [`build`], and reports each division of a region to the watcher.
 ///
 /// # Errors
 /// As for [`build`].
@@ -61,7 +61,7 @@ pub fn build_watched<S: Affine, W: Watcher<Division>>(
     Ok(builder.tree)
 }
 
-/// A random order by Fisher and Yates.
+/// Shuffles a list into a random order that the seed determines (Fisher and Yates).
 fn shuffle<T>(list: &mut [T], seed: u64) {
     let mut random = SplitMix::new(seed);
     for end in (1..list.len()).rev() {
@@ -147,7 +147,7 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
         narrow(self.tree.nodes.len()).map(NodeId)
     }
 
-    /// Links a node to the one above.
+    /// Enters a node as the child of its parent, on the given side; `None` stands for the root.
     fn link(&mut self, place: Option<(NodeId, Half)>, node: NodeId) {
         let Some((above, half)) = place else {
             return;
@@ -159,7 +159,8 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
         }
     }
 
-    /// Distributes pieces to the two sides of a cut and its coplanar set, in their order.
+    /// Distributes pieces to the two sides of a node's cut, in their order; stores coplanar pieces and
+    /// crossings in the tree.
     fn distribute(
         &mut self,
         pieces: Vec<Piece<S>>,

@@ -29,7 +29,7 @@ pub(super) enum Chooser<S: Affine> {
 }
 
 impl<S: Affine> Chooser<S> {
-    /// Return the chooser of a plan, and the tree's own hyperplanes.
+    /// Return the chooser for a plan, and the hyperplanes of the plan that come from no facet.
     pub fn of(plan: Plan<S>) -> (Self, Vec<S::Hyperplane>) {
         match plan {
             Plan::Policy { policy, top, .. } => (Self::Policy { policy, top }, Vec::new()),
@@ -52,7 +52,7 @@ impl<S: Affine> Chooser<S> {
         }
     }
 
-    /// The root of the tree that is extended.
+    /// The root of the existing tree that the new tree extends; `None` if it extends none or an empty one.
     pub fn root(&self) -> Option<NodeId> {
         match self {
             Self::Grown(tree, _) if !tree.nodes().is_empty() => Some(NodeId::ROOT),
@@ -61,7 +61,7 @@ impl<S: Affine> Chooser<S> {
         }
     }
 
-    /// The child of a node of the tree that is extended.
+    /// The child of a node in the existing tree that the new tree extends; `None` if there is none.
     pub fn below(&self, old: Option<NodeId>, half: Half) -> Option<NodeId> {
         match self {
             Self::Grown(tree, _) => tree.child(old?, half),
@@ -93,7 +93,7 @@ impl<S: Affine> Chooser<S> {
         }
     }
 
-    /// Make sure that everything given was used.
+    /// Verifies that the tree has used all given cuts.
     pub fn finish(self) -> Result<()> {
         match self {
             Self::Given(rest) if rest.len() > 0 => {
@@ -149,7 +149,8 @@ fn unsuited(why: &str) -> Error {
     Error::new(ErrorKind::BadSnapshot, text)
 }
 
-/// The first of the tree's own hyperplanes that does not leave all pieces on one side.
+/// The first of the tree's own hyperplanes, with its index, that does not leave all pieces on one side;
+/// `None` if there is none.
 fn first_that_divides<S: Affine>(
     pieces: &[Piece<S>],
     own: &[S::Hyperplane],
@@ -159,7 +160,7 @@ fn first_that_divides<S: Affine>(
     found.map(|(number, cut)| (number, cut.clone()))
 }
 
-/// Evenly spaced candidates of a list.
+/// Evenly spaced indices below `count`, at most as many as the sample has.
 fn spaced(count: usize, Sample(sample): Sample) -> impl Iterator<Item = usize> {
     let stride = count.div_ceil(sample.max(1)).max(1);
     (0..count).step_by(stride)
@@ -207,7 +208,8 @@ fn asked<S: Affine>(
     }
 }
 
-/// The hyperplane, supporting or through corners, whose larger side has the fewest pieces.
+/// Of sampled hyperplanes, supporting or through corners of pieces, the one whose larger side has the fewest
+/// pieces.
 fn through_ends<S: Affine>(
     lines: &Lines,
     pieces: &[Piece<S>],
@@ -231,7 +233,8 @@ fn through_ends<S: Affine>(
     }
 }
 
-/// Hyperplanes through corners of the pieces, as many as the space has dimensions.
+/// A sample of hyperplanes through corners of the pieces: through one, two or three, the dimension of the
+/// space.
 fn corner_cuts<'a, S: Affine>(
     lines: &'a Lines,
     pieces: &[Piece<S>],

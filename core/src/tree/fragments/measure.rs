@@ -1,16 +1,16 @@
-//! Sizes of all regions of a tree.
+//! The volumes and surfaces of all regions of a tree.
 
 use super::node::FragmentTree;
 use crate::geometry::spaces::affine::{Affine, Polytope};
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 
-/// The size of a region, in lattice steps.
+/// The volume and the surface of a region, in lattice steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measure {
-    /// Length, area or volume.
+    /// The length of the region in 1D, its area in 2D, its volume in 3D.
     pub volume: f64,
-    /// Number of ends, perimeter or surface area.
+    /// The number of the region's ends in 1D, its perimeter in 2D, its surface area in 3D.
     pub surface: f64,
 }
 
@@ -23,14 +23,14 @@ impl Measure {
     }
 }
 
-/// The sizes of R(v) for each node, within the root's region.
+/// The measures of each node's region, where `whole` is the region of the root.
 ///
 /// # Exactness
-/// Regions are divided exactly; only their sizes are doubles, from corners correct to a few units in the
-/// last place.
+/// Regions are divided exactly; only their measures are doubles, from corners that are correct to a few units
+/// in the last place.
 ///
 /// # Cost
-/// One division for each node.
+/// One division of a region for each node.
 pub fn measures<S: Affine>(tree: &FragmentTree<S>, whole: &Polytope<S>) -> Vec<Measure> {
     let mut found = vec![Measure::default(); tree.nodes().len()];
     let mut pending = Vec::new();

@@ -1,9 +1,9 @@
-//! Partition trees over arbitrary facets: points, segments, convex polygons, closed or not.
+//! Partition trees over any facets: points, segments or convex polygons, closed or not.
 //!
-//! A `tree::partition` represents a set and labels its leaves; a fragment tree represents its facets. Each
-//! facet lies, perhaps in parts, in the coplanar sets of the nodes, and every leaf is an empty region.
-//! Nodes are in one list in preorder, minus before plus; regions and sub-hyperplanes are not stored, but
-//! computed from the path to the root on demand.
+//! A tree of `tree::partition` represents a set and labels its leaves; a fragment tree represents its facets.
+//! Each facet lies, perhaps in parts, in the coplanar sets of nodes, and every leaf is an empty region. Nodes
+//! are in one list in preorder, minus before plus; regions and sub-hyperplanes are not stored, but computed
+//! from the path to the root on demand.
 //!
 //! # Source
 //! Fuchs, Kedem, Naylor 1980; Paterson, Yao 1990; de Berg et al., Computational Geometry, chapter 12.

@@ -1,4 +1,4 @@
-//! The arena: nodes in preorder, and the fragments of their coplanar sets.
+//! The nodes of a fragment tree in a list in preorder, and the fragments in their coplanar sets.
 
 use std::ops::Range;
 
@@ -8,69 +8,69 @@ use crate::geometry::side::Half;
 use crate::geometry::spaces::affine::{Affine, Polytope};
 use crate::mesh::handle::NodeId;
 
-/// An input of a tree: a convex piece and its number.
+/// A convex piece from which a tree is built, or a part of it, with its number.
 #[derive(Clone, Debug)]
 pub struct Piece<S: Affine> {
     /// The convex piece.
     pub fragment: S::Fragment,
-    /// The number of the input piece it comes from.
+    /// The number of the input piece from which the fragment was cut.
     pub number: u32,
 }
 
-/// A piece in a node's coplanar set.
+/// A piece that lies in a node's hyperplane.
 #[derive(Clone, Debug)]
 pub struct Fragment<S: Affine> {
-    /// The part of an input piece.
+    /// An input piece, or the part of it in the node's region.
     pub piece: Piece<S>,
-    /// Whether it faces against its node's hyperplane.
+    /// True if the orientation of the piece is opposite to that of the node's hyperplane.
     pub flipped: bool,
 }
 
-/// The origin of a node's hyperplane: enough to rebuild the tree.
+/// The origin of a node's hyperplane; enough to rebuild the tree from the pieces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum NodeCut {
     /// The supporting hyperplane of the input piece with this number.
     Pivot(u32),
-    /// x[axis] = at, in lattice steps: a free cut.
+    /// The hyperplane x[axis] = at, in lattice steps: a free cut.
     Axis {
-        /// The axis the cut is perpendicular to.
+        /// The axis to which the cut is perpendicular.
         axis: usize,
-        /// The coordinate.
+        /// The coordinate of the cut on the axis, in lattice steps.
         at: i64,
     },
     /// The hyperplane at this index in the tree's own list, see [`FragmentTree::own`].
     Own(u32),
 }
 
-/// A region that is divided.
+/// An inner node: a region that a hyperplane divides.
 #[derive(Clone, Debug)]
 pub struct Node<S: Affine> {
-    /// H(v).
+    /// The hyperplane that divides the node's region.
     pub hyperplane: S::Hyperplane,
     /// The origin of the hyperplane.
     pub cut: NodeCut,
-    /// The coplanar set S(v), as a range of the tree's fragments.
+    /// The fragments that lie in the hyperplane, as a range of the tree's fragments.
     pub coplanar: Range<u32>,
-    /// The subtree on the minus side, unless no facet lies there.
+    /// The child on the minus side; `None` if no facet lies there.
     pub minus: Option<NodeId>,
-    /// The subtree on the plus side, unless no facet lies there.
+    /// The child on the plus side; `None` if no facet lies there.
     pub plus: Option<NodeId>,
-    /// The parent and the side of it on which this node lies.
+    /// The parent, and on which side of its hyperplane this node lies; `None` for the root.
     pub parent: Option<(NodeId, Half)>,
-    /// The number of cuts above.
+    /// The number of cuts above this node.
     pub depth: u32,
 }
 
-/// A cut of a fragment of this piece by a node's hyperplane.
+/// The event that a node's hyperplane cut a fragment of a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Crossing {
-    /// The node.
+    /// The node whose hyperplane cut the fragment.
     pub node: NodeId,
-    /// The number of the piece.
+    /// The number of the piece that was cut.
     pub piece: u32,
 }
 
-/// A partition tree over facets.
+/// A partition tree over facets, whose inner nodes list the fragments in their hyperplanes.
 #[derive(Clone, Debug)]
 pub struct FragmentTree<S: Affine> {
     pub(super) nodes: Vec<Node<S>>,
@@ -80,7 +80,7 @@ pub struct FragmentTree<S: Affine> {
 }
 
 impl<S: Affine> FragmentTree<S> {
-    /// The tree without facets: one empty region.
+    /// The tree without facets, which has no nodes, and with the given list of own hyperplanes.
     pub(super) fn empty(own: Vec<S::Hyperplane>) -> Self {
         Self {
             nodes: Vec::new(),
@@ -90,27 +90,27 @@ impl<S: Affine> FragmentTree<S> {
         }
     }
 
-    /// The nodes in preorder, minus before plus; the root is first.
+    /// The inner nodes in preorder, minus before plus; the root is first.
     pub fn nodes(&self) -> &[Node<S>] {
         &self.nodes
     }
 
-    /// The fragments of all coplanar sets, node by node.
+    /// The fragments in the coplanar sets of all nodes, node by node.
     pub fn fragments(&self) -> &[Fragment<S>] {
         &self.fragments
     }
 
-    /// Every cut of a fragment, node by node.
+    /// All cuts of fragments by nodes' hyperplanes, node by node.
     pub fn crossings(&self) -> &[Crossing] {
         &self.crossings
     }
 
-    /// Hyperplanes that come from no facet and may have any direction.
+    /// The tree's list of hyperplanes that come from neither a facet nor an axis.
     pub fn own(&self) -> &[S::Hyperplane] {
         &self.own
     }
 
-    /// The subtree on one side of a node.
+    /// The child on one side of a node; `None` if no facet lies there.
     pub fn child(&self, node: NodeId, half: Half) -> Option<NodeId> {
         let node = self.nodes.get(node.place())?;
         match half {
@@ -119,12 +119,12 @@ impl<S: Affine> FragmentTree<S> {
         }
     }
 
-    /// R(v): the part of `whole` on the node's sides of all cuts above it.
+    /// The region of a node: the part of `whole` on the node's sides of all cuts above it.
     ///
-    /// `None` if there is no such node or nothing is left.
+    /// `None` if there is no such node or its region is empty.
     ///
     /// # Cost
-    /// One division for each cut above.
+    /// One division of a region for each cut above the node.
     pub fn region(&self, node: NodeId, whole: &Polytope<S>) -> Option<Polytope<S>> {
         let mut way = Vec::new();
         let mut next = self.nodes.get(node.place())?.parent;

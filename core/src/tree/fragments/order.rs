@@ -1,11 +1,11 @@
-//! The painter's order: no fragment hides one that comes after it.
+//! The painter's order of a fragment tree: no fragment hides another one that comes later.
 
 use super::node::FragmentTree;
 use crate::geometry::side::Side;
 use crate::geometry::spaces::affine::{Affine, Viewpoint};
 use crate::mesh::handle::NodeId;
 
-/// The side of each node's hyperplane on which the viewpoint lies.
+/// For each node, the side of its hyperplane on which the viewpoint lies.
 pub fn sides<S: Affine>(tree: &FragmentTree<S>, eye: &Viewpoint) -> Vec<Side> {
     tree.nodes()
         .iter()
@@ -13,11 +13,11 @@ pub fn sides<S: Affine>(tree: &FragmentTree<S>, eye: &Viewpoint) -> Vec<Side> {
         .collect()
 }
 
-/// The nodes from the farthest to the nearest.
+/// The nodes in painter's order, from the farthest to the nearest, as seen from a viewpoint.
 ///
-/// The far side of a node's hyperplane comes first, then its coplanar fragments, then the viewpoint's side.
-/// If the viewpoint is in the hyperplane, neither side hides the other and the plus side comes first. The
-/// reverse is a front-to-back order.
+/// The subtree on the far side of a node's hyperplane comes first, then the node itself, then the subtree on
+/// the viewpoint's side. If the viewpoint is in the hyperplane, neither side hides the other, and the plus
+/// side comes first. The reverse is a front-to-back order.
 ///
 /// # Source
 /// Fuchs, Kedem, Naylor 1980.

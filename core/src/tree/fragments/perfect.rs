@@ -1,8 +1,8 @@
 //! Perfect autopartitions: trees of supporting hyperplanes that cut no piece.
 //!
 //! Deciding whether one exists is NP-hard, so this is an exhaustive search with a limit. A hyperplane that
-//! cuts nothing is not always a good choice: its piece may be the only one that separates others later. So
-//! the search tries every such pivot, and caches decided sets.
+//! cuts nothing is not always a good choice: it may be the only one that could separate other pieces later.
+//! So the search tries every such pivot, and caches the result for each set of pieces.
 //!
 //! # Source
 //! de Berg, Khosravi, "Finding perfect auto-partitions is NP-hard", 2008.
@@ -15,10 +15,11 @@ use crate::geometry::side::Split;
 use crate::geometry::spaces::affine::Affine;
 use crate::interrupt::poll;
 
-/// The largest number of pieces for the search: 2^24 sets at most.
+/// The largest number of pieces for the exhaustive search, which caches up to 2^24 sets.
 pub const PERFECT_LIMIT: usize = 24;
 
-/// Bit sets of the pieces on the two sides of one piece's hyperplane, and of those it cuts.
+/// For the hyperplane of one piece, three bit sets of pieces: those on its minus side, on its plus side, and
+/// those it cuts.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sides {
     minus: u32,
@@ -26,10 +27,11 @@ struct Sides {
     split: u32,
 }
 
-/// The cuts, in preorder, of a tree that cuts no piece; `None` if there is none.
+/// The cuts, in preorder, of a tree of supporting hyperplanes that cuts no piece; `None` if there is no such
+/// tree.
 ///
 /// # Errors
-/// `TooMany` above [`PERFECT_LIMIT`] pieces.
+/// `TooMany` if there are more than [`PERFECT_LIMIT`] pieces.
 pub fn perfect<S: Affine>(pieces: &[Piece<S>]) -> Result<Option<Vec<NodeCut>>> {
     if pieces.len() > PERFECT_LIMIT {
         let text = format!(
@@ -67,12 +69,13 @@ fn sides_of<S: Affine>(pivot: &Piece<S>, pieces: &[Piece<S>]) -> Sides {
 
 struct Search {
     sides: Vec<Sides>,
-    /// For each decided set, a pivot that leads to a perfect tree, if there is one.
+    /// For each decided set of pieces, a pivot that leads to a perfect tree, or `None` if there is no such
+    /// tree.
     pivots: FxHashMap<u32, Option<usize>>,
 }
 
 impl Search {
-    /// Return whether a set has a perfect tree; the recursion is as deep as the set is large.
+    /// Return whether a set of pieces has a perfect tree; recurses at most as deep as the set has pieces.
     fn decide(&mut self, set: u32) -> bool {
         if set == 0 {
             return true;
@@ -121,7 +124,7 @@ mod tests {
 
     #[test]
     fn a_pinwheel_has_none() {
-        // Each segment's line cuts the next one.
+        // The line of each segment cuts the next segment.
         let wheel = [
             [-1, -3, -1, 1],
             [-3, 1, 1, 1],

@@ -1,4 +1,4 @@
-//! The plan for building a tree, and the regions still to be divided.
+//! Plans for building a fragment tree: which hyperplane divides each region.
 
 use super::node::{FragmentTree, NodeCut, Piece};
 use super::policy::{Policy, Sample};
@@ -9,28 +9,29 @@ use crate::geometry::side::Half;
 use crate::geometry::spaces::affine::{Affine, Polytope};
 use crate::mesh::handle::NodeId;
 
-/// The plan for building a tree.
+/// The plan for building a fragment tree: which hyperplane divides each region.
 pub enum Plan<S: Affine> {
-    /// By a policy.
+    /// A policy chooses a pivot among the region's pieces.
     Policy {
         /// The policy that chooses the pivot.
         policy: Policy,
-        /// Divide regions with more pieces than this by axis-parallel cuts where that helps; `None` for
-        /// autopartition alone.
+        /// Regions with more pieces than this are divided by axis-parallel cuts where these divide well;
+        /// `None` for autopartition alone.
         top: Option<usize>,
-        /// The root's region, for policies that need it.
+        /// The region of the root, for policies that compare volumes.
         region: Option<Polytope<S>>,
     },
-    /// By these cuts, one for each node in preorder.
+    /// The given cuts, one for each node in preorder.
     Given(Vec<NodeCut>),
-    /// By a callback.
+    /// A callback chooses each hyperplane.
     Asked(Ask<S>),
-    /// By lines through ends of pieces, or planes through their corners.
+    /// Hyperplanes through corners of pieces are compared with supporting ones: lines through two, planes
+    /// through three.
     Lines(Lines),
-    /// Like this tree, whose pieces come first in the list; at its leaves by another plan.
+    /// The cuts of an existing tree, whose pieces come first in the list; another plan divides its leaves.
     Grown(Box<FragmentTree<S>>, Box<Self>),
-    /// By these hyperplanes in order, skipping those with all pieces on one side; then by another plan,
-    /// which may refer to them.
+    /// The given hyperplanes in order, except where all pieces are on one side; then another plan, which may
+    /// refer to them by index.
     Own(Vec<S::Hyperplane>, Box<Self>),
 }
 
@@ -55,40 +56,41 @@ impl<S: Affine> Plan<S> {
     }
 }
 
-/// A callback that decides.
+/// A callback that chooses the hyperplane for a region from its depth, its number of pieces and the
+/// candidates.
 pub type Answering<S> = Box<dyn FnMut(u32, usize, &[Candidate]) -> Result<Answer<S>> + Send>;
 
-/// A callback for each region, and the number of candidates to show it.
+/// A callback that chooses hyperplanes, and the number of candidates that it receives.
 pub struct Ask<S: Affine> {
-    /// Candidates are evenly spaced in the region's list; there is at least one.
+    /// The number of candidates, evenly spaced in the region's list of pieces; there is at least one.
     pub sample: Sample,
-    /// Gets the region's depth, the number of its pieces and the candidates, scored by their numbers of
-    /// splits.
+    /// The callback; each candidate's score is the number of pieces that it cuts.
     pub answer: Answering<S>,
 }
 
-/// The answer of a callback.
+/// The hyperplane that a callback chooses.
 pub enum Answer<S: Affine> {
-    /// The candidate at this index.
+    /// The hyperplane of the candidate at this index.
     Candidate(usize),
-    /// A hyperplane that is no candidate.
+    /// A hyperplane that belongs to no candidate.
     Hyperplane(S::Hyperplane),
 }
 
-/// Lines through two corners of pieces in the plane, planes through three in space.
+/// The data for cuts through corners of pieces: lines through two in the plane, planes through three in
+/// space.
 pub struct Lines {
-    /// The corners of each piece, by its number.
+    /// The corners of each piece, by the piece's number.
     pub corners: Vec<Vec<Lattice>>,
-    /// The number of them to compare in each region, besides as many supporting hyperplanes.
+    /// The number of hyperplanes through corners to compare in each region, and of supporting ones as well.
     pub sample: Sample,
 }
 
-/// A region still to be divided, if it has pieces.
+/// A region that is not yet divided.
 pub(super) struct OpenRegion<S: Affine> {
     pub(super) pieces: Vec<Piece<S>>,
     pub(super) place: Option<(NodeId, Half)>,
     pub(super) depth: u32,
     pub(super) region: Option<Polytope<S>>,
-    /// The node with the same region in the tree that is extended.
+    /// The node with the same region in the existing tree that the new tree extends, if any.
     pub(super) old: Option<NodeId>,
 }

@@ -1,4 +1,4 @@
-//! Pivot policies: rules for the hyperplane that divides a region.
+//! Pivot policies of fragment trees: rules that choose the piece whose hyperplane divides a region.
 
 use super::node::Piece;
 use super::trace::{Candidate, Reason};
@@ -7,36 +7,39 @@ use crate::geometry::spaces::affine::{Affine, Polytope};
 use crate::interrupt::poll;
 use crate::tree::trace::Watcher;
 
-/// The number of candidates that a policy compares at each node, evenly spaced in its list.
+/// The number of candidates that a policy compares at each node, evenly spaced in the list of pieces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample(pub usize);
 
-/// The rule that chooses a region's pivot among its pieces.
+/// The rule that chooses the pivot of a region: the piece whose hyperplane divides it. The numbers of pieces
+/// on the two sides are n⁻ and n⁺; a cut piece counts on both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Policy {
-    /// The first in the order given.
+    /// The first piece in the order given.
     First,
-    /// The first in a random order of all pieces, drawn once; the seed makes it reproducible.
+    /// The first piece in a random order of all pieces, drawn once; the seed makes it reproducible.
     ///
-    /// One order for the whole tree, not a draw for each node: the analysis needs it.
+    /// There is one order for the whole tree, not a draw for each node, as the analysis requires.
     Random(u64),
-    /// The candidate that cuts the fewest pieces.
+    /// The candidate whose hyperplane cuts the fewest pieces.
     LeastSplits(Sample),
-    /// The least |n⁻ − n⁺|.
+    /// The candidate with the least |n⁻ − n⁺|.
     Balanced(Sample),
-    /// The least alpha·|n⁻ − n⁺| + (1 − alpha)·splits.
+    /// The candidate with the least alpha·|n⁻ − n⁺| + (1 − alpha)·splits, where splits is the number of
+    /// pieces that it cuts.
     ///
-    /// With alpha = 1/2: the candidate whose larger side has the fewest pieces.
+    /// With alpha = 1/2, this is the candidate whose larger side has the fewest pieces.
     Weighted(Sample, f64),
-    /// The least expected number of pieces left after one step, P⁻·n⁻ + P⁺·n⁺.
+    /// The candidate with the least P⁻·n⁻ + P⁺·n⁺, the expected number of pieces on a random point's side; P⁻
+    /// and P⁺ are the sides' shares of the region's volume.
     ///
     /// # Source
-    /// Naylor 1993, "Constructing good partitioning trees", with the length of a subtree's list for its
-    /// unknown cost.
+    /// Naylor 1993, "Constructing good partitioning trees", with the number of pieces instead of the unknown
+    /// cost of a subtree.
     LeastCost(Sample),
 }
 
-/// The numbers of pieces on each side of a hyperplane, and of those it cuts.
+/// The numbers of pieces with parts on the minus side of a hyperplane, on its plus side, and on both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Tally {
     pub minus: usize,
@@ -45,7 +48,7 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    /// Counts fragments on each side; cut fragments count on both.
+    /// Counts the pieces on each side of a hyperplane; a piece that it cuts counts on both sides.
     pub fn of<S: Affine>(pieces: &[Piece<S>], cut: &S::Hyperplane) -> Self {
         let mut tally = Self::default();
         for piece in pieces {
@@ -72,30 +75,30 @@ impl Tally {
         }
     }
 
-    /// Return whether `count` pieces do not all lie on one side.
+    /// Return whether a hyperplane with this tally does not leave all of `count` pieces on one side.
     pub fn divides(&self, count: usize) -> bool {
         let one_sided = |all: usize, none: usize| all == count && none == 0;
         !one_sided(self.minus, self.plus) && !one_sided(self.plus, self.minus)
     }
 
-    /// The difference of fragments between the sides.
+    /// The difference between the numbers of pieces on the two sides.
     fn skew(&self) -> f64 {
         self.minus.abs_diff(self.plus) as f64
     }
 
-    /// The number of fragments on the larger side.
+    /// The number of pieces on the side that has more.
     pub fn larger(&self) -> usize {
         self.minus.max(self.plus)
     }
 }
 
 impl Policy {
-    /// Return whether the policy needs the region to judge candidates.
+    /// Return whether the policy compares volumes and so needs the region.
     pub fn needs_region(&self) -> bool {
         matches!(self, Self::LeastCost(_))
     }
 
-    /// Return the reason for the pivot.
+    /// Return the reason that a trace gives for pivots of this policy.
     pub(super) fn reason(&self) -> Reason {
         match self {
             Self::First => Reason::First,
@@ -107,7 +110,7 @@ impl Policy {
         }
     }
 
-    /// The index of the piece that becomes the pivot; the list is not empty.
+    /// The index of the piece that the policy chooses as pivot; `pieces` must not be empty.
     pub(super) fn pivot<S: Affine>(
         &self,
         pieces: &[Piece<S>],
@@ -132,7 +135,8 @@ impl Policy {
     }
 }
 
-/// P⁻ and P⁺: the shares of a region's volume on the two sides of a cut.
+/// P⁻ and P⁺: the shares of a region's volume on the minus and on the plus side of a cut; one half each if
+/// the region is unknown or has no volume.
 fn shares<S: Affine>(region: Option<&Polytope<S>>, cut: &S::Hyperplane) -> [f64; 2] {
     let Some(region) = region else {
         return [0.5; 2];
@@ -146,7 +150,7 @@ fn shares<S: Affine>(region: Option<&Polytope<S>>, cut: &S::Hyperplane) -> [f64;
     }
 }
 
-/// The first candidate with the least penalty.
+/// The index of the first candidate with the least penalty.
 fn best<S: Affine>(
     pieces: &[Piece<S>],
     Sample(count): Sample,

@@ -1,4 +1,4 @@
-//! The parts of sub-hyperplanes that separate In from Out.
+//! The boundary of a tree's set: the parts of sub-hyperplanes with In on one side and Out on the other.
 
 use super::node::{Cut, Facet, Label, PartitionTree};
 use crate::error::{Error, Result};
@@ -7,12 +7,12 @@ use crate::geometry::spaces::space::{overlay, Space};
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 
-/// The boundary of a tree's set, in convex pieces with In on their minus sides.
+/// The boundary of a tree's set as convex pieces, with In on their minus sides.
 ///
-/// Without the border of the frame.
+/// The border of the frame is left out.
 ///
 /// # Order
-/// Nodes before their subtrees, minus before plus.
+/// By node in preorder, the minus subtree before the plus subtree.
 ///
 /// # Errors
 /// `Internal` if a cut lies in the border of its own region.
@@ -25,11 +25,11 @@ pub fn boundary<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<S::Fragment>> {
     Ok(pieces)
 }
 
-/// The boundary in convex pieces, each with the inner node it lies in, by its index among the inner nodes
-/// in preorder.
+/// The boundary of a tree's set as convex pieces, each with the inner node in whose cut it lies, by its index
+/// among the inner nodes in preorder.
 ///
 /// # Order
-/// By these indices.
+/// By the index of the inner node.
 ///
 /// # Errors
 /// `Internal` if a cut lies in the border of its own region.
@@ -45,13 +45,13 @@ pub fn boundary_of<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<(NodeId, S::
     Ok(pieces)
 }
 
-/// The boundary as parts of the facets in the tree's coplanar sets, each with its source.
+/// The boundary of a tree's set as parts of the facets in its coplanar sets, each with its source number.
 ///
-/// Where facets overlap, the smallest source number owns the place. Leaves out boundary without facets,
-/// such as a half-space's.
+/// Where facets overlap, only the facet with the smallest source number counts. Boundary without facets, such
+/// as the boundary of a half-space, is left out.
 ///
 /// # Order
-/// Nodes before their subtrees, minus before plus; within a node by source.
+/// By node in preorder, the minus subtree before the plus subtree; within a node by source number.
 ///
 /// # Errors
 /// `Internal` if a cut lies in the border of its own region.
@@ -68,7 +68,7 @@ pub fn owned_boundary<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<Facet<S>>
     Ok(pieces)
 }
 
-/// Calls `visit` for each inner node, before its subtrees, minus first.
+/// Calls `visit` for each inner node in preorder: before its subtrees, minus subtree first.
 pub fn for_each_cut<S: Space>(
     tree: &PartitionTree<S>,
     mut visit: impl FnMut(&Cut<S>) -> Result<()>,
@@ -84,7 +84,7 @@ pub fn for_each_cut<S: Space>(
     Ok(())
 }
 
-/// Coplanar facets minus the areas of others with smaller source numbers, sorted by source.
+/// Coplanar facets without the parts that facets of smaller source numbers cover, sorted by source number.
 fn disjoint_facets<S: Space>(facets: &[Facet<S>]) -> Vec<Facet<S>> {
     let mut order: Vec<&Facet<S>> = facets.iter().collect();
     order.sort_by_key(|facet| facet.source);
@@ -101,7 +101,7 @@ fn disjoint_facets<S: Space>(facets: &[Facet<S>]) -> Vec<Facet<S>> {
     owned
 }
 
-/// The parts of a fragment that no coplanar mask covers.
+/// The parts of a fragment that none of the coplanar masks covers.
 fn uncovered<'a, S: Space>(
     piece: S::Fragment,
     masks: impl Iterator<Item = &'a S::Fragment>,
@@ -112,7 +112,8 @@ fn uncovered<'a, S: Space>(
     })
 }
 
-/// The parts of a fragment in a node's cut that separate In from Out, with In on the minus side.
+/// The parts of a fragment in a node's cut with In on one side and Out on the other, oriented with In on
+/// their minus sides.
 fn walls<S: Space>(cut: &Cut<S>, piece: S::Fragment) -> Result<Vec<S::Fragment>> {
     let mut walls = Vec::new();
     for (part, minus) in cut.child(Half::Minus).beside(piece)? {
@@ -125,7 +126,8 @@ fn walls<S: Space>(cut: &Cut<S>, piece: S::Fragment) -> Result<Vec<S::Fragment>>
     Ok(walls)
 }
 
-/// A wall oriented with In on its minus side, given the label on the cut's minus side.
+/// A part of the boundary in a cut, oriented with In on its minus side; `minus` is the label on the cut's
+/// minus side.
 fn facing<S: Space>(part: S::Fragment, cut: &S::Hyperplane, minus: Label) -> S::Fragment {
     let as_cut = S::coincide(S::hyperplane(&part), cut) == Some(Orientation::Same);
     if as_cut == (minus == Label::In) {
@@ -136,10 +138,11 @@ fn facing<S: Space>(part: S::Fragment, cut: &S::Hyperplane, minus: Label) -> S::
 }
 
 impl<S: Space> PartitionTree<S> {
-    /// The parts of a fragment in the border of the tree's region, each with the label next to it.
+    /// The parts of a fragment in the border of the tree's region, each with the label of the leaf next to
+    /// it.
     ///
     /// # Errors
-    /// `Internal` if the fragment lies in a cut: the border of a region has none.
+    /// `Internal` if the fragment lies in a cut: no cut lies in the border of its region.
     pub fn beside(&self, piece: S::Fragment) -> Result<Vec<(S::Fragment, Label)>> {
         let mut found = Vec::new();
         let mut pending = vec![(self.clone(), piece)];

@@ -1,11 +1,11 @@
-//! Tests whether a set reaches the border of the frame.
+//! Tests whether a tree's set reaches the border of the frame.
 
 use super::node::{Label, PartitionTree};
 use crate::geometry::side::{Half, Split};
 use crate::geometry::spaces::axis::AxisSpace;
 use crate::interrupt::poll;
 
-/// Return whether the set stays off the frame's border, that is, fits into a box.
+/// Return whether the set is bounded: no In leaf touches the border of the frame.
 ///
 /// # Cost
 /// Proportional to the number of nodes whose regions reach the border.

@@ -1,8 +1,8 @@
-//! From facets to a tree by autopartition: every cut is the supporting hyperplane of a facet.
+//! Builds a tree of a set by autopartition: every cut is the hyperplane of a facet.
 //!
 //! A region without facets is labelled by its side of the last cut. This is correct if the facets are the
-//! boundary of a set, each once, with the inside behind it. Other input is detected where it shows
-//! (`Built::simple`), and `winding` labels it instead.
+//! boundary of a set, each once, with the inside behind it. Otherwise, contradictions are reported where they
+//! occur (`Built::simple`), and `winding` can label the tree instead.
 
 use std::sync::Arc;
 
@@ -13,22 +13,23 @@ use crate::geometry::side::{Half, Orientation, Split};
 use crate::geometry::spaces::space::{Region, Space};
 use crate::interrupt::poll;
 
-/// A tree and whether its facets looked like the boundary of one set.
+/// A tree built from facets, and whether the facets looked like the boundary of one set.
 #[derive(Clone, Debug)]
 pub struct Built<S: Space> {
-    /// The tree; its labels mean nothing unless the facets bound a set.
+    /// The tree; its labels are meaningless unless the facets bound a set.
     pub tree: PartitionTree<S>,
-    /// True if the facets at each leaf agree on its label; false proves overlap or a hole.
+    /// True if the facets next to each leaf agree on its label; false proves that facets overlap or a hole
+    /// exists.
     pub simple: bool,
 }
 
-/// Builds a tree by supporting hyperplanes alone.
+/// Builds the tree of a set from its boundary, with the facets' own hyperplanes as cuts.
 ///
-/// `facets` lie in `frame`, with the inside on their minus sides; without facets the tree is the leaf
-/// `empty`. Coplanar facets share one node.
+/// `facets` lie in `frame`, with the inside on their minus sides; without facets, the tree is a leaf with the
+/// label `empty`. Coplanar facets share one node.
 ///
 /// # Order
-/// The list and the policy determine the tree.
+/// The order of the facets and the policy determine the tree.
 ///
 /// # Cost
 /// Quadratic in the worst case: a convex body becomes a chain.
@@ -48,13 +49,14 @@ pub fn autopartition<S: Space>(
     partition(facets, frame, empty, |_, facets| choice.cut(facets))
 }
 
-/// Builds a tree; `choose` picks the cut for each region from its facets, of which there is at least one.
+/// Builds a tree with cuts that `choose` picks for each region, from the region and its facets; there is at
+/// least one.
 ///
-/// As [`autopartition`], but cuts need not support a facet. Labels next to a cut without facets mean
-/// nothing.
+/// Unlike in [`autopartition`], cuts need not be hyperplanes of facets. The labels next to a cut without
+/// facets are meaningless.
 ///
 /// # Errors
-/// `Internal` if a cut does not cross its region, or never divides the facets.
+/// `Internal` if a cut does not cross its region, or cuts never separate the facets.
 pub fn partition<S: Space>(
     facets: Vec<Facet<S>>,
     frame: S::Frame,
@@ -86,14 +88,14 @@ struct Builder<S: Space, C> {
 }
 
 enum Step<S: Space> {
-    /// Build the subtree on one side of a sub-hyperplane whose node is at `depth`.
+    /// Builds the subtree on one side of a sub-hyperplane whose node has `depth` cuts above it.
     Side {
         sub_hyperplane: Arc<SubHyperplane<S>>,
         half: Half,
         depth: usize,
         facets: Vec<Facet<S>>,
     },
-    /// Join the two subtrees built last.
+    /// Joins the last two subtrees at a sub-hyperplane.
     Join(Arc<SubHyperplane<S>>),
 }
 
@@ -134,7 +136,7 @@ impl<S: Space, C: FnMut(&Region<S>, &[Facet<S>]) -> S::Hyperplane> Builder<S, C>
         }
     }
 
-    /// Chooses a cut for the current region and schedules its two sides.
+    /// Chooses a cut for the current region and schedules its two sides to be built.
     fn divide(&mut self, facets: Vec<Facet<S>>) -> Result<()> {
         let depth = self.region.depth();
         let cut = (self.choose)(&self.region, &facets);
@@ -159,7 +161,7 @@ impl<S: Space, C: FnMut(&Region<S>, &[Facet<S>]) -> S::Hyperplane> Builder<S, C>
         Ok(())
     }
 
-    /// Labels a region without facets by its side of the last cut.
+    /// Adds the leaf for a region without facets, labelled by its side of the last cut.
     fn label(&mut self, sub_hyperplane: &SubHyperplane<S>, half: Half) {
         let cut = S::hyperplane(&sub_hyperplane.span);
         let faces_as_cut = |facet: &Facet<S>| {
@@ -188,7 +190,7 @@ impl<S: Space, C: FnMut(&Region<S>, &[Facet<S>]) -> S::Hyperplane> Builder<S, C>
     }
 }
 
-/// The facets on the minus side, on the plus side, and in the cut.
+/// The parts of facets on the minus side of a cut, on its plus side, and in the cut.
 fn distribute<S: Space>(facets: Vec<Facet<S>>, cut: &S::Hyperplane) -> [Vec<Facet<S>>; 3] {
     let mut lists = [Vec::new(), Vec::new(), Vec::new()];
     for facet in facets {

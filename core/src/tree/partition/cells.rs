@@ -1,16 +1,16 @@
-//! The convex cells that make up a set.
+//! The convex regions of In leaves, which make up a set.
 
 use super::node::{Label, PartitionTree};
 use crate::geometry::side::Half;
 use crate::geometry::spaces::space::{Region, Space};
 use crate::interrupt::poll;
 
-/// The faces of each In leaf's region, the region on their minus sides.
+/// For each In leaf, the faces of its region, with the region on their minus sides.
 ///
 /// The regions are a convex decomposition of the set. The border of the frame is not a face.
 ///
 /// # Order
-/// Minus before plus; the faces of a cell from the root's cut down.
+/// Leaves in preorder, minus before plus; the faces of a region in the order of the cuts from the root down.
 ///
 /// # Cost
 /// For each In leaf, the square of its depth.

@@ -1,4 +1,4 @@
-//! The location of a point.
+//! Tests whether a point lies inside a tree's set, outside or on its boundary.
 
 use super::node::{Label, PartitionTree};
 use crate::geometry::side::{Half, Side};
@@ -6,27 +6,27 @@ use crate::geometry::spaces::axis::AxisSpace;
 use crate::geometry::spaces::space::Space;
 use crate::interrupt::poll;
 
-/// The location of a point relative to a set.
+/// The location of a point relative to a set: inside, outside or on the boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Location {
-    /// In the set's interior.
+    /// In the interior of the set.
     In,
-    /// On its boundary.
+    /// On the boundary of the set.
     On,
-    /// Outside.
+    /// Outside the set and its boundary.
     Out,
 }
 
-/// Classifies a point of the tree's region.
+/// Finds whether a point lies inside a tree's set, outside or on its boundary.
 ///
-/// Visits the leaves that touch the point: a point in a cut is interior if all of them are In, and on the
-/// boundary if they differ.
+/// Visits all leaves whose regions touch the point: it is inside if all of them are In, outside if all are
+/// Out, and else on the boundary.
 ///
 /// # Exactness
-/// Exact.
+/// The answer is exact.
 ///
 /// # Cost
-/// One path, unless the point lies in a cut.
+/// One path from the root to a leaf, unless the point lies in a cut.
 pub fn classify<S: Space>(tree: &PartitionTree<S>, point: &S::Point) -> Location {
     let mut pending = vec![tree.clone()];
     let mut seen = None;
@@ -54,7 +54,7 @@ pub fn classify<S: Space>(tree: &PartitionTree<S>, point: &S::Point) -> Location
     }
 }
 
-/// The label at the frame's lowest corner.
+/// The label of the tree at the frame's corner of least coordinates.
 pub fn classify_corner<S: AxisSpace>(tree: &PartitionTree<S>) -> Label {
     let mut at = tree.clone();
     loop {

@@ -1,4 +1,4 @@
-//! The connected parts of a set and of its complement, and the walls between them.
+//! The connected parts of a set and of its complement, and the walls between these parts.
 
 use super::flat::Flat;
 use super::node::{Label, PartitionTree};
@@ -8,24 +8,24 @@ use crate::interrupt::poll;
 use crate::mesh::disjoint::DisjointSets;
 use crate::mesh::handle::NodeId;
 
-/// A piece of the boundary and the parts on its two sides.
+/// A piece of a set's boundary and the connected parts on its two sides.
 #[derive(Clone, Debug)]
 pub struct Wall<S: Space> {
-    /// The piece, the set on its minus side.
+    /// The piece, with the set on its minus side.
     pub fragment: S::Fragment,
-    /// The set's part on the minus side.
+    /// The connected part of the set on the minus side, by its first leaf.
     pub inside: NodeId,
-    /// The complement's part on the plus side.
+    /// The connected part of the complement on the plus side, by its first leaf.
     pub outside: NodeId,
 }
 
-/// The boundary of a tree's set, each piece with the connected parts that it separates.
+/// The boundary of a tree's set, each piece with the two connected parts that it separates.
 ///
-/// Parts are open: regions that touch in less than a piece of a hyperplane are not connected. The name of a
-/// part is its first leaf, and only distinguishes parts.
+/// Parts are open: regions that touch only in points, or in space along edges, are not connected. A part is
+/// named by its first leaf, only to distinguish it from others.
 ///
 /// # Order
-/// By node, breadth first.
+/// By inner node, breadth first.
 ///
 /// # Errors
 /// `Internal` if a cut lies in the border of its own region.

@@ -1,7 +1,8 @@
-//! From facets to a set: axis-parallel cuts on top, supporting hyperplanes below, labels by winding.
+//! Builds a set from facets: axis-parallel cuts on top, the facets' hyperplanes below, labels by winding
+//! numbers.
 //!
 //! An autopartition of a convex outline is a chain. Cuts through the middle of long lists that support no
-//! facet (a free partition) keep the depth logarithmic as long as they divide the list.
+//! facet (a free partition) make the depth logarithmic as long as they divide the list.
 
 use super::build::partition;
 use super::node::{Facet, Label, PartitionTree};
@@ -13,22 +14,22 @@ use crate::geometry::spaces::axis::AxisSpace;
 use crate::geometry::spaces::space::Region;
 use crate::interrupt::poll;
 
-/// The longest list that gets no axis-parallel cut.
+/// The largest number of facets in a region that gets no axis-parallel cut.
 const MAX_WITHOUT_AXIS_CUT: usize = 12;
 
-/// How to divide a tree above the facets' own hyperplanes.
+/// How to divide the regions of a tree before the facets' own hyperplanes do.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan<'a, S: AxisSpace> {
-    /// Cuts to make first, in this order, in every region with facets.
+    /// Cuts to make first, in this order, in every region with facets that they cross.
     pub cuts: &'a [S::Hyperplane],
-    /// Whether to divide long lists by axis-parallel cuts.
+    /// True if regions with long lists of facets are divided by axis-parallel cuts.
     pub axis_cuts: bool,
-    /// The choice among the facets' hyperplanes.
+    /// The rule that chooses among the facets' hyperplanes.
     pub policy: PivotPolicy,
 }
 
 impl<S: AxisSpace> Plan<'_, S> {
-    /// No given cuts, axis-parallel cuts, then the facets in random order.
+    /// The plan with axis-parallel cuts, then the facets' hyperplanes in random order; no given cuts.
     pub const BALANCED: Self = Self {
         cuts: &[],
         axis_cuts: true,
@@ -36,18 +37,19 @@ impl<S: AxisSpace> Plan<'_, S> {
     };
 }
 
-/// The set of places where the facets' winding number satisfies a rule.
+/// The set of points at which the winding number of the facets satisfies the rule `inside`.
 ///
-/// Facets may cross, overlap and repeat. `base` is the winding number in the frame's lowest corner.
+/// Facets may cross, overlap and repeat. `base` is the winding number at the frame's corner of least
+/// coordinates.
 ///
 /// # Order
-/// The list and the plan determine the tree.
+/// The order of the facets and the plan determine the tree.
 ///
 /// # Cost
-/// O(n log n) splits for outlines whose facets are short against the whole.
+/// O(n log n) splits for outlines whose facets are short compared with the whole outline.
 ///
 /// # Errors
-/// `NotClosed` if the facets do not define one number for every place; `Internal` for a defect.
+/// `NotClosed` if the facets do not define one winding number for every point; `Internal` for a defect.
 ///
 /// # Source
 /// Thibault, Naylor 1987; free partitions: de Berg et al., Computational Geometry, chapter 12.
@@ -81,10 +83,10 @@ fn planned_cut<S: AxisSpace>(
     middles.min_by_key(|(size, _)| *size).map(|(_, cut)| cut)
 }
 
-/// The cut across an axis at the median corner, and the size of the longer list that it leaves. `None` if
-/// this is more than three quarters of all, or more than a sixteenth is cut.
+/// The cut across an axis at the median corner, and the number of facets with parts on its larger side.
+/// `None` if these are more than three quarters of all, or if more than a sixteenth are cut.
 ///
-/// The own hyperplanes of long facets side by side divide these better.
+/// For long facets side by side, their own hyperplanes divide better.
 fn middle_cut<S: AxisSpace>(facets: &[Facet<S>], axis: usize) -> Option<(usize, S::Hyperplane)> {
     let corner = |facet: &Facet<S>| S::corner(&facet.fragment, axis);
     let mut corners: Vec<i64> = facets.iter().map(corner).collect();

@@ -1,4 +1,4 @@
-//! A tree as a list that numbers its leaves, and contacts between leaves.
+//! A tree as a list with numbered nodes, and the contacts between its leaves.
 
 use std::collections::VecDeque;
 
@@ -9,7 +9,7 @@ use crate::geometry::spaces::space::Space;
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 
-/// A tree as a list, parents before children.
+/// A tree as a list of numbered nodes, parents before children.
 pub struct Flat<S: Space> {
     nodes: Vec<FlatNode<S>>,
 }
@@ -19,28 +19,28 @@ enum FlatNode<S: Space> {
     Cut(FlatCut<S>),
 }
 
-/// An inner node and its children.
+/// An inner node of the list and the numbers of its children.
 pub struct FlatCut<S: Space> {
-    /// The node.
+    /// The inner node of the tree.
     pub cut: Cut<S>,
-    /// The minus child.
+    /// The number of the child on the minus side.
     pub minus: NodeId,
-    /// The plus child.
+    /// The number of the child on the plus side.
     pub plus: NodeId,
 }
 
-/// A piece of a cut between two leaves.
+/// A piece of a cut with one leaf on each side.
 pub struct Contact<S: Space> {
     /// The piece, with the orientation of the cut.
     pub fragment: S::Fragment,
-    /// The leaf on the cut's minus side.
+    /// The number of the leaf on the cut's minus side.
     pub minus: NodeId,
-    /// The leaf on its plus side.
+    /// The number of the leaf on the cut's plus side.
     pub plus: NodeId,
 }
 
 impl<S: Space> Flat<S> {
-    /// Lists a tree's nodes, breadth first.
+    /// Lists the nodes of a tree, breadth first.
     pub fn new(tree: &PartitionTree<S>) -> Self {
         let mut nodes = Vec::new();
         let mut pending = VecDeque::from([tree.clone()]);
@@ -59,18 +59,18 @@ impl<S: Space> Flat<S> {
         Self { nodes }
     }
 
-    /// The number of nodes.
+    /// The number of nodes, leaves included.
     pub fn len(&self) -> usize {
         self.nodes.len()
     }
 
-    /// The leaves.
+    /// The numbers of the leaves, ascending.
     pub fn leaves(&self) -> impl Iterator<Item = NodeId> + '_ {
         let nodes = NodeId::all().take(self.len());
         nodes.filter(|&node| self.label(node).is_some())
     }
 
-    /// The inner nodes in order.
+    /// The inner nodes in the order of the list.
     pub fn cuts(&self) -> impl Iterator<Item = &FlatCut<S>> {
         self.nodes.iter().filter_map(|node| match node {
             FlatNode::Leaf(_) => None,
@@ -78,7 +78,7 @@ impl<S: Space> Flat<S> {
         })
     }
 
-    /// Return the label of a leaf; `None` for an inner node.
+    /// Return the label of the leaf with this number; `None` for an inner node.
     pub fn label(&self, node: NodeId) -> Option<Label> {
         match &self.nodes[node.place()] {
             FlatNode::Leaf(label) => Some(*label),
@@ -86,7 +86,7 @@ impl<S: Space> Flat<S> {
         }
     }
 
-    /// The leaf reached by a function that picks a side of each cut.
+    /// The number of the leaf that a path from the root reaches if `reference` picks the side of each cut.
     pub fn leaf_at(&self, reference: impl Fn(&S::Hyperplane) -> Half) -> NodeId {
         let mut at = NodeId::ROOT;
         while let FlatNode::Cut(node) = &self.nodes[at.place()] {
@@ -98,7 +98,7 @@ impl<S: Space> Flat<S> {
         at
     }
 
-    /// The leaves next to a fragment in the border of a node's region.
+    /// The parts of a fragment in the border of a node's region, each with the number of the leaf next to it.
     ///
     /// # Errors
     /// `Internal` if a cut lies in the border of its own region.
@@ -125,10 +125,10 @@ impl<S: Space> Flat<S> {
         Ok(found)
     }
 
-    /// All pieces of cuts between two leaves.
+    /// All pieces of cuts that separate two leaves.
     ///
     /// # Order
-    /// By node.
+    /// By inner node, in the order of the list.
     ///
     /// # Errors
     /// `Internal` if a cut lies in the border of its own region.
@@ -150,7 +150,7 @@ impl<S: Space> Flat<S> {
         Ok(contacts)
     }
 
-    /// The tree with new labels.
+    /// The same tree with the labels that `label` gives for the numbers of leaves.
     pub fn relabelled(&self, label: impl Fn(NodeId) -> Label) -> PartitionTree<S> {
         let mut trees: Vec<PartitionTree<S>> = Vec::new();
         trees.resize(self.len(), PartitionTree::EMPTY);

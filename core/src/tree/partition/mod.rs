@@ -1,9 +1,9 @@
-//! The partition tree itself, generic over the dimension.
+//! Partition trees of sets, generic over the dimension.
 //!
 //! A tree represents a set inside the region of its root: leaves are In or Out, cuts divide a region by a
-//! hyperplane. Nodes are immutable and shared; no function here recurses, since a convex body of n faces is
-//! a chain of depth n. Invariants, verified by [`check`]: the span of a node is its cut inside its region,
-//! the coplanar set lies in the span, and no cut has two equal leaves.
+//! hyperplane. Nodes are immutable and shared; no function here recurses, since a convex body of n faces is a
+//! chain of depth n. Invariants, verified by [`check`]: the span of a node is its cut inside its region, the
+//! coplanar set lies in the span, and no cut has two equal leaves.
 //!
 //! # Source
 //! Fuchs, Kedem, Naylor 1980; Thibault, Naylor 1987.

@@ -1,4 +1,4 @@
-//! Leaves, cuts, and the references by which trees share them.
+//! Partition trees of sets: leaves, cuts, and the references by which trees share subtrees.
 
 use std::fmt;
 use std::mem;
@@ -28,33 +28,34 @@ impl Label {
         }
     }
 
-    /// The other label.
+    /// The opposite label: `Out` for `In`, `In` for `Out`.
     #[must_use]
     pub fn complement(self) -> Self {
         Self::from_inside(self == Self::Out)
     }
 }
 
-/// A fragment and the input element it was cut from.
+/// A fragment and the number of the input element from which it was cut.
 #[derive(Clone, Debug)]
 pub struct Facet<S: Space> {
     /// The convex piece, oriented with the inside of its set on the minus side.
     pub fragment: S::Fragment,
-    /// The element's number; the smallest number among overlapping facets owns a place.
+    /// The number of the input element; where facets overlap, the one with the smallest number counts.
     pub source: u64,
 }
 
-/// The contents of a node's cut: its sub-hyperplane and its coplanar set.
+/// The contents of a node's cut: its part inside the node's region, and the input facets that lie in it.
 #[derive(Debug)]
 pub struct SubHyperplane<S: Space> {
-    /// The cut inside the node's region, oriented as the cut.
+    /// The part of the cut inside the node's region, with the orientation of the cut.
     pub span: S::Fragment,
-    /// The coplanar set S(v): input fragments that lie in the span, in either orientation.
+    /// The coplanar set: input fragments that lie in the span, with either orientation.
     pub facets: Vec<Facet<S>>,
 }
 
 impl<S: Space> SubHyperplane<S> {
-    /// The two parts of a sub-hyperplane whose span was cut into `minus` and `plus` by `cut`.
+    /// The parts of a sub-hyperplane on the minus and on the plus side of `cut`, which divides its span into
+    /// `minus` and `plus`.
     pub fn parted(&self, cut: &S::Hyperplane, minus: S::Fragment, plus: S::Fragment) -> [Self; 2] {
         let (inner, outer) = split_facets::<S>(&self.facets, cut);
         let sub_hyperplane = |span, facets| Self { span, facets };
@@ -62,7 +63,7 @@ impl<S: Space> SubHyperplane<S> {
     }
 }
 
-/// The parts of facets on the minus and plus side of a cut in which none lies.
+/// The parts of facets on the minus and on the plus side of a cut; facets that lie in the cut are dropped.
 fn split_facets<S: Space>(
     facets: &[Facet<S>],
     cut: &S::Hyperplane,
@@ -86,16 +87,16 @@ fn split_facets<S: Space>(
     (inner, outer)
 }
 
-/// A tree, or a reference to a subtree of one.
+/// A partition tree of a set, or a shared reference to a subtree.
 #[derive(Clone)]
 pub enum PartitionTree<S: Space> {
-    /// A region that is not divided.
+    /// A region that is not divided, with its label.
     Leaf(Label),
-    /// A region divided by a hyperplane.
+    /// A region that a hyperplane divides.
     Cut(Cut<S>),
 }
 
-/// A shared reference to an inner node, with a bit for the complement of its set.
+/// A shared reference to an inner node; `complemented` exchanges In and Out in its subtree.
 #[derive(Clone)]
 pub struct Cut<S: Space> {
     node: Arc<Node<S>>,
@@ -109,12 +110,12 @@ struct Node<S: Space> {
 }
 
 impl<S: Space> PartitionTree<S> {
-    /// The empty set.
+    /// The tree of the empty set.
     pub const EMPTY: Self = Self::Leaf(Label::Out);
-    /// The whole region.
+    /// The tree of the whole region.
     pub const FULL: Self = Self::Leaf(Label::In);
 
-    /// The tree divided along a sub-hyperplane, or a leaf if both sides are equal leaves.
+    /// The tree divided by a sub-hyperplane, or a single leaf if both sides are leaves with equal labels.
     pub fn cut(sub_hyperplane: Arc<SubHyperplane<S>>, minus: Self, plus: Self) -> Self {
         if let (Self::Leaf(a), Self::Leaf(b)) = (&minus, &plus)
             && a == b
@@ -132,7 +133,7 @@ impl<S: Space> PartitionTree<S> {
         })
     }
 
-    /// The set's complement within the region of the root.
+    /// The tree of the set's complement within the region of the root.
     ///
     /// # Cost
     /// Constant: all nodes are shared.
@@ -147,7 +148,7 @@ impl<S: Space> PartitionTree<S> {
         }
     }
 
-    /// Return whether both are the same reference (or equal leaves), hence the same set.
+    /// Return whether both trees refer to the same node, or are equal leaves, so that they are the same set.
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Leaf(a), Self::Leaf(b)) => a == b,
@@ -156,7 +157,7 @@ impl<S: Space> PartitionTree<S> {
         }
     }
 
-    /// Return whether one is a reference to the complement of the other.
+    /// Return whether both trees refer to the same node and one is complemented, or are different leaves.
     pub fn is_complement(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Leaf(a), Self::Leaf(b)) => a != b,
@@ -165,7 +166,7 @@ impl<S: Space> PartitionTree<S> {
         }
     }
 
-    /// The label, if the tree is a leaf.
+    /// The label if the tree is a leaf, else `None`.
     pub fn label(&self) -> Option<Label> {
         match self {
             Self::Leaf(label) => Some(*label),
@@ -180,12 +181,12 @@ impl<S: Space> Cut<S> {
         S::hyperplane(&self.node.sub_hyperplane.span)
     }
 
-    /// Return the contents of the cut.
+    /// Return the part of the cut inside the node's region, with the facets that lie in it.
     pub fn sub_hyperplane(&self) -> &Arc<SubHyperplane<S>> {
         &self.node.sub_hyperplane
     }
 
-    /// The subtree on one side.
+    /// The subtree on one side of the cut.
     pub fn child(&self, half: Half) -> PartitionTree<S> {
         let child = match half {
             Half::Minus => &self.node.minus,
@@ -198,12 +199,12 @@ impl<S: Space> Cut<S> {
         }
     }
 
-    /// Both subtrees, plus first: a stack then pops minus first.
+    /// Both subtrees, plus before minus, so that a stack pops the minus subtree first.
     pub fn children(&self) -> [PartitionTree<S>; 2] {
         [Half::Plus, Half::Minus].map(|half| self.child(half))
     }
 
-    /// This node with one subtree replaced; the node itself if nothing changes.
+    /// This node with one subtree replaced; the same node if the subtree is the same.
     #[must_use]
     pub fn with_child(&self, half: Half, child: PartitionTree<S>) -> PartitionTree<S> {
         let (minus, plus) = match half {
@@ -213,7 +214,7 @@ impl<S: Space> Cut<S> {
         self.with_children(minus, plus)
     }
 
-    /// This node with both subtrees replaced; the node itself if nothing changes.
+    /// This node with both subtrees replaced; the same node if both subtrees are the same.
     #[must_use]
     pub fn with_children(
         &self,
@@ -238,7 +239,7 @@ impl<S: Space> From<Cut<S>> for PartitionTree<S> {
 }
 
 impl<S: Space> fmt::Debug for PartitionTree<S> {
-    /// Shows the root only: a tree can be deeper than the stack.
+    /// Writes the root only: the depth of a tree may exceed the stack.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Leaf(label) => write!(f, "{label:?}"),
@@ -255,7 +256,7 @@ impl<S: Space> fmt::Debug for Cut<S> {
 }
 
 impl<S: Space> Drop for Node<S> {
-    /// Frees unshared subtrees, without recursion along the depth.
+    /// Frees unshared subtrees, without recursion over the depth.
     fn drop(&mut self) {
         let mut pending = Vec::new();
         self.release_into(&mut pending);

@@ -1,4 +1,4 @@
-//! Pivot policies: rules for the hyperplane that divides a region.
+//! Pivot policies of set trees: rules that choose the facet whose hyperplane divides a region.
 
 use super::node::Facet;
 use super::random::SplitMix;
@@ -12,11 +12,11 @@ pub enum PivotPolicy {
     First,
     /// A random facet; the seed makes the tree reproducible.
     Random(u64),
-    /// The first of this many evenly spaced candidates that cuts the fewest facets.
+    /// The first facet that cuts the fewest others, among this many evenly spaced candidates.
     FewestSplits(usize),
 }
 
-/// A pivot policy and the state it needs.
+/// A pivot policy and the state of its random sequence.
 pub(super) struct Choice {
     policy: PivotPolicy,
     random: SplitMix,
@@ -32,12 +32,12 @@ impl Choice {
         Self { policy, random }
     }
 
-    /// The hyperplane of the facet that the policy picks; the list is not empty.
+    /// The hyperplane of the facet that the policy chooses; `facets` must not be empty.
     pub(super) fn cut<S: Space>(&mut self, facets: &[Facet<S>]) -> S::Hyperplane {
         S::hyperplane(&facets[self.pivot(facets)].fragment).clone()
     }
 
-    /// The index of the facet whose hyperplane becomes the cut; the list is not empty.
+    /// The index of the facet that the policy chooses; `facets` must not be empty.
     fn pivot<S: Space>(&mut self, facets: &[Facet<S>]) -> usize {
         match self.policy {
             PivotPolicy::First => 0,

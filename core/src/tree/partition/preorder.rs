@@ -1,4 +1,4 @@
-//! Conversion between trees and lists of hyperplanes and labels.
+//! Conversion between trees of sets and lists of hyperplanes and labels in preorder.
 
 use std::sync::Arc;
 
@@ -9,16 +9,16 @@ use crate::geometry::spaces::space::{Region, Space};
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 
-/// A node in preorder: the cut or the label of its region.
+/// A node of a tree listed in preorder: the hyperplane of a cut, or the label of a leaf.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Entry<H> {
-    /// An inner node; its minus subtree follows, then its plus subtree.
+    /// An inner node; the list continues with its minus subtree, then its plus subtree.
     Cut(H),
     /// A leaf.
     Leaf(Label),
 }
 
-/// The nodes of a tree, each before its subtrees, minus first.
+/// The nodes of a tree in preorder: each before its subtrees, minus subtree first.
 pub fn preorder<S: Space>(tree: &PartitionTree<S>) -> Vec<Entry<S::Hyperplane>> {
     let mut entries = Vec::new();
     let mut pending = vec![tree.clone()];
@@ -35,14 +35,14 @@ pub fn preorder<S: Space>(tree: &PartitionTree<S>) -> Vec<Entry<S::Hyperplane>> 
     entries
 }
 
-/// The tree with these nodes; coplanar sets are empty.
+/// The tree with these nodes, without facets.
 ///
-/// Omits a cut that misses its region inside the frame, with the empty side, so that hyperplanes may have
-/// been moved.
+/// A cut that misses its region inside the frame, perhaps because hyperplanes have been moved, is left out
+/// together with the subtree on the empty side.
 ///
 /// # Errors
-/// `BadSnapshot` if the list is not one tree in preorder or repeats a cut inside itself;
-/// `TooLarge` if the root's hyperplane misses the frame.
+/// `BadSnapshot` if the list is not one tree in preorder or repeats a cut inside its own subtree; `TooLarge`
+/// if the root's hyperplane misses the frame.
 pub fn from_preorder<S: Space>(
     entries: &[Entry<S::Hyperplane>],
     frame: S::Frame,
@@ -69,7 +69,7 @@ fn bad_list() -> Error {
     )
 }
 
-/// For each inner node, the index of its plus child.
+/// For each inner node, the index of its plus child in the list; an error if the list is not one tree.
 fn plus_children<H>(entries: &[Entry<H>]) -> Result<Vec<NodeId>> {
     let mut plus = vec![NodeId::ROOT; entries.len()];
     let mut roots: Vec<NodeId> = Vec::new();
@@ -98,7 +98,8 @@ struct PreorderReader<'a, S: Space> {
     done: Vec<PartitionTree<S>>,
 }
 
-/// The cut above a node, the node's side of it, and the depth of the cut's region.
+/// The sub-hyperplane of a node's parent, the node's side of it, and the depth of the parent's region; `None`
+/// for the root.
 type Above<S> = Option<(Arc<SubHyperplane<S>>, Half, usize)>;
 
 enum Step<S: Space> {
@@ -156,7 +157,7 @@ impl<S: Space> PreorderReader<'_, S> {
 
 /// The side of a cut on which a region lies that the cut misses.
 ///
-/// The sub-hyperplane above bounds the region, and so is on that side as well.
+/// The parent's sub-hyperplane bounds the region, and so lies on that side as well.
 fn side_of_region<S: Space>(
     cut: &S::Hyperplane,
     above: Option<&(Arc<SubHyperplane<S>>, Half, usize)>,

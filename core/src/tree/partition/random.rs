@@ -1,6 +1,6 @@
-//! A small reproducible random sequence for pivot choice.
+//! A small generator of reproducible pseudorandom numbers, for the choice of pivots.
 
-/// The splitmix64 generator.
+/// The pseudorandom number generator splitmix64.
 ///
 /// # Source
 /// Steele, Lea, Flood 2014, "Fast splittable pseudorandom number generators", figure 17.
@@ -10,7 +10,7 @@ pub struct SplitMix {
 }
 
 impl SplitMix {
-    /// The sequence of a seed.
+    /// The generator whose sequence this seed determines.
     pub fn new(seed: u64) -> Self {
         Self { state: seed }
     }
@@ -23,7 +23,8 @@ impl SplitMix {
         z ^ (z >> 31)
     }
 
-    /// A number below `bound`, which must be positive; the bias is below 2^-32 for lists in memory.
+    /// The next pseudorandom number below `bound`, which must be positive; for the lengths of lists in
+    /// memory, the bias is below 2^-32.
     pub fn below(&mut self, bound: usize) -> usize {
         let wide = u128::from(self.next()) * bound as u128;
         usize::try_from(wide >> 64).unwrap_or(0)

@@ -1,4 +1,4 @@
-//! The size of a tree, and a check of its invariants.
+//! Counts of the nodes of a set's tree, and a check of its invariants.
 
 use super::node::{Cut, PartitionTree};
 use crate::error::{Error, Result};
@@ -6,20 +6,20 @@ use crate::geometry::side::Half;
 use crate::geometry::spaces::space::{overlay, Region, Space};
 use crate::interrupt::poll;
 
-/// Size figures of a tree; shared subtrees count at each occurrence.
+/// Counts of the nodes and facets of a tree, and its depth; shared subtrees count at each occurrence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TreeStats {
-    /// Inner nodes.
+    /// The number of inner nodes.
     pub cuts: usize,
-    /// Leaves.
+    /// The number of leaves.
     pub leaves: usize,
-    /// Cuts on the longest path from the root to a leaf.
+    /// The number of cuts on the longest path from the root to a leaf.
     pub depth: usize,
-    /// Fragments in all coplanar sets.
+    /// The number of fragments in all coplanar sets.
     pub facets: usize,
 }
 
-/// Counts the nodes of a tree.
+/// Counts the nodes and facets of a tree.
 pub fn stats<S: Space>(tree: &PartitionTree<S>) -> TreeStats {
     let mut stats = TreeStats::default();
     let mut pending = vec![(tree.clone(), 0)];
@@ -39,13 +39,14 @@ pub fn stats<S: Space>(tree: &PartitionTree<S>) -> TreeStats {
     stats
 }
 
-/// Verifies a tree's invariants: spans, coplanar sets, no cut between equal leaves.
+/// Verifies that each span is its cut inside the region, that coplanar facets lie in their spans, and that no
+/// cut has two equal leaves.
 ///
 /// # Cost
-/// One split per node and ancestor.
+/// One split of a fragment for each node and each of its ancestors.
 ///
 /// # Errors
-/// `Internal`, naming the first violated invariant.
+/// `Internal`, with the first violated invariant.
 pub fn check<S: Space>(tree: &PartitionTree<S>, frame: &S::Frame) -> Result<()> {
     let mut region = Region::new(frame.clone());
     let mut pending = vec![(tree.clone(), None)];
@@ -93,7 +94,7 @@ fn check_cut<S: Space>(cut: &Cut<S>, region: &Region<S>) -> Result<()> {
     Ok(())
 }
 
-/// Return whether `outer` covers the coplanar `inner`.
+/// Return whether the fragment `outer` covers the coplanar fragment `inner`.
 fn holds<S: Space>(outer: &S::Fragment, inner: &S::Fragment) -> bool {
     let (inside, outside) = overlay::<S>(inner.clone(), outer);
     inside.is_some() && outside.is_empty()

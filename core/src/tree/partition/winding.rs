@@ -1,8 +1,8 @@
-//! Labels by winding numbers, for facets that overlap, cross or face each other.
+//! Labels of a tree by winding numbers, for facets that overlap, cross or face each other.
 //!
-//! Each leaf of an autopartition lies in one cell of the facets' arrangement. The winding number jumps
-//! across a piece of a cut by the number of facets that cover it, signed by orientation. From one leaf with
-//! a known number, adjacency gives all others.
+//! Each leaf of an autopartition lies in one cell of the arrangement of the facets. Across a piece of a cut,
+//! the winding number changes by the number of facets that cover the piece, signed by their orientation. From
+//! one leaf with a known number, the numbers of all others follow by adjacency.
 
 use super::flat::{Flat, FlatCut};
 use super::node::{Cut, Facet, Label, PartitionTree};
@@ -12,22 +12,22 @@ use crate::geometry::spaces::space::{overlay, Space};
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 
-/// A tree labelled by winding numbers.
+/// A tree labelled by winding numbers, and whether the facets were simple.
 #[derive(Clone, Debug)]
 pub struct Winding<S: Space> {
-    /// The set of places whose number satisfies the rule.
+    /// The tree of the set of points whose winding number satisfies the rule.
     pub tree: PartitionTree<S>,
-    /// True if all numbers are 0 or 1 and no two facets overlap.
+    /// True if all winding numbers are 0 or 1 and no two facets overlap.
     pub simple: bool,
 }
 
 /// Labels an autopartition by the winding numbers of its facets.
 ///
-/// `reference` gives the side of each hyperplane for a point in no cut, `number` is the winding number
-/// there, and `inside` the rule that turns a number into a label.
+/// `reference` gives the side of each hyperplane on which a point in no cut lies, `number` is the winding
+/// number at that point, and `inside` is the rule that turns a winding number into a label.
 ///
 /// # Errors
-/// `NotClosed` if the facets do not define one number for every place; `Internal` for a broken tree.
+/// `NotClosed` if the facets do not define one winding number for every point; `Internal` for a broken tree.
 pub fn winding_tree<S: Space>(
     tree: &PartitionTree<S>,
     reference: impl Fn(&S::Hyperplane) -> Half,
@@ -45,7 +45,8 @@ pub fn winding_tree<S: Space>(
     Ok(Winding { tree, simple })
 }
 
-/// Two leaves on the sides of a piece of a cut, and their numbers' difference, minus side first.
+/// Two leaves on the sides of a piece of a cut, and by how much the winding number on the minus side exceeds
+/// that on the plus side.
 struct Jump {
     minus: NodeId,
     plus: NodeId,
@@ -53,7 +54,7 @@ struct Jump {
 }
 
 impl<S: Space> Flat<S> {
-    /// All jumps between neighbouring leaves, and whether no two facets overlap.
+    /// The jumps of the winding number between all neighbouring leaves, and whether no two facets overlap.
     fn jumps(&self) -> Result<(Vec<Jump>, bool)> {
         let mut jumps = Vec::new();
         let mut disjoint = true;
@@ -77,7 +78,7 @@ impl<S: Space> Flat<S> {
         Ok(())
     }
 
-    /// The winding number of each leaf, by node; zero for inner nodes.
+    /// The winding number of each leaf, by node number; zero for inner nodes.
     fn numbers(&self, jumps: &[Jump], start: NodeId, number: i32) -> Result<Vec<i32>> {
         let mut neighbours = vec![Vec::new(); self.len()];
         for jump in jumps {
@@ -112,7 +113,7 @@ fn not_closed() -> Error {
     )
 }
 
-/// A part of a span that each facet covers wholly or not at all.
+/// A piece of a span that each facet covers entirely or not at all.
 struct Piece<S: Space> {
     fragment: S::Fragment,
     rise: i32,
@@ -142,7 +143,8 @@ fn covered_pieces<S: Space>(cut: &Cut<S>) -> Vec<Piece<S>> {
         })
 }
 
-/// The parts of a piece under a facet and outside it.
+/// The parts of a piece that a facet covers and those that it does not cover, with their changed rise and
+/// layers.
 fn cover<S: Space>(piece: Piece<S>, facet: &Facet<S>, rise: i32) -> Vec<Piece<S>> {
     let (under, beside) = overlay::<S>(piece.fragment, &facet.fragment);
     let beside = beside.into_iter().map(|fragment| Piece {

@@ -1,4 +1,4 @@
-//! The boundary of a plane set as maximal edges between numbered corners.
+//! The boundary of a set of the plane as maximal edges between numbered corners.
 
 use std::cmp::Ordering;
 
@@ -8,40 +8,40 @@ use crate::geometry::spaces::dim2::{Dim2, Lattice2, Line2, Point2, Segment2};
 use crate::interrupt::poll;
 use crate::tree::partition::{classify_corner, walls, Label, PartitionTree, Wall};
 
-/// A boundary of directed edges between corners, with the set on the left.
+/// The boundary of a set of the plane: directed edges between corners, with the set on their left.
 #[derive(Clone, Debug)]
 pub struct Boundary {
-    /// The label outside all edges, at the lowest corner of the frame.
+    /// The label at the frame's corner of least coordinates, outside all closed edges.
     pub outer: Label,
-    /// The corners, ordered by x, then y.
+    /// The corners, ordered by x, then by y.
     pub corners: Vec<Corner>,
-    /// The edges, ordered by their first corners, then their last ones.
+    /// The edges, ordered by the number of their first corner, then of their last corner.
     pub edges: Vec<Edge>,
 }
 
-/// A point of the plane and two lines that cross there.
+/// A corner of a boundary: a point of the plane and two lines that cross there.
 #[derive(Clone, Copy, Debug)]
 pub struct Corner {
-    /// The place of the corner.
+    /// The exact position of the corner.
     pub point: Point2,
     lines: [Line2; 2],
 }
 
-/// A maximal piece of the boundary on one line.
+/// A maximal edge of a boundary: an interval of a line.
 #[derive(Clone, Copy, Debug)]
 pub struct Edge {
-    /// The line, the set on its minus side.
+    /// The line of the edge, with the set on its minus side.
     pub line: Line2,
-    /// The numbers of its first and last corner.
+    /// The numbers of the edge's first and last corner.
     pub ends: [u32; 2],
-    /// The number of the set's part on its left.
+    /// The number of the set's connected part on the left of the edge.
     pub inside: u32,
-    /// The number of the complement's part on its right.
+    /// The number of the complement's connected part on the right of the edge.
     pub outside: u32,
 }
 
 impl Corner {
-    /// A lattice point.
+    /// The corner at a lattice point.
     pub fn lattice(at: Lattice2) -> Self {
         Self {
             point: Point2::lattice(at),
@@ -49,14 +49,14 @@ impl Corner {
         }
     }
 
-    /// The place where two lines cross; `None` if they are parallel.
+    /// The corner where two lines cross; `None` if they are parallel.
     pub fn crossing(p: Line2, q: Line2) -> Option<Self> {
         let point = Point2::meet(&p, &q)?;
         let lines = [p, q];
         Some(Self { point, lines })
     }
 
-    /// A point of a line that another line crosses there.
+    /// The corner at a point where two lines cross.
     fn of(point: Point2, lines: [Line2; 2]) -> Self {
         match point.as_lattice() {
             Some(at) => Self::lattice(at),
@@ -64,12 +64,12 @@ impl Corner {
         }
     }
 
-    /// The two lines; they are not parallel.
+    /// The two lines that cross in the corner.
     pub fn lines(&self) -> &[Line2; 2] {
         &self.lines
     }
 
-    /// A line that crosses the given one here.
+    /// One of the corner's two lines that crosses the given line.
     fn limit(&self, line: &Line2) -> Line2 {
         let [p, q] = self.lines;
         if p.is_parallel(line) {
@@ -81,7 +81,7 @@ impl Corner {
 }
 
 impl Boundary {
-    /// The boundary of the empty set or the whole plane.
+    /// The boundary of the empty set (`Out`) or of the whole plane (`In`): it has no edges.
     pub fn uniform(label: Label) -> Self {
         Self {
             outer: label,
@@ -90,7 +90,7 @@ impl Boundary {
         }
     }
 
-    /// The boundary of a tree's set; a point where only two collinear pieces meet is not a corner.
+    /// The boundary of a tree's set; a point where only two edges on one line meet is not a corner.
     ///
     /// # Errors
     /// `Internal` for a broken tree.
@@ -118,7 +118,7 @@ impl Boundary {
         Ok(Self::sorted(classify_corner(tree), corners, edges))
     }
 
-    /// The boundary from sorted corners and unsorted edges.
+    /// The boundary with these corners, which are sorted, and these edges, which need not be.
     pub fn sorted(outer: Label, corners: Vec<Corner>, mut edges: Vec<Edge>) -> Self {
         edges.sort_unstable_by_key(|edge| (edge.ends, edge.inside));
         Self {
@@ -128,7 +128,7 @@ impl Boundary {
         }
     }
 
-    /// Return whether every edge has a successor: the set or its complement is bounded.
+    /// Return whether as many edges end as begin at each corner: the set or its complement is then bounded.
     pub fn is_closed(&self) -> bool {
         let mut balance = vec![0i32; self.corners.len()];
         for edge in &self.edges {
@@ -139,25 +139,25 @@ impl Boundary {
         balance.iter().all(|count| *count == 0)
     }
 
-    /// The edges that leave a corner.
+    /// The range of indices of the edges that begin at a corner.
     pub fn leaving(&self, corner: u32) -> std::ops::Range<usize> {
         let before = self.edges.partition_point(|e| e.ends[0] < corner);
         before..self.edges.partition_point(|e| e.ends[0] <= corner)
     }
 
-    /// The first and the last point of an edge.
+    /// The exact first and last point of an edge.
     pub fn points(&self, edge: &Edge) -> [&Point2; 2] {
         edge.ends.map(|i| &self.corners[i as usize].point)
     }
 
-    /// An edge as a segment.
+    /// The edge as a segment of its line.
     pub fn segment(&self, edge: &Edge) -> Segment2 {
         let ends = edge.ends.map(|i| &self.corners[i as usize]);
         let limits = ends.map(|corner| corner.limit(&edge.line));
         Segment2::limited(edge.line, limits, ends.map(|corner| corner.point))
     }
 
-    /// The boundary of the complement.
+    /// The boundary of the complement: each edge reversed, with the label exchanged.
     #[must_use]
     pub fn complement(&self) -> Self {
         let turned = |edge: &Edge| Edge {
@@ -170,7 +170,7 @@ impl Boundary {
         Self::sorted(self.outer.complement(), self.corners.clone(), edges)
     }
 
-    /// Return whether two sets are equal: their boundaries agree, except for the numbers of parts.
+    /// Return whether the two sets are equal: all but the numbers of connected parts agree.
     pub fn equals(&self, other: &Self) -> bool {
         let same_place = |(a, b): (&Corner, &Corner)| a.point.order(&b.point) == Ordering::Equal;
         let same_edge = |(a, b): (&Edge, &Edge)| a.line == b.line && a.ends == b.ends;
@@ -182,7 +182,7 @@ impl Boundary {
     }
 }
 
-/// Joins pieces where one ends, the next begins on the same line, and no other piece meets them.
+/// Joins pieces of one line where one ends, the next begins and no other piece meets them.
 fn joined(pieces: &[Wall<Dim2>]) -> Vec<Wall<Dim2>> {
     let next = successors(pieces);
     let mut follows = vec![false; pieces.len()];
@@ -198,7 +198,7 @@ fn joined(pieces: &[Wall<Dim2>]) -> Vec<Wall<Dim2>> {
     heads.map(edge).collect()
 }
 
-/// For each piece, the piece that continues it.
+/// For each piece, the index of the piece that continues it on the same line, if any.
 fn successors(pieces: &[Wall<Dim2>]) -> Vec<Option<usize>> {
     let mut ends: Vec<(&Point2, usize, usize)> = Vec::with_capacity(2 * pieces.len());
     for (i, piece) in pieces.iter().enumerate() {

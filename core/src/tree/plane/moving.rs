@@ -1,4 +1,4 @@
-//! Images of boundaries under maps of the lattice.
+//! Images of boundaries of plane sets under lattice motions.
 
 use crate::arith::bounds::REACH;
 use crate::arith::convert::as_number;
@@ -9,8 +9,8 @@ use crate::interrupt::poll;
 use super::boundary::{Boundary, Corner, Edge};
 
 impl Boundary {
-    /// The image of a bounded set, or of one with a bounded complement; `None` if it leaves the
-    /// lattice.
+    /// The image of the boundary of a bounded set, or of a set with a bounded complement, under a motion;
+    /// `None` if it leaves the lattice.
     pub fn moved(&self, motion: &Motion) -> Option<Self> {
         let corners = self.corners.iter().map(|corner| corner.moved(motion));
         let corners: Vec<Corner> = corners.collect::<Option<_>>()?;
@@ -54,7 +54,7 @@ impl Corner {
     }
 }
 
-/// Return whether a point lies in the lattice's square.
+/// Return whether a point lies in the square |x|, |y| ≤ [`REACH`].
 fn is_near(point: &Point2) -> bool {
     let [low, high] = [-REACH, REACH].map(|k| Point2::lattice([k, k]));
     let near =

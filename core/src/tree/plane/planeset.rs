@@ -1,4 +1,4 @@
-//! A set of the plane, as a boundary or a tree; makes each from the other on demand.
+//! A set of the plane, as a boundary or a tree; computes each from the other on demand.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::geometry::spaces::dim2::Dim2;
 use crate::tree::partition::{enclosed, is_bounded, stats, Facet, Label, PartitionTree, Plan};
 
-/// An immutable set of the plane.
+/// An immutable set of points of the plane, stored as its boundary or as a tree.
 ///
 /// # Example
 /// ```
@@ -25,26 +25,26 @@ use crate::tree::partition::{enclosed, is_bounded, stats, Facet, Label, Partitio
 pub struct PlaneSet {
     form: Form,
     size: usize,
-    /// The work spent on making this set.
+    /// The work of the operations that made this set.
     pub spent: WorkSinceRebuild,
-    /// The number of sweeps over all edges for few points.
+    /// The number of times that sweeps over all edges answered questions about a small number of points.
     asked: Arc<AtomicUsize>,
 }
 
-/// Building a tree of n edges costs about as much as this many sweeps over them: 16 µs an edge against half
-/// a microsecond.
+/// The number of sweeps over n edges that cost about as much as building a tree of these edges: 16 µs against
+/// half a microsecond for each edge.
 pub const SWEEPS_PER_TREE: usize = 32;
 
 /// The work of the operations that made a set, since its tree was last rebuilt.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WorkSinceRebuild {
-    /// Edges of larger operands that sweeps visited to combine them with smaller ones.
+    /// The number of edges of larger operands that sweeps visited to combine them with smaller operands.
     pub swept: usize,
-    /// The number of nodes of the tree that merging started from; 0 without merging.
+    /// The number of nodes of the tree with which merging started; 0 without merging.
     pub built: usize,
 }
 
-/// The form a set was made from, and the cached other form.
+/// The form from which a set was made, boundary or tree, and the other form once it is computed.
 #[derive(Clone, Debug)]
 enum Form {
     Boundary(Arc<Boundary>, OnceCell<PartitionTree<Dim2>>),
@@ -75,7 +75,7 @@ impl PlaneSet {
         }
     }
 
-    /// The boundary.
+    /// The boundary of the set, computed on first use if the set was made from a tree.
     ///
     /// # Errors
     /// `Internal` for a broken tree.
@@ -86,7 +86,7 @@ impl PlaneSet {
         }
     }
 
-    /// The boundary, if every edge has a successor: the set or its complement is bounded.
+    /// The boundary if it is closed, so that the set or its complement is bounded; else `None`.
     ///
     /// # Errors
     /// `Internal` for a broken tree.
@@ -95,7 +95,7 @@ impl PlaneSet {
         Ok(boundary.is_closed().then_some(boundary))
     }
 
-    /// The tree: the one the set was made from, or a balanced one of the boundary's edges.
+    /// The tree of the set: the tree from which it was made, or a balanced tree of the boundary's edges.
     ///
     /// # Errors
     /// `Internal` for a defect.
@@ -106,7 +106,7 @@ impl PlaneSet {
         }
     }
 
-    /// The boundary, if the set was made from it and it is closed.
+    /// The boundary, if the set was made from it and it is closed; else `None`.
     pub fn own_boundary(&self) -> Option<&Boundary> {
         match &self.form {
             Form::Boundary(boundary, _) if boundary.is_closed() => Some(boundary),
@@ -114,8 +114,8 @@ impl PlaneSet {
         }
     }
 
-    /// Return whether to look up points in the tree: it exists, or few points at a time were asked for so
-    /// often that sweeps cost more.
+    /// Return whether to find points by the tree: it exists, or small numbers of points were asked for so
+    /// often that sweeps have cost more. Counts each such question.
     pub fn wants_tree(&self, points: usize) -> bool {
         if self.known_tree().is_some() {
             return true;
@@ -124,7 +124,7 @@ impl PlaneSet {
         few && self.asked.fetch_add(1, Ordering::Relaxed) >= SWEEPS_PER_TREE
     }
 
-    /// The tree, if it is made already.
+    /// The tree if it is already computed, else `None`.
     pub fn known_tree(&self) -> Option<&PartitionTree<Dim2>> {
         match &self.form {
             Form::Boundary(_, made) => made.get(),
@@ -132,12 +132,12 @@ impl PlaneSet {
         }
     }
 
-    /// The number of edges, or of nodes if the set was made from a tree.
+    /// The number of edges, or of inner nodes if the set was made from a tree.
     pub fn size(&self) -> usize {
         self.size
     }
 
-    /// Return the label of everything, if the set is empty or everything.
+    /// Return the label of all points if the set is known to be empty or the whole plane, else `None`.
     pub fn label(&self) -> Option<Label> {
         match &self.form {
             Form::Boundary(boundary, _) => boundary.edges.is_empty().then_some(boundary.outer),
@@ -145,7 +145,7 @@ impl PlaneSet {
         }
     }
 
-    /// Return whether the set fits into a box.
+    /// Return whether the set is bounded.
     pub fn is_bounded(&self) -> bool {
         match &self.form {
             Form::Boundary(boundary, _) => boundary.outer == Label::Out && boundary.is_closed(),
@@ -153,7 +153,7 @@ impl PlaneSet {
         }
     }
 
-    /// The set's complement.
+    /// The complement of the set in the plane.
     #[must_use]
     pub fn complement(&self) -> Self {
         match &self.form {
@@ -175,7 +175,7 @@ impl PlaneSet {
     }
 }
 
-/// A balanced tree from a set's maximal edges.
+/// A balanced tree of the set with this boundary.
 pub fn tree_of(boundary: &Boundary) -> Result<PartitionTree<Dim2>> {
     let base = i32::from(boundary.outer == Label::In);
     let segments = boundary.edges.iter().map(|edge| boundary.segment(edge));

@@ -7,22 +7,23 @@ use crate::mesh::handle::VertexId;
 
 use super::Radial;
 
-/// Products of two normal components, and sums of three of them, in bits: 2 · 120 + 2 < 256.
+/// An integer wide enough for sums of three products of two normal components: 2 · 120 + 2 < 256 bits.
 type Wide = Int<4>;
 
-/// A triangle at the edge.
+/// A triangle at an edge, to be sorted by its angle around the edge.
 struct Spoke {
     half: usize,
     forward: bool,
-    /// Normal, reversed for backward half-edges: always the same quarter turn from the triangle.
+    /// The triangle's normal, reversed if the half-edge is backward: so it always lies a quarter turn in the
+    /// same direction from the triangle.
     across: [i128; 3],
 }
 
-/// The line of an edge, from its lower to its higher vertex.
+/// The direction of an edge, from its lower to its higher vertex, in one coordinate.
 struct Axis {
     /// A coordinate in which the edge's ends differ.
     coordinate: usize,
-    /// The direction of the edge in it: up or down.
+    /// The sign of the direction in this coordinate.
     sign: Sign,
 }
 
@@ -74,7 +75,7 @@ fn match_wedges(spokes: &[Spoke]) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// Return a start from which never more wedges have ended than begun.
+/// Returns the index from which, in cyclic order, no wedge ends before it has begun.
 fn start(spokes: &[Spoke]) -> usize {
     let (mut depth, mut lowest, mut start) = (0_i64, 0_i64, 0);
     for (k, spoke) in spokes.iter().enumerate() {
@@ -115,13 +116,14 @@ impl Axis {
         }
     }
 
-    /// Order by angle around the axis, counterclockwise from `zero`.
+    /// Compares the angles of `u` and `v` around the axis, counterclockwise from `zero`.
     fn order(&self, zero: &[i128; 3], u: &[i128; 3], v: &[i128; 3]) -> Ordering {
         let by_half = self.half(zero, u).cmp(&self.half(zero, v));
         by_half.then_with(|| self.turn(u, v).order().reverse())
     }
 
-    /// 0 at `zero`, 1 before the half turn, 2 at it, 3 after it.
+    /// Returns 0 if `u` has the direction of `zero`, 1 if the angle from `zero` is below 180 degrees, 2 if
+    /// it is 180 degrees, and 3 if it is larger.
     fn half(&self, zero: &[i128; 3], u: &[i128; 3]) -> u8 {
         match self.turn(zero, u) {
             Sign::Positive => 1,
@@ -131,7 +133,7 @@ impl Axis {
         }
     }
 
-    /// Sign of the turn from `u` to `v` about the axis, for vectors at right angles to it.
+    /// The sign of the turn from `u` to `v` about the axis, for vectors perpendicular to it.
     ///
     /// - `Positive`: counterclockwise, by less than a half turn
     /// - `Zero`: none, or a half turn

@@ -1,4 +1,4 @@
-//! Surfaces that touch themselves, with the number of bodies they should fall into.
+//! Splits surfaces that touch themselves, and compares the number of separate bodies with the expected one.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -61,7 +61,7 @@ impl Surface {
         self
     }
 
-    /// Splits and checks all invariants of a split.
+    /// Splits the surface, and checks all invariants of the result.
     fn split(&self) -> Split {
         let count = u32::try_from(self.points.len()).unwrap();
         let split = split_fans(&self.triangles, count, self).unwrap();
@@ -106,7 +106,7 @@ fn check_manifold(triangles: &[[VertexId; 3]]) {
     }
 }
 
-/// Number of connected surfaces.
+/// The number of connected surfaces of a split.
 fn bodies(split: &Split) -> usize {
     let mut body: Vec<usize> = (0..split.origin.len()).collect();
     let mut changed = true;
@@ -128,7 +128,7 @@ fn bodies(split: &Split) -> usize {
         .len()
 }
 
-/// Surface of a set of unit cells.
+/// The surface of the union of unit cells.
 fn cells(filled: &BTreeSet<[i64; 3]>) -> Surface {
     let mut surface = Surface::default();
     for &cell in filled {
@@ -157,7 +157,7 @@ fn side(cell: [i64; 3], axis: usize, up: bool) -> [[i64; 3]; 4] {
     corners
 }
 
-/// Cells of a cube whose bit is set.
+/// The unit cells, in a cube of `size` cells along each axis, for whose number `is_set` is true.
 fn pattern(size: i64, is_set: impl Fn(usize) -> bool) -> BTreeSet<[i64; 3]> {
     let places =
         (0..size).flat_map(|x| (0..size).flat_map(move |y| (0..size).map(move |z| [x, y, z])));
@@ -168,7 +168,7 @@ fn pattern(size: i64, is_set: impl Fn(usize) -> bool) -> BTreeSet<[i64; 3]> {
         .collect()
 }
 
-/// Number of sets of cells connected by their sides.
+/// The number of components into which cells fall, if cells are connected by common sides.
 fn side_connected(cells: &BTreeSet<[i64; 3]>) -> usize {
     let (mut rest, mut count) = (cells.clone(), 0);
     while let Some(first) = rest.pop_first() {
@@ -185,7 +185,7 @@ fn side_connected(cells: &BTreeSet<[i64; 3]>) -> usize {
     count
 }
 
-/// A block with a cavity of the given cells.
+/// The cells of a block, one cell larger on every side than a cube of `size` cells, without the given cells.
 fn cavity(cells: &BTreeSet<[i64; 3]>, size: i64) -> BTreeSet<[i64; 3]> {
     let block = pattern(size + 2, |_| true)
         .into_iter()
@@ -193,7 +193,8 @@ fn cavity(cells: &BTreeSet<[i64; 3]>, size: i64) -> BTreeSet<[i64; 3]> {
     block.filter(|cell| !cells.contains(cell)).collect()
 }
 
-/// Wedges around the z axis, between neighbouring directions of each pair, in `steps` pieces along it.
+/// The surface of wedges around the z axis, each between the directions of a pair, in `steps` pieces along
+/// z.
 fn wedges(directions: &[[i64; 2]], steps: i64) -> Surface {
     let mut surface = Surface::default();
     for pair in directions.chunks_exact(2) {

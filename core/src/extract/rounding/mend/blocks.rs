@@ -1,22 +1,23 @@
-//! Triangles in blocks of neighbours, so that each query compares few.
+//! Triangles in blocks of neighbours, so that a query compares few boxes.
 
 use crate::arith::convert::as_number;
 use crate::geometry::doubles::extent::Extent;
 
-/// Triangles in one block: checking a block costs about as much as a triangle.
+/// The largest number of triangles in one block: checking a block costs about as much as checking a
+/// triangle.
 const TRIANGLES_PER_BLOCK: usize = 32;
 
-/// Blocks of neighbouring triangles, and a box around all places that each block ever had.
+/// Blocks of neighbouring triangles, each with a box around all positions that its triangles ever had.
 #[derive(Debug, Default)]
 pub struct Blocks {
-    /// For each triangle its block.
+    /// For each triangle the number of its block.
     owner: Vec<u32>,
     members: Vec<Vec<u32>>,
     extents: Vec<Extent>,
 }
 
 impl Blocks {
-    /// Blocks of triangles with these boxes.
+    /// Divides triangles with these boxes into blocks.
     pub fn new(extents: &[Extent]) -> Self {
         let mut blocks = Self {
             owner: vec![0; extents.len()],
@@ -49,20 +50,20 @@ impl Blocks {
         self.extents.push(around);
     }
 
-    /// Extends a block's box by a triangle's new one.
+    /// Extends the box of a triangle's block by the triangle's new box.
     pub fn grow(&mut self, triangle: u32, extent: &Extent) {
         let around = &mut self.extents[self.owner[triangle as usize] as usize];
         *around = around.joined(extent);
     }
 
-    /// The triangles of all blocks that a box meets.
+    /// Yields the triangles of all blocks whose box meets a given box.
     pub fn near<'a>(&'a self, extent: &'a Extent) -> impl Iterator<Item = u32> + 'a {
         let blocks = self.extents.iter().zip(&self.members);
         let met = blocks.filter(|(around, _)| !around.misses(extent));
         met.flat_map(|(_, members)| members.iter().copied())
     }
 
-    /// Return how many boxes a query compares, besides those of the triangles it finds.
+    /// Returns the number of blocks, each of which a query compares once.
     pub fn count(&self) -> usize {
         self.members.len()
     }

@@ -1,4 +1,4 @@
-//! Small changes of a mesh that may remove a fault.
+//! Small changes of a mesh that may remove a crossing or a flat triangle.
 
 use super::part::{distance, Edit, Mending};
 use crate::arith::Sign;
@@ -6,7 +6,7 @@ use crate::geometry::doubles::{seen_along, turn, Point, Triangle};
 use crate::mesh::faces::edges;
 use crate::mesh::handle::VertexId;
 
-/// Directions in which a vertex is moved, in spacings of the largest coordinate.
+/// The translations of a vertex that are tried, in spacings of doubles at the largest coordinate.
 const STEPS: [[f64; 3]; 14] = [
     [1.0, 0.0, 0.0],
     [-1.0, 0.0, 0.0],
@@ -25,7 +25,7 @@ const STEPS: [[f64; 3]; 14] = [
 ];
 
 impl Mending {
-    /// Changes that may help, the gentlest first.
+    /// Returns the changes that may remove a fault: first merges, then swaps of edges, then translations.
     pub(super) fn edits(&self, fault: [u32; 2]) -> Vec<Edit> {
         let mut corners: Vec<VertexId> = fault
             .iter()
@@ -44,7 +44,7 @@ impl Mending {
         edits
     }
 
-    /// Merges of two vertices, the nearest pairs first.
+    /// Returns the merges of two corners within reach of each other, the nearest pairs first.
     fn merges(&self, corners: &[VertexId]) -> Vec<Edit> {
         let place = |v: VertexId| &self.vertices[v.place()];
         let mut pairs: Vec<(f64, VertexId, VertexId)> = Vec::new();
@@ -66,8 +66,8 @@ impl Mending {
             .collect()
     }
 
-    /// Merges a vertex into another. Triangles with both vanish, and so do pairs that become
-    /// opposites. `None` if the surface would not stay closed.
+    /// Merges vertex `from` into `to`. Triangles with both vertices vanish, and so do pairs of triangles
+    /// that become opposite. `None` if the surface would not stay closed.
     fn merge(&self, from: VertexId, to: VertexId) -> Option<Edit> {
         let star = self.star(from);
         let renamed = |t: [VertexId; 3]| t.map(|v| if v == from { to } else { v });
@@ -96,7 +96,8 @@ impl Mending {
         Some(edit)
     }
 
-    /// Gives each closed fan around vertices whose triangles were removed a vertex of its own.
+    /// Gives each closed fan, around vertices whose triangles were removed, a vertex of its own; `None` if a
+    /// fan is open.
     fn part_fans(&self, edit: &mut Edit, to: VertexId) -> Option<()> {
         let gone = edit.triangles.iter().filter(|m| m.1.is_none());
         let mut loose: Vec<VertexId> = gone
@@ -137,7 +138,7 @@ impl Mending {
         Some(())
     }
 
-    /// Return whether all triangles around a vertex are in this part.
+    /// Returns true if this part of the mesh contains all triangles around a vertex.
     fn is_whole(&self, v: VertexId) -> bool {
         self.star(v).iter().all(|t| {
             let corners = self.triangles[*t as usize].unwrap_or_default();
@@ -148,7 +149,8 @@ impl Mending {
         })
     }
 
-    /// Swaps the diagonal of the two triangles at an edge, if the diagonals nearly meet.
+    /// Replaces the common edge of a triangle and its neighbour by the other diagonal, if the two diagonals
+    /// nearly meet; `None` otherwise.
     fn swap(&self, t: u32, edge: usize) -> Option<Edit> {
         let corners = self.triangles[t as usize]?;
         let (a, b, c) = (
@@ -170,7 +172,7 @@ impl Mending {
         })
     }
 
-    /// Moves of a vertex by one spacing.
+    /// Returns the translations of a vertex by one spacing that stay within reach.
     fn moves(&self, v: VertexId) -> Vec<Edit> {
         if self.fixed[v.place()] {
             return Vec::new();
@@ -188,14 +190,14 @@ impl Mending {
     }
 }
 
-/// A triangle with its number.
+/// The number of a triangle, and its vertices.
 type Numbered = (u32, [VertexId; 3]);
 
 fn has_three([a, b, c]: &[VertexId; 3]) -> bool {
     a != b && b != c && c != a
 }
 
-/// Removes pairs of triangles that are each other's opposites.
+/// Removes pairs of triangles with the same vertices in opposite order.
 fn cancel_opposites(made: &mut [(u32, Option<[VertexId; 3]>)]) {
     let from_least = |t: [VertexId; 3]| {
         let first = (0..3).min_by_key(|i| t[*i]).unwrap_or(0);
@@ -214,8 +216,8 @@ fn cancel_opposites(made: &mut [(u32, Option<[VertexId; 3]>)]) {
     }
 }
 
-/// The triangles around a vertex as closed fans, that of the first triangle first; `None` if one is
-/// open.
+/// Divides the triangles around a vertex into closed fans, the fan of the first triangle first; `None` if a
+/// fan is open.
 fn fans(v: VertexId, around: Vec<Numbered>) -> Option<Vec<Vec<Numbered>>> {
     let turned = |t: &[VertexId; 3]| {
         let at = t.iter().position(|c| *c == v).unwrap_or(0);
@@ -238,10 +240,11 @@ fn fans(v: VertexId, around: Vec<Numbered>) -> Option<Vec<Vec<Numbered>>> {
     Some(fans)
 }
 
-/// Return whether the diagonals of the triangles a b c and b a d pass each other within a distance.
+/// Returns true if the diagonals of the triangles a b c and b a d pass each other within the distance
+/// `reach`.
 ///
-/// Seen along the axis that both face most, no triangle turns over with the other diagonal,
-/// exactly. So the diagonals cross there, and their distance is a quotient.
+/// Projected along the axis of their largest total area, no triangle over the other diagonal may turn over,
+/// exactly. So the projected diagonals cross, and the distance there is a quotient.
 fn diagonals_meet(corners: [&Point; 4], reach: f64) -> bool {
     let [a, b, c, d] = corners.map(|p| *p);
     let (first, second) = (area(&[a, b, c]), area(&[b, a, d]));
@@ -268,7 +271,7 @@ fn diagonals_meet(corners: [&Point; 4], reach: f64) -> bool {
     distance(&on(&a, &u, along), &on(&c, &v, beside)) <= reach
 }
 
-/// Twice the area of a triangle along each axis.
+/// Twice the area of a triangle's projection along each axis, with its sign.
 fn area([a, b, c]: &Triangle) -> Point {
     [0, 1, 2].map(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);

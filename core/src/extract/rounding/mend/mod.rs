@@ -1,7 +1,7 @@
-//! Removal of the crossings that rounding made, by small changes.
+//! Removes the crossings that rounding made, by small changes.
 //!
-//! Each change is tried and judged exactly: it stays if fewer faults are left. So mending ends, and
-//! the faults that it could not remove are known.
+//! Each change is tried and judged exactly: it stays if fewer faults are left. So mending ends, and it
+//! returns the faults that it could not remove.
 //!
 //! # Source
 //! Iterated rounding and repair as in Lazard and Valque, *Removing self-intersections in 3D meshes
@@ -18,11 +18,11 @@ use self::part::{both, distance, Edit};
 pub use self::part::{Mending, Precision};
 use crate::interrupt::spend;
 
-/// Changes tried for each fault before giving up: 30 merges, 6 swaps, and 14 moves of 6 corners.
+/// The largest number of changes tried for each fault: 30 merges, 6 swaps, and 14 translations of 6 corners.
 const MAX_CHANGES_PER_FAULT: usize = 120;
 
 impl Mending {
-    /// Removes faults until none is left or no change helps.
+    /// Removes crossings and flat triangles until none is left, or no change helps.
     pub fn run(&mut self) {
         let mut open: Vec<[u32; 2]> = self.faults();
         while let Some(fault) = open.pop() {
@@ -43,7 +43,7 @@ impl Mending {
         self.crossings.contains(&fault) || fault[0] == fault[1] && self.flat.contains(&fault[0])
     }
 
-    /// Makes the first change that leaves fewer faults.
+    /// Tries changes for a fault, until one leaves fewer faults; returns false if none does.
     fn improve(&mut self, fault: [u32; 2]) -> bool {
         let edits = self.edits(fault);
         edits
@@ -52,7 +52,7 @@ impl Mending {
             .any(|edit| self.attempt(&edit))
     }
 
-    /// Makes a change if it leaves fewer faults.
+    /// Makes a change, and undoes it unless it leaves fewer faults; returns whether it stays.
     fn attempt(&mut self, edit: &Edit) -> bool {
         spend(1 + self.blocks.count());
         let moved = edit.moves.iter().flat_map(|m| self.star(m.0));

@@ -1,4 +1,4 @@
-//! The part of a mesh that is being mended, and a change of it.
+//! The part of a mesh that is being mended, and small changes of this part.
 
 use std::collections::BTreeSet;
 
@@ -13,17 +13,17 @@ use crate::geometry::doubles::{Point, Triangle};
 use crate::mesh::faces::edges;
 use crate::mesh::handle::VertexId;
 
-/// The numbers in which coordinates are delivered.
+/// The format of the floating-point numbers in which coordinates are delivered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
-    /// 53 binary places.
+    /// Doubles, with 53 significant bits.
     Double,
-    /// 24 binary places.
+    /// Single precision, with 24 significant bits.
     Single,
 }
 
 impl Precision {
-    /// The nearest number.
+    /// The nearest number of this format.
     #[allow(
         clippy::cast_possible_truncation,
         reason = "rounding is what is asked for"
@@ -35,7 +35,7 @@ impl Precision {
         }
     }
 
-    /// The distance of neighbouring numbers of this size.
+    /// The distance from the absolute value of `x` to the next larger number of this format.
     #[allow(
         clippy::cast_possible_truncation,
         reason = "rounding is what is asked for"
@@ -48,60 +48,62 @@ impl Precision {
     }
 }
 
-/// The distance by which a change may move the surface, in spacings of the largest coordinate:
+/// The distance by which a change may move the surface, in spacings of doubles at the largest coordinate:
 /// rounding moves a point by half a spacing on each axis, and two surfaces in opposite directions.
 const MAX_SPACINGS_MOVED: f64 = 4.0;
 
-/// Comparisons of boxes, at one to six nanoseconds each, after which mending gives up.
+/// The number of comparisons of boxes, at one to six nanoseconds each, after which mending stops.
 const MAX_BOX_COMPARISONS: usize = 2_000_000_000;
 
-/// The comparisons of boxes that take as long as one of triangles: between 20, where doubles decide,
-/// and a thousand, where both lie in a plane but for rounding (benchmark `triangles in doubles`).
+/// The number of comparisons of boxes that take as long as one comparison of triangles, which takes between
+/// 20, where doubles decide, and 1000, where both lie nearly in a plane (benchmark `triangles in doubles`).
 pub(super) const BOXES_PER_TRIANGLE_TEST: usize = 100;
 
-/// The triangles around a vertex.
+/// The numbers of the triangles around a vertex.
 pub(super) type Star = SmallVec<[u32; 8]>;
 
-/// Part of a mesh that is being mended. Triangles keep their numbers; removed ones are `None`.
+/// A part of a mesh that is being mended. Triangles keep their numbers; removed ones are `None`.
 pub struct Mending {
-    /// The vertices; copies are added at the end.
+    /// The vertices; copies of vertices are added at the end.
     pub vertices: Vec<Point>,
-    /// The triangles.
+    /// The corners of each triangle, or `None` if it was removed.
     pub triangles: Vec<Option<[VertexId; 3]>>,
-    /// Vertices that stay: not all of their triangles are in this part.
+    /// True for vertices that must not move, because some of their triangles are outside this part.
     pub(super) fixed: Vec<bool>,
-    /// Vertices of inputs, into which others are merged.
+    /// True for vertices of inputs, into which other vertices are merged.
     pub(super) given: Vec<bool>,
     pub(super) extents: Vec<Extent>,
     pub(super) blocks: Blocks,
-    /// For each vertex its triangles, ascending.
+    /// For each vertex the triangles around it, ascending.
     pub(super) stars: Vec<Star>,
     pub(super) flat: BTreeSet<u32>,
-    /// Each pair in both orders, so that the pairs of a triangle are a range.
+    /// Each crossing pair in both orders, so that the pairs of a triangle are a range.
     pub(super) crossings: BTreeSet<[u32; 2]>,
     pub(super) halves: HashMap<[VertexId; 2], u32>,
     pub(super) precision: Precision,
-    /// Of the largest coordinate.
+    /// The distance of neighbouring floating-point numbers at the largest coordinate.
     pub(super) spacing: f64,
-    /// For each vertex the farthest that it, or one merged into it, was moved.
+    /// For each vertex, how far it, or a vertex merged into it, was moved at most.
     pub(super) drifts: Vec<f64>,
     pub(super) work: usize,
     pub(super) moved: HashSet<VertexId>,
 }
 
-/// A change to try: new places of vertices, and new corners of triangles.
+/// A change to try: new positions of vertices, and new corners of triangles.
 #[derive(Debug, Default)]
 pub(super) struct Edit {
     pub(super) moves: Vec<(VertexId, Point)>,
     pub(super) triangles: Vec<(u32, Option<[VertexId; 3]>)>,
-    /// The vertex into which another is merged, and the distance by which that moves the other.
+    /// The vertex into which another vertex is merged, and the distance by which that moves the other
+    /// vertex.
     pub(super) drift: Option<(VertexId, f64)>,
-    /// Copies of vertices, in order, made for surfaces that are no longer connected.
+    /// For each vertex to be added, the vertex that it copies, because fans around it are no longer
+    /// connected.
     pub(super) copies: Vec<VertexId>,
 }
 
 impl Mending {
-    /// The part, with all its faults.
+    /// Prepares a part of a mesh, with all its faults, for mending.
     pub fn new(
         vertices: Vec<Point>,
         triangles: Vec<[VertexId; 3]>,
@@ -144,20 +146,20 @@ impl Mending {
         }
     }
 
-    /// Return whether a vertex was moved.
+    /// Returns true if mending moved a vertex.
     pub fn is_moved(&self, vertex: VertexId) -> bool {
         self.moved.contains(&vertex)
     }
 
-    /// The faults left; a flat triangle is a pair with itself.
+    /// Returns the pairs of triangles that still cross, and each flat triangle as a pair with itself.
     pub fn faults(&self) -> Vec<[u32; 2]> {
         let flat = self.flat.iter().map(|t| [*t, *t]);
         let crossings = self.crossings.iter().filter(|pair| pair[0] < pair[1]);
         crossings.copied().chain(flat).collect()
     }
 
-    /// Bound the distance of a vertex, once at `place`, from its origin and those of vertices
-    /// merged into it.
+    /// Bounds how far a vertex would be, moved to `place`, from its original position and from those of
+    /// vertices merged into it.
     pub(super) fn drift(&self, v: VertexId, place: &Point) -> f64 {
         self.drifts[v.place()] + distance(&self.vertices[v.place()], place)
     }
@@ -171,7 +173,7 @@ impl Mending {
         self.stars[v.place()].clone()
     }
 
-    /// The crossings of a triangle, each pair ascending.
+    /// Yields the pairs of triangles that contain `t` and cross, the lower number of each pair first.
     pub(super) fn crossings_of(&self, t: u32) -> impl Iterator<Item = [u32; 2]> + '_ {
         let own = self.crossings.range([t, 0]..=[t, u32::MAX]);
         own.map(|&[t, u]| [t.min(u), t.max(u)])
@@ -183,7 +185,7 @@ impl Mending {
     }
 }
 
-/// A pair in both orders.
+/// The two orders of a pair.
 pub(super) fn both([t, u]: [u32; 2]) -> [[u32; 2]; 2] {
     [[t, u], [u, t]]
 }

@@ -1,4 +1,4 @@
-//! Changes made and undone, and the faults that are left.
+//! Makes and undoes changes of a mesh, and finds the faults that are left.
 
 use super::part::{Edit, Mending, Star, BOXES_PER_TRIANGLE_TEST};
 use crate::extract::rounding::edges::crosses_at;
@@ -9,7 +9,7 @@ use crate::mesh::faces::edges;
 use crate::mesh::handle::VertexId;
 
 impl Mending {
-    /// Makes a change; returns its inverse.
+    /// Makes a change; returns the change that undoes it.
     pub(super) fn apply(&mut self, edit: &Edit) -> Edit {
         let mut undo = Edit::default();
         for &v in &edit.copies {
@@ -80,7 +80,8 @@ impl Mending {
         }
     }
 
-    /// The faults of `some` triangles, ascending, if they are fewer than `most`.
+    /// Returns the crossings and the flat triangles of the ascending triangles `some`; `None` if they are at
+    /// least `most` together.
     pub(super) fn faults_of(
         &mut self,
         some: &[u32],

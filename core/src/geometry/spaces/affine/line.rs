@@ -1,4 +1,4 @@
-//! The line as numbers.
+//! Coefficients, coordinates and measures on the line.
 
 use num_bigint::BigInt;
 

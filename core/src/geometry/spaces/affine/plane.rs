@@ -1,4 +1,4 @@
-//! The plane as numbers.
+//! Coefficients, coordinates and measures in the plane.
 
 use num_bigint::BigInt;
 

@@ -1,17 +1,17 @@
-//! Bounded convex regions, divided by hyperplanes.
+//! Bounded convex bodies, divided by hyperplanes.
 
 use super::Affine;
 use crate::geometry::side::{Half, Split};
 use crate::geometry::spaces::space::clip;
 
-/// A bounded convex body: its walls, the body on their minus sides.
+/// A bounded convex body, given by its walls: fragments with the body on their minus sides.
 #[derive(Clone, Debug)]
 pub struct Polytope<S: Affine> {
     walls: Vec<S::Fragment>,
 }
 
 impl<S: Affine> Polytope<S> {
-    /// The box of lattice points `low` to `high`; `None` if it is flat or reaches too far.
+    /// The box from the lattice point `low` to `high`; `None` if it is flat or exceeds [`Affine::REACH`].
     ///
     /// # Example
     /// ```
@@ -50,12 +50,12 @@ impl<S: Affine> Polytope<S> {
         (!flat).then_some(Self { walls })
     }
 
-    /// The walls, the body on their minus sides.
+    /// The walls of the body, with the body on their minus sides.
     pub fn walls(&self) -> &[S::Fragment] {
         &self.walls
     }
 
-    /// The part of a hyperplane inside, if the hyperplane crosses the interior.
+    /// The part of a hyperplane inside the body; `None` if it does not cross the interior.
     pub fn span(&self, cut: &S::Hyperplane) -> Option<S::Fragment> {
         self.walls
             .iter()
@@ -64,7 +64,8 @@ impl<S: Affine> Polytope<S> {
             })
     }
 
-    /// The parts on the minus and on the plus side; `None` for a part without interior.
+    /// The parts of the body on the minus and on the plus side of a hyperplane; `None` for a part without
+    /// interior.
     pub fn divided(&self, cut: &S::Hyperplane) -> [Option<Self>; 2] {
         let (mut minus, mut plus) = (Vec::new(), Vec::new());
         for wall in &self.walls {
@@ -91,10 +92,10 @@ impl<S: Affine> Polytope<S> {
         [minus, plus].map(|walls| Some(Self { walls }))
     }
 
-    /// Length in 1D, area in 2D, volume in 3D, in lattice steps.
+    /// The length of the body in 1D, its area in 2D, its volume in 3D, in lattice steps.
     ///
     /// # Exactness
-    /// Doubles from corners that are correct to a few units in the last place.
+    /// Computed in doubles, from corners that are correct to a few units in the last place.
     pub fn volume(&self) -> f64 {
         let apex = self.walls.first().and_then(|w| S::corners(w).pop());
         let apex = apex.unwrap_or_default();
@@ -102,7 +103,7 @@ impl<S: Affine> Polytope<S> {
         sum.max(0.0)
     }
 
-    /// The size of the border: 2 in 1D, perimeter in 2D, surface area in 3D, in lattice steps.
+    /// The measure of the body's border: 2 in 1D, perimeter in 2D, surface area in 3D, in lattice steps.
     pub fn surface(&self) -> f64 {
         self.walls.iter().map(S::size).sum()
     }

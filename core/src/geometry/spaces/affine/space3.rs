@@ -1,4 +1,4 @@
-//! Space as numbers.
+//! Coefficients, coordinates and measures in space.
 
 use std::sync::Arc;
 
@@ -14,14 +14,16 @@ use crate::geometry::side::Split;
 use crate::geometry::spaces::dim3::Dim3;
 use crate::geometry::spaces::space::Space;
 
-/// The plane of convex corners, from the first three that are not on one line.
+/// The plane through the corners of a convex polygon, from the first consecutive corners that are not on one
+/// line with the first.
 fn plane_of(corners: &[Lattice]) -> Option<Plane> {
     let (first, rest) = corners.split_first()?;
     rest.windows(2)
         .find_map(|pair| Plane::through(first, &pair[0], &pair[1]))
 }
 
-/// Twice the area vector: the sum of a fan's cross products.
+/// The vector along a polygon's normal whose length is twice the polygon's area: the sum of a fan's cross
+/// products.
 fn area_vector(corners: &[[f64; 3]]) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for pair in corners.get(1..).unwrap_or_default().windows(2) {

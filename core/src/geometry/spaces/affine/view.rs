@@ -1,4 +1,5 @@
-//! Viewpoints: points or directions in doubles, with exact sides.
+//! Viewpoints: points or directions given in doubles, with exact tests on which side of a hyperplane they
+//! lie.
 
 use num_bigint::BigInt;
 
@@ -7,10 +8,10 @@ use crate::arith::{mantissa_and_exponent, Sign};
 use crate::geometry::plane::FILTER;
 use crate::geometry::side::Side;
 
-/// A point (x/w, y/w, z/w) with w > 0, or with w = 0 the point at infinity in direction (x, y, z).
+/// A viewpoint (x/w, y/w, z/w) with w > 0, or with w = 0 the point at infinity in direction (x, y, z).
 ///
 /// # Exactness
-/// A double is an integer times a power of two. So is each coordinate in lattice steps, but for a power of
+/// A double is an integer times a power of two. So is each coordinate in lattice steps, except for a power of
 /// ten that goes into the denominator: nothing is snapped or rounded.
 #[derive(Clone, Debug)]
 pub struct Viewpoint {
@@ -19,14 +20,14 @@ pub struct Viewpoint {
 }
 
 impl Viewpoint {
-    /// The point with these coordinates in units of 10^`exponent` lattice steps; all finite.
+    /// The viewpoint with these finite coordinates, in units of 10^`exponent` lattice steps.
     ///
     /// `exponent` is the negated pitch: 9 if a step is 10^-9 units.
     pub fn point(position: &[f64; 3], exponent: i64) -> Self {
         Self::homogeneous(position, 1.0, exponent)
     }
 
-    /// The point infinitely far away in this direction; all components finite.
+    /// The viewpoint infinitely far away in this direction, whose components are finite.
     pub fn direction(towards: &[f64; 3]) -> Self {
         Self::homogeneous(towards, 0.0, 0)
     }
@@ -49,7 +50,7 @@ impl Viewpoint {
         }
     }
 
-    /// The side of a hyperplane on which the viewpoint lies.
+    /// The side of a hyperplane on which the viewpoint lies, exactly.
     pub fn side<S: Affine>(&self, cut: &S::Hyperplane) -> Side {
         let coefficients = S::approx(cut);
         let t = [0, 1, 2, 3].map(|i| coefficients[i] * self.approx[i]);

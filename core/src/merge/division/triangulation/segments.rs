@@ -1,4 +1,4 @@
-//! Inserts segments into a triangulation by flipping the edges that they cross.
+//! Inserts segments into a triangulation by flipping the edges that cross them.
 //!
 //! # Source
 //! Sloan 1993.
@@ -12,28 +12,29 @@ use crate::geometry::plane::Plane;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 
-/// The first stretch of a way.
+/// The first section of the path of a segment through the triangulation.
 enum Way {
-    /// It ends in a point and crosses only free edges.
+    /// The path reaches this point and crosses only these edges, given by their end points, none of which is
+    /// part of a segment.
     Free(u32, Vec<[u32; 2]>),
-    /// It meets an edge that is part of a segment.
+    /// The path meets an edge that is part of another segment: a triangle, and the index of its edge.
     Blocked(u32, usize),
 }
 
-/// How a way leaves a point.
+/// How the path of a segment leaves a point.
 enum Start {
-    /// Across an edge of a triangle.
+    /// It crosses an edge of a triangle at the point: the triangle, and the index of the edge.
     Edge(u32, usize),
-    /// Along the edge to a point.
+    /// It runs along the edge to this point.
     Along(u32),
 }
 
 impl Triangulation {
-    /// Inserts a segment that lies in a plane with the segment's left on the minus side. It becomes a chain
-    /// of edges; `meet` makes the point in which it crosses another segment, given by number.
+    /// Inserts a segment between two points as a chain of edges. It lies in the plane `cut`, whose minus side
+    /// is on its left; `meet` returns the point in which it crosses the segment with a given number.
     ///
     /// # Errors
-    /// If it leaves the polygon, or `meet` finds no point.
+    /// If the segment leaves the polygon, or `meet` finds no point.
     pub fn constrain(
         &mut self,
         [from, to]: [u32; 2],
@@ -71,7 +72,8 @@ impl Triangulation {
         Ok(())
     }
 
-    /// The segments with a mark; true for those that have the direction of the edge.
+    /// Returns the segments that a mark of an edge stands for, each with whether it has the direction of the
+    /// edge.
     fn along(&self, mark: i32) -> impl Iterator<Item = (u32, bool)> + '_ {
         let is_turned = mark < 0;
         let mut next = mark.unsigned_abs();
@@ -82,12 +84,13 @@ impl Triangulation {
         })
     }
 
-    /// The segments along an edge of a triangle; true for those that have its direction.
+    /// Returns the segments that run along an edge of a triangle, each with whether it has the direction of
+    /// the edge.
     pub fn along_edge(&self, cell: u32, edge: usize) -> impl Iterator<Item = (u32, bool)> + '_ {
         self.along(self.cells[cell as usize].marks[edge])
     }
 
-    /// Marks an edge, given in the triangles on both sides, as part of a segment.
+    /// Marks an edge as part of a segment; the edge is given as seen from the triangles on both sides.
     fn mark(&mut self, edges: [Option<(u32, usize)>; 2], segment: u32) -> Result<(), Defect> {
         let known = |at: &Option<(u32, usize)>| at.map(|(c, e)| self.cells[c as usize].marks[e]);
         let before = known(&edges[0])
@@ -108,7 +111,7 @@ impl Triangulation {
         Ok(())
     }
 
-    /// The first stretch of the way between two points that no edge connects.
+    /// Returns the first section of the path from one point to another that no edge connects.
     fn way(&self, from: u32, to: u32, cut: &Plane) -> Result<Way, Defect> {
         let (mut at, mut edge) = match self.first_crossed(from, to, cut)? {
             Start::Edge(cell, edge) => (cell, edge),
@@ -140,7 +143,7 @@ impl Triangulation {
         }
     }
 
-    /// The first edge that the way between two points crosses or follows.
+    /// Returns the first edge that the path from one point to another crosses or runs along.
     fn first_crossed(&self, from: u32, to: u32, cut: &Plane) -> Result<Start, Defect> {
         for (number, k) in self.fan(from) {
             let corners = self.cells[number as usize].corners;
@@ -158,7 +161,7 @@ impl Triangulation {
         Err(Defect)
     }
 
-    /// Return whether a point of a line lies on the same side of `from` as `to`.
+    /// Returns true if a point of the line through `from` and `to` lies on the same side of `from` as `to`.
     fn is_ahead(&self, from: u32, to: u32, point: u32) -> bool {
         let [from, to, point] = [from, to, point].map(|p| &self.places[p as usize]);
         let axis = from.vertex.axis_to(&to.vertex);
@@ -166,7 +169,7 @@ impl Triangulation {
         order(point) == order(to)
     }
 
-    /// Flips edges until none crosses the segment.
+    /// Flips the crossed edges until none crosses the segment between two points of the plane `cut`.
     fn remove(&mut self, crossed: Vec<[u32; 2]>, [from, to]: [u32; 2], cut: &Plane) {
         let mut open = VecDeque::from(crossed);
         while let Some([a, b]) = open.pop_front() {
@@ -199,7 +202,7 @@ mod tests {
     use super::*;
     use crate::arith::convert::as_number;
 
-    /// Adds all segments between points, one after the other.
+    /// Adds these segments, one after the other.
     fn constrain_all(cells: &mut Triangulation, segments: &[[u32; 2]]) {
         let plane = |[a, b]: [u32; 2]| {
             let [a, b] = [a, b].map(|p| *cells.vertex(p).as_lattice().expect("a lattice point"));
@@ -218,7 +221,7 @@ mod tests {
         }
     }
 
-    /// The length of all edges that a segment runs along.
+    /// Returns the total length of the edges along which a segment runs.
     fn length(cells: &Triangulation, segment: u32) -> f64 {
         let mut sum = 0.0;
         for (cell, edge) in

@@ -1,7 +1,7 @@
-//! Anchors: points of an operand's boundary that its elements have in common.
+//! Anchors: points that several elements of an operand share.
 //!
-//! What is known of the other operands at an anchor holds for all elements that share it: the
-//! vertices of a mesh, the corners of a part's pieces, and the points in which edges leave the cell.
+//! Whether an anchor is inside the other operands holds for all elements that share it. Anchors are vertices
+//! of meshes, corners of parts of faces, and points in which edges leave the cell.
 
 use std::sync::Arc;
 
@@ -14,28 +14,28 @@ use crate::geometry::vertices::VertexTable;
 use crate::mesh::handle::{Slot, VertexId};
 use crate::tree::node::Part;
 
-/// A point of an operand's boundary inside the cell.
+/// A point inside the cell that several elements of an operand may share.
 #[derive(Clone)]
 pub(super) struct Anchor {
     pub(super) name: Name,
     pub(super) place: Spot,
 }
 
-/// The place of an anchor.
+/// The position of an anchor.
 #[derive(Clone)]
 pub(super) enum Spot {
     Lattice(Lattice),
     Exact(Arc<Vertex>),
 }
 
-/// Names the corners of parts, equal points alike whatever part they are corners of.
+/// Gives names to the corners of parts of faces; equal points of different parts get the same name.
 pub(super) struct Names<'a> {
     parts: &'a [(&'a Arc<Part>, Slot)],
     points: VertexTable,
 }
 
 impl<'a> Names<'a> {
-    /// Of a scene's parts.
+    /// Starts to name the corners of all parts in a scene.
     pub(super) fn of(scene: &'a Scene) -> Self {
         Self {
             parts: &scene.parts,
@@ -55,7 +55,7 @@ impl<'a> Names<'a> {
     }
 }
 
-/// The vertex of the face a part is left of that is in a place.
+/// Returns the vertex of a part's face at a lattice point; `None` if the face has no corner there.
 fn vertex_at(part: &Part, place: &Lattice) -> Option<VertexId> {
     let mesh = part.source.mesh()?;
     let corner = mesh.corners(part.face).iter().position(|c| c == place)?;
@@ -63,7 +63,7 @@ fn vertex_at(part: &Part, place: &Lattice) -> Option<VertexId> {
 }
 
 impl Element<'_> {
-    /// The corners inside the cell that other elements of the operand may share.
+    /// Returns the corners of the element inside the cell, which other elements of the operand may share.
     pub(super) fn anchors(&self, cell: &Cell, names: &mut Names) -> Vec<Anchor> {
         match &self.place {
             Place::Face(triangle) => self
@@ -88,7 +88,8 @@ impl Element<'_> {
         }
     }
 
-    /// The points in which edges of an element leave the cell: its neighbours share them.
+    /// Returns the points in which edges of the element leave the cell, which neighbouring elements share;
+    /// `clipped` is the part of the element in the cell.
     pub(super) fn anchors_at_walls(&self, clipped: &Polygon, names: &mut Names) -> Vec<Anchor> {
         let corners = clipped.corners();
         let n = corners.len();
@@ -115,7 +116,8 @@ impl Anchor {
         }
     }
 
-    /// The corner of a clipped face at which one of its own edges and a wall of the cell meet.
+    /// Returns an anchor at a corner of a clipped face in which one of the face's edges meets a wall of the
+    /// cell; `None` for other corners.
     #[allow(clippy::cast_possible_truncation, reason = "one of three axes")]
     fn at_wall(triangle: &Triangle, before: &Corner, corner: &Corner) -> Option<Self> {
         let (edge, wall) = match (&before.edge, &corner.edge) {
@@ -132,7 +134,7 @@ impl Anchor {
         })
     }
 
-    /// Return whether a corner is the anchor.
+    /// Returns true if a corner is at the anchor's position.
     pub(super) fn is_at(&self, corner: &Arc<Vertex>) -> bool {
         match &self.place {
             Spot::Lattice(p) => corner.as_lattice() == Some(p),
@@ -150,7 +152,7 @@ mod tests {
     use crate::merge::scenes::{crossing, tetrahedra};
     use crate::mesh::handle::FaceId;
 
-    /// A part without an outline of a solid's first face.
+    /// Returns a part, without an outline, of a solid's first face.
     fn part() -> Arc<Part> {
         let solid = &tetrahedra()[0];
         let source = Arc::clone(solid.sources().get(Slot(0)));
@@ -171,13 +173,13 @@ mod tests {
         let first = name(met([7, 5, 3]).expect("a corner"));
         assert!(first == name(met([7, 5, 3]).expect("a corner")));
         assert!(first != name(met([7, 5, 9]).expect("a corner")));
-        // A vertex of the face has the name that whole faces give it.
+        // A vertex of the face has the same name as for whole faces.
         let mesh = part.source.mesh().expect("a mesh");
         let (corner, vertex) = (mesh.corners(part.face)[1], mesh.vertices_of(part.face)[1]);
         assert!(name(Vertex::lattice(corner)) == Name::Vertex(Slot(0), vertex));
     }
 
-    /// In a small cell at its corner a solid has that corner, and edges that leave the cell.
+    /// A small cell around a corner of a solid contains this corner, and edges that leave the cell.
     #[test]
     fn neighbours_share_the_points_in_which_edges_leave_the_cell() {
         let shared = crossing();

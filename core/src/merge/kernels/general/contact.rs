@@ -1,4 +1,4 @@
-//! Contacts of faces: whether two faces cross, or meet in a special way.
+//! Tests whether two faces cross, or touch in a degenerate position.
 
 use std::borrow::Cow;
 use std::cell::OnceCell;
@@ -10,34 +10,35 @@ use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::geometry::winding::path::polygon_on_path;
 
-/// A convex polygon and, made at first use, the planes through its sides.
+/// A convex polygon and, computed at first use, the planes through its sides.
 #[derive(Debug)]
 pub struct Face<'a> {
-    /// The polygon.
+    /// The polygon of the face.
     pub polygon: Cow<'a, Polygon>,
     rims: OnceCell<Vec<Plane>>,
 }
 
 impl<'a> Face<'a> {
-    /// A face.
+    /// Makes a face from a polygon.
     pub fn new(polygon: Cow<'a, Polygon>) -> Self {
         let rims = OnceCell::new();
         Self { polygon, rims }
     }
 
-    /// The planes of its border, the face on their minus sides.
+    /// Returns for each side of the polygon a plane through it, with the polygon on its minus side.
     pub fn rims(&self) -> &[Plane] {
         let rim = |c: &Corner| c.edge.rim(self.polygon.support());
         self.rims
             .get_or_init(|| self.polygon.corners().iter().map(rim).collect())
     }
 
-    /// The change of the winding number across the face along a path; see `geometry::winding::path`.
+    /// Returns the change of the winding number where a path crosses the face, or that it is doubtful;
+    /// `geometry::winding::path` describes the path.
     pub fn on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
         polygon_on_path(self.polygon.support(), || self.rims(), from, to)
     }
 
-    /// Return whether a point in the plane of the face lies in it or on its border.
+    /// Returns true if a point of the face's plane lies in the face or on its border.
     fn holds(&self, point: &Vertex) -> bool {
         self.rims()
             .iter()
@@ -45,26 +46,25 @@ impl<'a> Face<'a> {
     }
 }
 
-/// A special position: a face touches another one, or segments contradict each other. Local trees decide
-/// these.
+/// The error that faces lie in a special (degenerate) position: a face touches another one without crossing
+/// it, or segments contradict each other. Local trees solve such cells.
 ///
-/// This is exact, unlike `Filtered::Doubtful`, and about places rather than a solid, unlike
-/// `Simplicity`: no further digits settle it, only a way that needs no rule.
+/// The position is certain, unlike `Filtered::Doubtful`: computing with more digits would not change it.
 pub(super) struct Special;
 
-/// The ways in which a face may meet a polygon.
+/// How a face meets a polygon.
 #[derive(Debug)]
 pub enum Contact {
-    /// Not in a way that matters.
+    /// The face and the polygon neither cross nor touch.
     None,
-    /// It may cross it: the sides of its plane on which the polygon's corners lie, and of the
-    /// polygon's plane on which its own do.
+    /// The face may cross the polygon: the sides of the face's plane on which the polygon's corners lie, and
+    /// the sides of the polygon's plane on which the face's corners lie.
     Crossing(Sides, Sides),
-    /// Its position is special.
+    /// The face may touch the polygon without crossing it.
     Special,
 }
 
-/// Return how a face may meet a polygon whose bounds it shares.
+/// Returns how a face meets a polygon, by the sides of each plane on which the other's corners lie.
 pub fn contact(polygon: &Polygon, face: &Face<'_>) -> Contact {
     let theirs = face.polygon.sides(polygon.support());
     let crossed = straddle(&theirs) == (true, true);
@@ -88,7 +88,7 @@ pub fn contact(polygon: &Polygon, face: &Face<'_>) -> Contact {
     Contact::None
 }
 
-/// Return whether an edge of one polygon has the other strictly beyond it; both lie in one plane.
+/// Returns true if the line of an edge of one polygon strictly separates two polygons of one plane.
 fn lie_apart(polygon: &Polygon, other: &Polygon) -> bool {
     let beyond_an_edge = |a: &Polygon, b: &Polygon| {
         let rims = a.corners().iter().map(|c| c.edge.rim(a.support()));

@@ -1,4 +1,4 @@
-//! The fates of elements: an element is divided if faces of other operands cross it.
+//! Finds the elements that faces of other operands cross, and divides them.
 
 use std::sync::Arc;
 
@@ -17,54 +17,55 @@ use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::merge::pairs::{pairs, shift_of, Boxed};
 
-/// Elements that may meet another one, by number: rarely more than six.
+/// The numbers of the elements that may meet an element: rarely more than six.
 type Neighbours = SmallVec<[u32; 6]>;
 
-/// Pair 16, 32, 64 and so on are compared as soon as they are found: if many pairs are special, the search
-/// ends early.
+/// The number of the first pair of elements that is examined as soon as it is found; the pairs 32, 64 and so
+/// on follow. If many pairs are degenerate, the search so ends early.
 const FIRST_PAIR_LOOKED_AT: usize = 16;
 
-/// The fate of an element.
+/// How the faces of other operands affect an element.
 pub(super) enum Fate {
-    /// It does not meet the cell.
+    /// The element does not meet the cell.
     Absent,
-    /// A whole face without neighbours and with a vertex in the cell.
+    /// The element is a whole face that no other operand is near, with a vertex in the cell.
     Untouched,
-    /// Nothing crosses it; it has at least one anchor.
+    /// No other operand crosses the element; it has at least one anchor (a point that other elements may
+    /// share).
     Uncut(Vec<Anchor>),
-    /// It was divided.
+    /// The element was divided.
     Cut(Box<Cut>),
 }
 
-/// The points and names that all elements share.
+/// The crossing points and the names of corners that all elements share.
 struct Made<'a> {
     points: Points,
     names: Names<'a>,
 }
 
-/// The others that an element meets.
+/// The elements of other operands that an element meets.
 enum Meeting<'a> {
-    /// Nothing, if it meets the cell at all.
+    /// The element meets no other one; it may not even meet the cell.
     Apart,
-    /// Not even the cell.
+    /// The element does not meet the cell.
     Absent,
-    /// These others, perhaps none, in its part inside the cell.
+    /// The part of the element inside the cell, and the faces that may cross it, perhaps none.
     Near(Box<Polygon>, Vec<Crosser<'a>>),
 }
 
-/// A divided element.
+/// An element that was divided.
 pub(super) struct Cut {
-    /// All of it inside the cell.
+    /// The part of the element inside the cell.
     pub(super) polygon: Polygon,
     pub(super) trace: Trace,
     pub(super) anchors: Vec<Anchor>,
 }
 
 impl Scene<'_> {
-    /// The fates of all elements; `None` if two meet in a special way.
+    /// Returns how other operands affect each element; `None` if two elements touch in a degenerate position.
     pub(super) fn fates(&self) -> Option<Vec<Fate>> {
         let near = self.neighbours()?.into_iter().enumerate();
-        // A cell in which anything is special is refused before anything is divided.
+        // A cell with a degenerate position is refused before any element is divided.
         let meetings: Option<Vec<Meeting>> = near.map(|(i, near)| self.meeting(i, &near)).collect();
         let mut made = Made {
             points: Points::default(),
@@ -79,7 +80,8 @@ impl Scene<'_> {
         meetings.map(fate).collect()
     }
 
-    /// The others that an element meets; `None` if it meets another one in a special way.
+    /// Returns the elements of other operands that an element meets; `None` if it touches one in a degenerate
+    /// position.
     fn meeting(&self, i: usize, neighbours: &[u32]) -> Option<Meeting<'_>> {
         if neighbours.is_empty() {
             return Some(Meeting::Apart);
@@ -91,7 +93,7 @@ impl Scene<'_> {
         Some(Meeting::Near(Box::new(polygon), crossers))
     }
 
-    /// The fate of an element without neighbours.
+    /// Returns the fate of an element that no other operand is near.
     fn fate_apart(&self, i: usize, made: &mut Made) -> Option<Fate> {
         let element = &self.elements[i];
         if element.vertices_in(self.cell).next().is_some() {
@@ -107,8 +109,8 @@ impl Scene<'_> {
         }
     }
 
-    /// For each element those of other operands that may meet it inside the cell; `None` if they
-    /// are too many to be found by a sweep, or two of a sample meet in a special way.
+    /// Returns for each element the elements of other operands that may meet it inside the cell; `None` if
+    /// there are too many pairs for a sweep, or if a sampled pair touches in a degenerate position.
     fn neighbours(&self) -> Option<Vec<Neighbours>> {
         let size = self.cell.size().into_iter().max().unwrap_or(0);
         let shift = shift_of(1 << size);
@@ -136,7 +138,7 @@ impl Scene<'_> {
             }
             Some(())
         })?;
-        // The order in which pairs are found is not that of the elements.
+        // Pairs are not found in the order of the elements.
         for list in found.iter_mut().filter(|list| list.len() > 1) {
             poll();
             list.sort_unstable();
@@ -171,7 +173,7 @@ impl Scene<'_> {
         })))
     }
 
-    /// Those neighbours that may cross a polygon; `None` if one touches it in a special way.
+    /// Returns the neighbours that may cross a polygon; `None` if one touches it in a degenerate position.
     fn crossers(&self, polygon: &Polygon, neighbours: &[u32]) -> Option<Vec<Crosser<'_>>> {
         let mut crossers = Vec::with_capacity(neighbours.len());
         for j in neighbours {
@@ -196,12 +198,12 @@ impl Scene<'_> {
 }
 
 impl Cut {
-    /// A part that has an anchor as a corner.
+    /// Returns a part of the element that has an anchor as a corner; `None` if there is none.
     pub(super) fn part_at(&self, anchor: &Anchor) -> Option<usize> {
         self.part_with(|corner| anchor.is_at(corner))
     }
 
-    /// The first part that has such a corner.
+    /// Returns the part at the first corner for which `is_it` is true; `None` if there is none.
     pub(super) fn part_with(&self, is_it: impl Fn(&Arc<Vertex>) -> bool) -> Option<usize> {
         let corner = self.polygon.corners().iter().position(|c| is_it(&c.at))?;
         self.trace.part_at_corner(corner)
@@ -221,14 +223,15 @@ mod tests {
         let fates = scene.fates().expect("general position");
         let cut = |fate: &Fate| matches!(fate, Fate::Cut(_));
         let cut: Vec<bool> = fates.iter().map(cut).collect();
-        // The face across from the origin, and those at the corner inside.
+        // The divided faces are the face opposite the origin, and the three faces at the corner inside.
         assert_eq!(cut, [false, false, false, true, true, true, true, false]);
         let alone = Scene::new(&shared.cell, &operands[..1], &shared.sources);
         let fates = alone.fates().expect("nothing meets");
         assert!(fates.iter().all(|fate| matches!(fate, Fate::Untouched)));
     }
 
-    /// For each face of a tetrahedron the edges of the part inside all of some operands.
+    /// Returns for each face of a tetrahedron the number of edges of the part that is inside all operands
+    /// that cross it.
     fn traced(operands: &[&[[[i64; 3]; 2]]]) -> Vec<usize> {
         let floor = tetrahedron([[-90, -95, 0], [290, -85, 0], [-80, 310, 0], [-70, -70, 300]]);
         let others = operands.iter().map(|o| cuboids(o.iter().copied()));
@@ -265,7 +268,7 @@ mod tests {
         let first = [[[1, 2, -5], [9, 11, 5]]];
         let second = [[[4, 5, -6], [31, 14, 7]]];
         assert_eq!(traced(&[&first, &second]), [4, 0, 0, 0]);
-        // Inside both in two places.
+        // Two parts are inside both operands.
         let third = [[[4, 5, -6], [6, 14, 7]], [[7, 5, -6], [8, 14, 7]]];
         assert_eq!(traced(&[&first, &third]), [8, 0, 0, 0]);
     }

@@ -1,4 +1,4 @@
-//! The faces that an expression leaves of the elements.
+//! Decides which parts of the elements of a cell bound the result.
 
 use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;
@@ -11,7 +11,8 @@ use crate::merge::kernels::stays::{kept, Owner, Stays};
 use crate::mesh::handle::{FaceId, SourceFace};
 
 impl Scene<'_> {
-    /// Return what stays of all elements, given their labels and the expression's value for labels.
+    /// Returns the parts of all elements that bound the result, given the labels of their pieces; `value`
+    /// returns the expression's value for a label.
     pub(super) fn keep(
         &self,
         fates: Vec<Fate>,
@@ -37,7 +38,8 @@ impl Scene<'_> {
 }
 
 impl Element<'_> {
-    /// Return what stays as the source has the face, and what stays turned.
+    /// Returns the parts of the element that bound the result in its source's orientation and in the opposite
+    /// one, given the labels of its pieces.
     fn stays(
         &self,
         fate: Fate,
@@ -55,8 +57,8 @@ impl Element<'_> {
         }
     }
 
-    /// Return the orientation in which a piece stays where the others have these labels, 1 if it is
-    /// turned; `None` if it goes.
+    /// Returns the orientation in which a piece of the element stays, given the bits of the other operands: 0
+    /// for the source's orientation, 1 for the opposite one; `None` if the piece goes.
     fn side(
         &self,
         others: Labels,
@@ -69,11 +71,11 @@ impl Element<'_> {
     }
 }
 
-/// An expression's values for labels, each computed once.
+/// A cache of an expression's values for labels.
 struct Values<F> {
     value: F,
     known: HashMap<Labels, bool>,
-    /// Elements that follow each other mostly ask for the same.
+    /// The last request and its result: consecutive elements mostly ask for the same.
     last: Option<((Labels, Labels), [bool; 2])>,
 }
 
@@ -86,7 +88,8 @@ impl<F: FnMut(Labels) -> bool> Values<F> {
         }
     }
 
-    /// The values inside and outside an operand.
+    /// Returns the expression's values inside and outside the operand with the bit `own`, given the bits of
+    /// the other operands.
     fn on_sides(&mut self, own: Labels, others: Labels) -> [bool; 2] {
         if let Some((_, found)) = self.last.filter(|(asked, _)| *asked == (own, others)) {
             return found;
@@ -100,14 +103,15 @@ impl<F: FnMut(Labels) -> bool> Values<F> {
     }
 }
 
-/// All of an element on a side.
+/// Returns that all of an element stays in the orientation `side`, and nothing in the other one.
 fn all_on(side: usize) -> [Stays; 2] {
     let mut stays = [Stays::Nothing, Stays::Nothing];
     stays[side] = Stays::All;
     stays
 }
 
-/// The parts by the sides on which they stay.
+/// Returns the parts of a divided element that bound the result in each orientation; `sides` has for each
+/// part the orientation in which it bounds the result, or `None`.
 fn stays_of_parts(fate: Fate, sides: &[Option<usize>]) -> [Stays; 2] {
     let Fate::Cut(mut cut) = fate else {
         return [Stays::Nothing, Stays::Nothing];

@@ -1,4 +1,4 @@
-//! The labels of the other operands at anchors, as far as they are known.
+//! The known labels at anchors: points that several elements of an operand share.
 
 use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 
@@ -12,32 +12,34 @@ use crate::interrupt::poll;
 use crate::mesh::disjoint::DisjointSets;
 use crate::mesh::handle::Slot;
 
-/// Stands for no anchor, and is above the numbers of all.
+/// The number that stands for no anchor; it exceeds the numbers of all anchors.
 const NONE: u32 = u32::MAX;
 
-/// Up to so many times as many vertices as elements are numbered in a table of all vertices. An
-/// element looks three names up, each at the cost of clearing some fifty places of the table.
+/// The most vertices of a mesh for each of its elements in the cell for which a table of all vertices is used
+/// instead of a hash map. An element looks up three names in the map, and each look-up costs as much as
+/// clearing about fifty entries of the table.
 const MAX_VERTICES_PER_ELEMENT: usize = 16;
 
-/// Anchors with what is known of the other operands there. Those of an element that nothing
-/// crosses have the same labels.
+/// Anchors (points that several elements of an operand share) with the known labels of the other operands
+/// there. All anchors of an element that nothing crosses have the same label.
 pub(super) struct Known {
-    /// For each operand the numbers of a mesh's vertices, if most of the mesh is in the cell.
+    /// For each operand the numbers of its anchors at the vertices of one mesh, if enough of the mesh is in
+    /// the cell.
     of_vertices: Vec<Option<(Slot, Vec<u32>)>>,
-    /// The numbers of all others.
+    /// The numbers of all other anchors, by operand and name.
     numbers: HashMap<(u32, Name), u32>,
     sets: DisjointSets,
-    /// By anchor that stands for others.
+    /// The label at each anchor that represents its class of anchors with equal labels, if known.
     pub(super) labels: Vec<Option<Labels>>,
-    /// By element that nothing crosses: one of its anchors.
+    /// For each element that nothing crosses the number of one of its anchors; otherwise `NONE`.
     anchors: Vec<u32>,
-    /// The cut elements at the anchors that stand for others: the anchor, the element, and the
-    /// anchor's place among the element's.
+    /// The divided elements at anchors, sorted: the anchor that represents the class, the element, and the
+    /// index of the anchor among the element's anchors.
     cuts: Vec<(u32, u32, u32)>,
 }
 
 impl Known {
-    /// Nothing is known yet but which anchors are alike.
+    /// Unites the anchors of each element that nothing crosses into classes; no label is known yet.
     pub(super) fn new(scene: &Scene, fates: &[Fate]) -> Self {
         // A closed surface has half as many vertices as triangles.
         let count = scene.elements.len();
@@ -72,7 +74,8 @@ impl Known {
         known
     }
 
-    /// Makes one anchor stand for all of an element that nothing crosses, and returns it.
+    /// Unites the anchors of an element that nothing crosses into one class and returns a number of it;
+    /// `NONE` for other elements.
     fn enter(&mut self, cell: &Cell, element: &Element, fate: &Fate) -> u32 {
         let operand = element.operand;
         match (fate, &element.place) {
@@ -96,7 +99,8 @@ impl Known {
         })
     }
 
-    /// The number of the anchor that stands for the one with this name.
+    /// Returns the number of the anchor that represents the class of the anchor with this name; adds the
+    /// anchor if it is new.
     pub(super) fn root_of(&mut self, operand: usize, name: Name) -> u32 {
         let next = self.sets.end();
         let at = match (name, &mut self.of_vertices[operand]) {
@@ -117,7 +121,8 @@ impl Known {
         self.sets.least(at)
     }
 
-    /// The cut elements at an anchor, with the part there and its labels.
+    /// Returns the divided elements at an anchor, each with its part at the anchor and the label `label`
+    /// there; `None` if an anchor is no corner of its element.
     pub(super) fn cut_at(
         &self,
         root: usize,
@@ -137,7 +142,8 @@ impl Known {
         .collect()
     }
 
-    /// The labels of all operands but one at an anchor of that one.
+    /// Returns the label of all other operands at an anchor of an operand; counts it if it is not known.
+    /// `None` if counting is doubtful.
     pub(super) fn label(
         &mut self,
         scene: &Scene,
@@ -148,7 +154,8 @@ impl Known {
         self.known_or(root, || scene.count_at(operand, &anchor.place))
     }
 
-    /// The labels of all other operands on an element that nothing crosses.
+    /// Returns the label of all other operands on an element that nothing crosses; counts it if it is not
+    /// known. `None` if counting is doubtful.
     pub(super) fn label_of(&mut self, scene: &Scene, i: usize, fate: &Fate) -> Option<Labels> {
         let element = &scene.elements[i];
         let root = self.sets.least(self.anchors[i]);
@@ -175,8 +182,8 @@ impl Known {
     }
 }
 
-/// No numbers yet for the vertices of the mesh that the first of an operand's elements is of, unless
-/// that mesh is much larger than what the cell has of it.
+/// Makes an empty table of anchor numbers for the vertices of the mesh of an operand's first element; `None`
+/// if this mesh has too many vertices for its elements in the cell.
 fn numbers_of_vertices(elements: &[Element]) -> Option<(Slot, Vec<u32>)> {
     let Place::Face(triangle) = &elements.first()?.place else {
         return None;

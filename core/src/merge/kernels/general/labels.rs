@@ -1,7 +1,8 @@
-//! On which pieces of an element which other operands are inside.
+//! Determines for each piece of an element which other operands contain it (its label).
 //!
-//! Labels spread from piece to piece along ties and, at anchors, from element to element; only where
-//! nothing is known yet they are counted, along a path from the cell's corner.
+//! Labels spread from piece to piece across the segments that divide an element, and from element to element
+//! at common points (anchors). If no label is known, winding numbers are counted along a path from the cell's
+//! corner.
 
 use std::sync::Arc;
 
@@ -20,7 +21,8 @@ use crate::geometry::winding::path::{triangle_on_path, Way};
 use crate::interrupt::poll;
 
 impl Scene<'_> {
-    /// For each element the labels of the other operands on its pieces.
+    /// Returns for each element the labels of its pieces; `None` if labels contradict each other, or if they
+    /// cannot be counted.
     pub(super) fn labels(&self, fates: &[Fate]) -> Option<Vec<OnPieces>> {
         let mut known = Known::new(self, fates);
         let mut labels = vec![OnPieces::new(); fates.len()];
@@ -40,9 +42,11 @@ impl Scene<'_> {
         Some(labels)
     }
 
-    /// A part of a cut element, and its labels.
+    /// Returns a part of a divided element and its label, from which the labels of all other parts follow;
+    /// `None` if no label can be counted.
     fn start(&self, operand: usize, cut: &Cut, known: &mut Known) -> Option<(usize, Labels)> {
-        // A path to one corner may run through an edge, as all to a wall at the cell's corner do.
+        // Several corners are tried, because a path to a corner may run through an edge, as all paths to a
+        // wall at the cell's corner do.
         if !cut.anchors.is_empty() {
             let label = |anchor| Some((cut.part_at(anchor)?, known.label(self, operand, anchor)?));
             return cut.anchors.iter().find_map(label);
@@ -54,8 +58,8 @@ impl Scene<'_> {
         cut.polygon.corners().iter().find_map(label)
     }
 
-    /// Labels the parts of a cut element from one of them, and of all cut elements that share
-    /// anchors with it.
+    /// Labels the parts of a divided element from one of them, and then the parts of all divided elements
+    /// that are connected to it by common points; `None` if labels contradict each other.
     fn flood(
         &self,
         fates: &[Fate],
@@ -83,7 +87,8 @@ impl Scene<'_> {
         Some(())
     }
 
-    /// The labels of all operands but one at a place on that one's boundary.
+    /// Returns the label of all operands except `own` at a point on the boundary of `own`; `None` if it
+    /// cannot be counted.
     pub(super) fn count_at(&self, own: usize, place: &Spot) -> Option<Labels> {
         match place {
             Spot::Lattice(point) => self.count_at_lattice(own, point),
@@ -91,13 +96,15 @@ impl Scene<'_> {
         }
     }
 
-    /// The labels of all operands but one at an exact point of that one's boundary.
+    /// Returns the label of all operands except `own` at an exact point on the boundary of `own`; `None` if
+    /// it cannot be counted.
     fn count(&self, own: usize, point: &Vertex) -> Option<Labels> {
         let across = |e: &Element| e.on_path(&self.corner, point);
         self.count_by(own, point.approx(), across)
     }
 
-    /// The labels of all operands but one at a lattice vertex of that one.
+    /// Returns the label of all operands except `own` at a lattice vertex of `own`; `None` if it cannot be
+    /// counted.
     pub(super) fn count_at_lattice(&self, own: usize, point: &Lattice) -> Option<Labels> {
         let exact = Vertex::lattice(*point);
         let across = |e: &Element| match &e.place {
@@ -107,7 +114,9 @@ impl Scene<'_> {
         self.count_by(own, point.map(as_double), across)
     }
 
-    /// The labels near a point, counted from the cell's corner; `across` is the change at an element.
+    /// Counts winding numbers along a path from the cell's corner to near a point, and returns the label
+    /// there of all operands except `own`; `across` returns the change at an element. `None` if a change is
+    /// doubtful, or a number is neither 0 nor 1.
     fn count_by(
         &self,
         own: usize,
@@ -142,7 +151,8 @@ impl Scene<'_> {
     }
 }
 
-/// The labels of all parts from those of one; `None` if they contradict each other.
+/// Returns the labels of all parts of a divided element, given the label of one; `None` if this contradicts
+/// the segments that divide the element.
 fn spread(trace: &Trace, first: usize, start: Labels) -> Option<OnPieces> {
     let agrees = start & trace.operands == trace.parts[first];
     let others = start & !trace.operands;

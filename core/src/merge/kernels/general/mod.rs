@@ -1,9 +1,9 @@
 //! The kernel for operands in general position.
 //!
-//! Only faces that truly cross are divided, by each other. Everything else keeps its winding numbers
-//! over the whole cell: they are counted once along a path from the cell's corner, for all faces
-//! that hang together at vertices. Whatever is special — faces in one plane, edges in faces,
-//! contacts, operands that overlap themselves — is left to the local trees.
+//! Only faces that truly cross are divided, by each other. All other faces have the same winding numbers over
+//! the whole cell: these are counted once along a path from the cell's corner, for all faces that are
+//! connected by common vertices. Special cases (faces in one plane, edges in faces, contacts without
+//! crossing, operands that overlap themselves) are refused and left to the local trees.
 
 mod anchors;
 mod contact;
@@ -24,18 +24,20 @@ use crate::merge::rule::Rule;
 use crate::tree::node::Node;
 use scene::Scene;
 
-/// Operands in one small cell, at most; more are left to the local trees.
+/// The most operands in a cell that this kernel solves: a label is a 64-bit word with one bit for each
+/// operand.
 pub const MAX_OPERANDS: usize = 64;
 
-/// For each operand of the cell whether a region is inside it, as bits.
+/// The label of a region: for each operand of the cell a bit that says whether the region is inside it.
 type Labels = u64;
 
-/// The labels of an element's pieces: of one that nothing cuts, or of a few.
+/// The labels of an element's pieces: one if nothing cuts the element, otherwise usually two.
 type OnPieces = SmallVec<[Labels; 2]>;
 
-/// Divides only faces that truly cross, and needs no trees.
+/// The kernel that divides only faces that truly cross, and needs no trees.
 ///
-/// Refuses cells in which anything is special, and rules other than w > 0.
+/// It refuses cells in which faces of different operands touch without crossing, or an operand overlaps
+/// itself, and rules other than w > 0.
 #[derive(Debug)]
 pub struct GeneralPosition;
 
@@ -62,7 +64,8 @@ impl Kernel for GeneralPosition {
     }
 }
 
-/// Return what stays of the operands' boundaries, and the value at the cell's corner.
+/// Returns the parts of the operands' faces that bound the result, and the expression's value at the cell's
+/// corner (1 for inside); `None` if the kernel refuses the cell.
 fn kept_and_corner(scene: &Scene, problem: &CellProblem) -> Option<(Vec<Kept>, i32)> {
     let operands = &problem.operands;
     let fates = scene.fates()?;
@@ -82,7 +85,7 @@ mod tests {
     use crate::merge::expression::{Expression, Term};
     use crate::merge::scenes::{both, counts, crossing, cuboid, cuboids, tetrahedra, Shared};
 
-    /// Three faces of the second solid and one of the first cross.
+    /// Three faces of the second solid cross one face of the first.
     #[test]
     fn only_faces_that_cross_are_divided() {
         let scene = crossing();

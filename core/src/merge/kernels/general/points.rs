@@ -1,4 +1,4 @@
-//! The points in which edges cross elements, made once for all elements that share them.
+//! The points in which edges cross the planes of elements, computed once for all elements that share them.
 
 use std::sync::Arc;
 
@@ -8,25 +8,25 @@ use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon};
 use crate::geometry::vertex::Vertex;
 
-/// The points known so far.
+/// The points in which edges cross the planes of elements, as far as computed.
 #[derive(Default)]
 pub(super) struct Points {
-    /// By edge and by the number of the element that it crosses.
+    /// The points by the name of the edge and the number of the crossed element.
     on_edges: HashMap<(EdgeName, u32), Point>,
 }
 
 struct Point {
     at: Arc<Vertex>,
-    /// The planes in the edge's name: while they are held no others have their addresses.
+    /// The planes whose addresses name the edge; storing them here keeps their addresses unique.
     _planes: Option<[Arc<Plane>; 2]>,
 }
 
-/// The name of an edge, the same for all elements at it.
+/// The name of an edge, the same for all elements that have this edge.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum EdgeName {
-    /// The ends of a lattice edge, the lower one first.
+    /// The ends of a lattice edge, the lower one first in lexicographic order.
     Lattice([Lattice; 2]),
-    /// The addresses of the two planes that meet in it, the lower one first.
+    /// The addresses of the two planes that meet in the edge, the lower one first.
     Planes([usize; 2]),
 }
 
@@ -47,8 +47,8 @@ impl EdgeName {
 }
 
 impl Points {
-    /// The point in which an edge of a polygon crosses the plane of the element with a number;
-    /// `None` if they are parallel.
+    /// Returns the point in which an edge of a polygon crosses the plane of the element with the given
+    /// number; `None` if they are parallel.
     pub(super) fn at(
         &mut self,
         (polygon, edge): (&Polygon, usize),

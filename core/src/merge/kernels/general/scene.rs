@@ -1,4 +1,4 @@
-//! The elements of a cell: whole faces, faces of half-spaces, and parts or their convex pieces.
+//! The elements of a cell: whole faces, faces of half-spaces, and parts of faces or their convex pieces.
 
 use std::borrow::Cow;
 use std::cell::OnceCell;
@@ -22,55 +22,56 @@ use crate::mesh::handle::{Slot, SourceFace, VertexId};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
 
-/// All operands in a cell.
+/// The elements of all operands in a cell.
 pub(super) struct Scene<'a> {
     pub(super) cell: &'a Cell,
-    /// The cell's low corner, doubled.
+    /// The cell's low corner, in half lattice steps.
     pub(super) corner: Lattice,
-    /// The operands' winding numbers there.
+    /// The operands' winding numbers at the cell's low corner.
     pub(super) corners: Vec<i32>,
-    /// The elements by operand.
+    /// The elements, sorted by operand.
     pub(super) elements: Vec<Element<'a>>,
-    /// For each operand where its elements end.
+    /// For each operand the index of the end of its elements.
     ends: Vec<usize>,
-    /// For each operand a box around its elements.
+    /// For each operand the low and the high corner of a box around its elements.
     pub(super) boxes: Vec<[Lattice; 2]>,
-    /// The parts that pieces belong to, and the slots of their sources.
+    /// The listed parts of faces, with the slots of their sources.
     pub(super) parts: Vec<(&'a Arc<Part>, Slot)>,
-    /// An operand that winds around some point neither once nor not at all.
+    /// The index of an operand for which a winding number other than 0 and 1 was found.
     pub(super) overlapping: OnceCell<usize>,
 }
 
-/// A whole face, or a part or a convex piece of one.
+/// A whole face, or a part of a face or a convex piece of a part.
 pub(super) struct Element<'a> {
     pub(super) operand: usize,
-    /// By how much the winding number behind the face exceeds that in front of it.
+    /// The winding number behind the face minus the number in front of it.
     pub(super) weight: i32,
     pub(super) place: Place<'a>,
-    /// True if all of it is known to lie in the cell.
+    /// True if all of the element is known to lie in the cell.
     inside: bool,
     pub(super) low: Lattice,
     pub(super) high: Lattice,
 }
 
-/// An element and its place.
+/// The kind of an element, with its geometry.
 pub(super) enum Place<'a> {
     Face(Triangle<'a>),
-    /// The face of a half-space: its slot, and its part in the cell.
+    /// The face of a half-space: the slot of the half-space, and the part of its plane in the cell.
     Plane(Slot, Box<Face<'a>>),
-    /// A piece of a part: the part's number in the scene.
+    /// A convex piece of a part: the part's number in `Scene::parts`, and the piece.
     Piece(usize, Box<Face<'a>>),
-    /// A part of which a box is apart from all other operands.
+    /// A part whose box meets no box of another operand: the part's number in `Scene::parts`, and the part.
     Part(usize, ApartPart<'a>),
 }
 
-/// A part that nothing can cross: its pieces are made if a path may.
+/// A part that no face of another operand can cross; its convex pieces are computed only if a path may cross
+/// it.
 pub(super) struct ApartPart<'a> {
     record: &'a PartRecord,
     pieces: OnceCell<Vec<Face<'a>>>,
 }
 
-/// A whole face.
+/// A whole face of a mesh.
 pub(super) struct Triangle<'a> {
     source: &'a Source,
     pub(super) face: SourceFace,
@@ -140,7 +141,8 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Return whether other operands keep out of a box around a part that has a corner in the cell.
+    /// Returns true if the box around a part meets no other operand's box, and the part has a corner that
+    /// certainly lies in the cell.
     fn is_apart(&self, operand: usize, part: &Part) -> bool {
         let [low, high] = part.enclosing();
         let meets =
@@ -150,8 +152,8 @@ impl<'a> Scene<'a> {
         !others.map(|(_, other)| other).any(meets) && corners.any(|c| is_well_inside(c, self.cell))
     }
 
-    /// An element to be compared with others: what keeps clear of a face does so of its pieces. The
-    /// face of a half-space is apart from nothing.
+    /// Returns a triangle that contains the element, for quick tests: an element apart from a face is apart
+    /// from the pieces of this face, too. The face of a half-space is never known to be apart.
     pub(super) fn near(&self, element: &Element) -> NearTriangle {
         let corners = match &element.place {
             Place::Face(triangle) => Some(triangle.corners),
@@ -164,7 +166,7 @@ impl<'a> Scene<'a> {
         corners.map_or(NearTriangle::UNKNOWN, |c| NearTriangle::of(&c))
     }
 
-    /// The labels at the cell's low corner.
+    /// Returns the label at the cell's low corner: a bit for each operand that is inside there.
     pub(super) fn at_corner(&self) -> Labels {
         let numbers = self.corners.iter().enumerate();
         numbers.fold(0, |all, (i, w)| all | Labels::from(*w > 0) << i)
@@ -179,19 +181,19 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// The name of a point that several elements may have in common.
+/// The name of a point that several elements of an operand may share.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Name {
-    /// A vertex of a source.
+    /// A vertex of a mesh, by the mesh's slot and the vertex's number.
     Vertex(Slot, VertexId),
-    /// A corner of a part that is no vertex of its face, by its number.
+    /// A corner of a part that is no vertex of its face, by a number for its exact position.
     Point(u32),
-    /// The point in which an edge of a source leaves the cell: the edge's ends, and twice the axis
-    /// of the wall, with one more for the upper one.
+    /// The point in which an edge of a mesh leaves the cell: the mesh's slot, the edge's ends, and the number
+    /// of the wall, which is twice its axis, plus one for the upper wall.
     Crossing(Slot, [VertexId; 2], u8),
 }
 
-/// The bounding box of the listed elements; empty if there are none.
+/// Returns the bounding box of the listed elements; if there are none, a box with low above high.
 fn box_around(list: &List, sources: &Sources) -> [Lattice; 2] {
     let faces = list.records.iter();
     let faces = faces.map(|r| sources.get(r.slot()).face_box(r.face));
@@ -208,14 +210,14 @@ fn box_around(list: &List, sources: &Sources) -> [Lattice; 2] {
         })
 }
 
-/// Return whether a point certainly lies in a cell.
+/// Returns true if a point certainly lies in a cell.
 pub(super) fn is_well_inside(vertex: &Vertex, cell: &Cell) -> bool {
     let ((least, most), low, high) = (vertex.bounds(), cell.low(), cell.high());
     (0..3).all(|i| least[i] >= as_double(low[i]) && most[i] <= as_double(high[i]))
 }
 
 impl ApartPart<'_> {
-    /// The part.
+    /// Returns the part of a face.
     pub(super) fn part(&self) -> &Part {
         &self.record.element.part
     }
@@ -240,17 +242,18 @@ impl ApartPart<'_> {
 }
 
 impl Triangle<'_> {
-    /// The name of a vertex.
+    /// Returns the name of the vertex at a corner.
     pub(super) fn name(&self, corner: usize) -> Name {
         Name::Vertex(self.face.slot, self.vertices[corner])
     }
 
-    /// The number of vertices of the mesh that the face is of.
+    /// Returns the number of vertices of the face's mesh.
     pub(super) fn mesh_size(&self) -> usize {
         self.source.mesh().map_or(0, |mesh| mesh.vertices.len())
     }
 
-    /// The vertices at the ends of an edge that is given by its places.
+    /// Returns the vertices at the ends of one of the face's edges, given by its end points; `None` if an end
+    /// is no corner of the face.
     pub(super) fn ends_of(&self, edge: [&Lattice; 2]) -> Option<[VertexId; 2]> {
         let at = |place: &Lattice| self.corners.iter().position(|c| c == place);
         Some([self.vertices[at(edge[0])?], self.vertices[at(edge[1])?]])
@@ -258,7 +261,7 @@ impl Triangle<'_> {
 }
 
 impl<'a> Element<'a> {
-    /// A listed face; `None` for the face of a half-space that misses the cell.
+    /// Makes the element of a listed face; `None` for the face of a half-space that misses the cell.
     fn of_record(
         operand: usize,
         record: &Record,
@@ -290,7 +293,7 @@ impl<'a> Element<'a> {
         })
     }
 
-    /// Return the vertices of a whole face that lie in the cell.
+    /// Returns the indices of the corners of a whole face that lie in the cell; none for other elements.
     pub(super) fn vertices_in(&self, cell: &Cell) -> impl Iterator<Item = usize> {
         let inside = match &self.place {
             Place::Face(_) if self.inside => [true; 3],
@@ -300,8 +303,8 @@ impl<'a> Element<'a> {
         (0..3).filter(move |i| inside[*i])
     }
 
-    /// The ends of the element's box inside the cell, relative to its low corner: at most a step
-    /// outside, even if the element misses the cell.
+    /// Returns the low and the high corner of the element's box, clipped to the cell extended by one step,
+    /// relative to the cell's low corner.
     pub(super) fn extent(&self, cell: &Cell) -> [Lattice; 2] {
         if self.inside && matches!(self.place, Place::Face(_)) {
             return [&self.low, &self.high].map(|p| each_axis(|i| p[i] - cell.low()[i]));
@@ -311,7 +314,7 @@ impl<'a> Element<'a> {
         [&self.low, &self.high].map(|p| each_axis(|i| within(p, i)))
     }
 
-    /// The element as a sweep sees it.
+    /// Returns the element in the form that the search for pairs uses.
     pub(super) fn swept(&self, cell: &Cell) -> Swept {
         let origin = cell.low();
         let relative = |p: &Lattice| each_axis(|i| as_double(p[i] - origin[i]));
@@ -327,12 +330,13 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// Return whether the element is a part that is apart from all other operands.
+    /// Returns true if the element is a part whose box meets no box of another operand.
     pub(super) fn is_apart(&self) -> bool {
         matches!(self.place, Place::Part(..))
     }
 
-    /// The change of the winding number across the element along a path, as [`Face::on_path`].
+    /// Returns the change of the winding number where a path crosses the element, or that it is doubtful, as
+    /// [`Face::on_path`].
     pub(super) fn on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
         match &self.place {
             Place::Part(_, part) => part.on_path(from, to),
@@ -342,7 +346,7 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// The convex shape; none of a part that is apart.
+    /// Returns the element as a convex polygon; `None` for a part that is apart from all other operands.
     pub(super) fn shape(&self) -> Option<&Face<'a>> {
         Some(match &self.place {
             Place::Face(t) => t.shape.get_or_init(|| {
@@ -380,7 +384,7 @@ mod tests {
         assert!(scene.of_operand(1).iter().all(|e| e.operand == 1));
         assert_eq!(scene.of_operand(1).len(), 4);
         assert_eq!(scene.boxes[0], [[0; 3], [16; 3]]);
-        // Only the second is inside at the corner.
+        // Only the second operand is inside at the corner.
         assert_eq!(scene.at_corner(), 0b10);
     }
 
@@ -391,7 +395,8 @@ mod tests {
         let shared = Shared::of(&[union, small]);
         let operands = shared.operands();
         let scene = Scene::new(&shared.cell, &operands, &shared.sources);
-        // The three cut faces of the second tetrahedron; that of the first may meet the small one.
+        // The parts that are apart come from the three cut faces of the second tetrahedron; the cut face of
+        // the first may meet the small one.
         let apart = |e: &&Element| e.is_apart();
         assert_eq!(scene.elements.iter().filter(apart).count(), 3);
         let fates = scene.fates().expect("general position");

@@ -1,4 +1,4 @@
-//! The segments in which elements cross each other.
+//! Computes the segments in which faces of different operands cross.
 
 use std::sync::Arc;
 
@@ -14,54 +14,56 @@ use crate::geometry::vertex::Vertex;
 use crate::geometry::winding::path::determinant;
 use crate::merge::division::Spot;
 
-/// A segment on an element, directed so that the minus side of the other face is on its left.
+/// The segment in which a face of another operand crosses an element; the minus side of that face is on its
+/// left.
 pub(super) struct Segment {
     pub(super) ends: [End; 2],
-    /// The other operand.
+    /// The index of the other operand.
     pub(super) operand: usize,
-    /// The plane of the face in which it lies.
+    /// The plane of the crossing face.
     pub(super) plane: Arc<Plane>,
-    /// True if that operand's inside is on the plus side of the plane.
+    /// True if the other operand's inside is on the plus side of this plane.
     pub(super) plus: bool,
 }
 
-/// An end of a segment.
+/// An end of a segment on an element.
 #[derive(Clone)]
 pub(super) struct End {
     pub(super) at: Arc<Vertex>,
-    /// Where it lies on the element.
+    /// Whether the end is a corner of the element, on one of its sides, or inside.
     pub(super) spot: Spot,
 }
 
-/// A face of another operand that may cross an element.
+/// A face of another operand that may cross a given element.
 pub(super) struct Crosser<'a> {
     pub(super) face: &'a Face<'a>,
-    /// The element it is.
+    /// The number of the face among the elements of the cell.
     pub(super) number: u32,
     pub(super) operand: usize,
-    /// By how much the winding number on its minus side exceeds that on its plus side.
+    /// The winding number on the minus side of the face, minus the number on its plus side.
     pub(super) weight: i32,
-    /// On which sides of its plane the element's corners lie.
+    /// The sides of the face's plane on which the element's corners lie.
     pub(super) ours: Sides,
-    /// On which sides of the element's plane its corners lie.
+    /// The sides of the element's plane on which the face's corners lie.
     pub(super) theirs: Sides,
 }
 
 impl Segment {
-    /// The bit of its operand in labels.
+    /// Returns the bit of the other operand in labels.
     pub(super) fn bit(&self) -> Labels {
         1 << self.operand
     }
 }
 
-/// An element that is crossed.
+/// An element that faces of other operands may cross.
 pub(super) struct Crossed<'a> {
     pub(super) polygon: &'a Polygon,
     pub(super) number: u32,
 }
 
 impl Crossed<'_> {
-    /// The segment in which a face crosses the element, if it does.
+    /// Returns the segment in which a face crosses the element; `None` if it does not, an error if their
+    /// position is degenerate.
     pub(super) fn segment(
         &self,
         other: &Crosser,
@@ -81,10 +83,11 @@ impl Crossed<'_> {
         }))
     }
 
-    /// The ends of the segment if no corner lies on the line in which the planes meet.
+    /// Returns the ends of the segment in which a face crosses the element, if no corner of either lies in
+    /// the other's plane; `None` if it does not cross.
     ///
-    /// Along that line, with the face's minus side on the left, the element reaches from x to x′ and
-    /// the face from y to y′. Where the borders meet in a point, the segment ends on the element's
+    /// Along the common line of both planes, with the face's minus side on the left, the element reaches from
+    /// x to x′ and the face from y to y′. If both borders meet in a point, the segment ends on the element's
     /// border. A single point is no segment.
     fn ends(&self, other: &Crosser, points: &mut Points) -> Result<Option<[End; 2]>, Special> {
         let face = &other.face.polygon;
@@ -113,7 +116,8 @@ impl Crossed<'_> {
         ]))
     }
 
-    /// The same if corners may lie on the line.
+    /// Returns the ends of the segment in which a face crosses the element, if corners may lie in the other's
+    /// plane; `None` if it does not cross. It compares the order of points along the common line.
     fn ends_by_order(
         &self,
         other: &Crosser,
@@ -146,9 +150,9 @@ impl Crossed<'_> {
         Ok((order(&from, &to) == onward).then_some([from, to]))
     }
 
-    /// Return where the point in which an edge of the element, on its way to the face's plus side
-    /// or back, crosses the face's plane lies: positive on the inner side of one of the face's own
-    /// edges, zero on it.
+    /// Returns the side of the face's edge `rim` on which an edge of the element crosses the face's plane:
+    /// positive on the inner side, zero on the edge. The flag says whether the element's edge leads to the
+    /// plus side of the plane.
     fn inside(
         &self,
         (edge, rises): (usize, bool),
@@ -171,10 +175,10 @@ impl Crossed<'_> {
     }
 }
 
-/// Where the border of a polygon changes from one side of a plane to the other.
+/// A point at which the border of a polygon changes from one side of a plane to the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Change {
-    /// The edge, or the one that leaves the corner.
+    /// The index of the edge that crosses the plane, or that begins at the corner in the plane.
     edge: usize,
     is_at_corner: bool,
 }
@@ -199,12 +203,12 @@ impl Change {
     }
 }
 
-/// Where a polygon with corners on these sides changes to the plus side.
+/// Returns where a polygon, whose corners lie on these sides of a plane, changes to the plus side.
 fn rise(sides: &[Side]) -> Result<Change, Special> {
     change(sides, (Side::Minus, Side::Plus))
 }
 
-/// Where it changes back.
+/// Returns where a polygon, whose corners lie on these sides of a plane, changes to the minus side.
 fn fall(sides: &[Side]) -> Result<Change, Special> {
     change(sides, (Side::Plus, Side::Minus))
 }
@@ -220,7 +224,8 @@ fn change(sides: &[Side], (from, to): (Side, Side)) -> Result<Change, Special> {
     (0..n).find_map(at).ok_or(Special)
 }
 
-/// On which side of a directed edge another one passes: positive if it rises on its left.
+/// Returns the side on which the line from a to b passes the directed edge from c to d: the sign of the
+/// determinant of d − c, a − c and b − c.
 fn passes((a, b): (&Lattice, &Lattice), (c, d): (&Lattice, &Lattice)) -> Sign {
     let from = |p: &Lattice| each_axis(|i| p[i] - c[i]);
     determinant(&from(d), &from(a), &from(b))
@@ -255,7 +260,7 @@ mod tests {
         let found = element.segment(&crosser, &mut Points::default()).ok();
         let segment = found.flatten().expect("they cross");
         let ends = segment.ends;
-        // It begins on the face's own edge, inside the element, and ends on the element's border.
+        // The segment begins on an edge of the face, inside the element, and ends on the element's border.
         let [inner, outer] = [[1, 1, 0], [1, 7, 0]].map(Vertex::lattice);
         let at_outer = ends.each_ref().map(|end| end.at.same(&outer));
         assert!(ends.iter().any(|end| end.at.same(&inner)) && at_outer.contains(&true));

@@ -1,8 +1,8 @@
-//! The trace of other operands on an element: where their surfaces cross it.
+//! Divides an element along the segments in which other operands' faces cross it.
 //!
-//! The segments in which faces cross the element divide it into cells. Each segment has its operand's
-//! inside on one side and its outside on the other, so labels spread from cell to cell. If segments
-//! contradict each other, the operand overlaps itself or something is special.
+//! The segments divide the element into cells. Each segment has its operand's inside on one side and its
+//! outside on the other, so labels (one bit for each operand: inside or not) spread from cell to cell. If
+//! segments contradict each other, an operand overlaps itself, or the position of faces is degenerate.
 
 use std::sync::Arc;
 
@@ -21,23 +21,23 @@ use crate::merge::division::{Defect, Division, Spot};
 
 /// An element divided by the surfaces of other operands.
 pub(super) struct Trace {
-    /// The bits of these operands.
+    /// The bits of the operands whose faces cross the element.
     pub(super) operands: Labels,
-    /// The labels of the parts, ascending.
+    /// The labels of the parts of the element, ascending; a part is all cells with the same label.
     pub(super) parts: SmallVec<[Labels; 2]>,
-    /// `None` if there are no segments.
+    /// The division of the element; `None` if no face crosses it.
     divided: Option<Divided>,
 }
 
 /// An element divided into cells.
 struct Divided {
     division: Division,
-    /// The labels of the cells.
+    /// For each cell its label.
     labels: Vec<Labels>,
 }
 
 impl Trace {
-    /// The trace of the faces that may cross an element.
+    /// Divides an element by the faces that may cross it; an error if they contradict each other.
     pub(super) fn new(
         crossed: &Crossed,
         crossers: &[Crosser],
@@ -70,7 +70,7 @@ impl Trace {
         })
     }
 
-    /// The part that has a corner of the element.
+    /// Returns the index of the part at a corner of the element.
     pub(super) fn part_at_corner(&self, corner: usize) -> Option<usize> {
         let Some(Divided { division, labels }) = &self.divided else {
             return Some(0);
@@ -82,7 +82,7 @@ impl Trace {
         self.parts.binary_search(&labels).ok()
     }
 
-    /// The outline of some of the parts together.
+    /// Returns the outline of the parts for which `stays` is true.
     pub(super) fn outline(&mut self, stays: &[bool]) -> Vec<BareEdge> {
         let Some(Divided { division, labels }) = &mut self.divided else {
             return Vec::new();
@@ -100,7 +100,7 @@ impl From<Defect> for Special {
     }
 }
 
-/// An element divided by segments.
+/// Divides an element along segments.
 fn divided<'s>(polygon: &Polygon, segments: &'s [Segment]) -> Result<Division, Special> {
     let corners = polygon.corners().iter();
     let corners = corners.map(|c| (Arc::clone(&c.at), c.edge.clone()));
@@ -125,13 +125,13 @@ fn divided<'s>(polygon: &Polygon, segments: &'s [Segment]) -> Result<Division, S
     Ok(division)
 }
 
-/// The labels of the cells.
+/// Returns for each cell its label; an error if segments contradict each other.
 fn labels(division: &Division, segments: &[Segment]) -> Result<Vec<Labels>, Special> {
     let change = |cell: usize, edge: usize| {
         let along = division.along_edge(cell, edge);
         along.fold(0, |all, (segment, _)| all ^ segments[segment].bit())
     };
-    // First relative to the first cell, then as the segments say.
+    // Labels are first relative to the first cell, then absolute, as the segments' insides determine.
     let mut labels = division.spread(0, |here, cell, edge| here ^ change(cell, edge));
     let in_first = labels_of_first(division, segments, &labels);
     for all in &mut labels {
@@ -148,8 +148,8 @@ fn labels(division: &Division, segments: &[Segment]) -> Result<Vec<Labels>, Spec
     is_certain.then_some(labels).ok_or(Special)
 }
 
-/// Return whether all segments along an edge are of different operands. Of three coincident faces of one
-/// operand the bits would look like those of a single face.
+/// Returns true if all segments along an edge of a cell belong to different operands. Three coincident faces
+/// of one operand would otherwise give the same bits as a single face.
 fn are_of_different_operands(
     division: &Division,
     segments: &[Segment],
@@ -165,7 +165,7 @@ fn are_of_different_operands(
     })
 }
 
-/// The labels of the first cell, given those of all cells relative to it.
+/// Returns the label of the first cell, given the labels of all cells relative to it.
 fn labels_of_first(division: &Division, segments: &[Segment], relative: &[Labels]) -> Labels {
     let (mut known, mut labels): (Labels, Labels) = (0, 0);
     for (cell, relative) in relative.iter().enumerate() {
@@ -177,8 +177,8 @@ fn labels_of_first(division: &Division, segments: &[Segment], relative: &[Labels
     labels
 }
 
-/// For each segment along an inner edge of a cell the bit of its operand, and that bit again if the cell
-/// lies inside the operand, else 0.
+/// Returns for each segment along an inner edge of a cell the bit of its operand, and this bit again if the
+/// cell lies inside the operand, otherwise 0.
 fn sides<'a>(
     division: &'a Division,
     segments: &'a [Segment],
@@ -188,7 +188,8 @@ fn sides<'a>(
     let along = edges.flat_map(move |edge| division.along_edge(cell, edge));
     along.map(|(segment, is_along)| {
         let segment = &segments[segment];
-        // The inside lies on the left, or on the right if it is on the plus side.
+        // The inside of the operand is on the left of the segment, or on the right if it is on the plus side
+        // of the plane.
         let is_inside = is_along != segment.plus;
         (segment.bit(), if is_inside { segment.bit() } else { 0 })
     })
@@ -222,7 +223,7 @@ mod tests {
         }
     }
 
-    /// The trace that faces of one operand leave on a polygon.
+    /// Returns the division of a polygon by faces of one operand; `None` if they contradict each other.
     fn trace<const N: usize>(crossed: &Polygon, faces: [[Lattice; 3]; N]) -> Option<Trace> {
         let faces = faces.map(|corners| Face::new(Cow::Owned(polygon(&corners))));
         let crossers: Vec<Crosser> = (1..)
@@ -236,7 +237,7 @@ mod tests {
         Trace::new(&element, &crossers, &mut Points::default()).ok()
     }
 
-    /// The edge of a wall goes through the border of a polygon: (4, 4, 0) lies on both.
+    /// The common edge of two faces passes through the border of a polygon, at (4, 4, 0).
     #[test]
     fn a_curve_may_end_where_two_edges_meet() {
         let crossed = polygon(&[[0, 0, 0], [8, 0, 0], [8, 8, 0]]);
@@ -249,7 +250,8 @@ mod tests {
         assert_eq!(trace.part_at_corner(1), trace.part_at_corner(2));
     }
 
-    /// Both faces at the edge lie over the polygon: their curve touches its border.
+    /// Both faces at the edge cross the polygon on the same side of its border, so their curve only touches
+    /// the border.
     #[test]
     fn a_curve_may_touch_the_border() {
         let crossed = polygon(&[[0, 0, 0], [8, 0, 0], [8, 8, 0]]);

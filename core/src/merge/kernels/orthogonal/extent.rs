@@ -1,20 +1,20 @@
-//! The places of facets in a grid.
+//! The positions of facets (faces perpendicular to axes) in the grid of a cell.
 
 use super::facet::{Facet, Place, ACROSS};
 use super::grid::{Grid, Reach};
 
-/// The place of a facet in a grid.
+/// The position of a facet in the grid of a cell.
 pub(super) struct Extent {
-    /// The number of the line that is its plane.
+    /// The number of the facet's plane among the grid's planes on its axis.
     pub(super) line: usize,
-    /// Its rows.
+    /// The rows of rectangles that the facet's bounds overlap.
     pub(super) rows: Reach,
-    /// Its bits.
+    /// The bits in each row that the facet's bounds overlap.
     pub(super) bits: Reach,
 }
 
 impl Facet<'_> {
-    /// Return the intervals of the facet's bounds on an axis.
+    /// Returns the intervals of the grid on an axis that the facet's bounds overlap.
     fn reach(&self, grid: &Grid, axis: usize) -> Reach {
         match &self.place {
             Place::Face(_, _, corners) => {
@@ -27,7 +27,7 @@ impl Facet<'_> {
         }
     }
 
-    /// Return the place of the facet in a grid.
+    /// Returns the position of the facet in a grid.
     pub(super) fn extent(&self, grid: &Grid) -> Extent {
         let (row, bit) = ACROSS[self.axis];
         Extent {

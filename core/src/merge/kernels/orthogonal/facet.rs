@@ -1,4 +1,4 @@
-//! The elements of a cell as rectangles cut by slanted edges.
+//! The faces of a cell that are perpendicular to axes, as rectangles cut by slanted edges (facets).
 
 use std::sync::Arc;
 
@@ -15,49 +15,52 @@ use crate::mesh::handle::{FaceId, Slot, SourceFace};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
 
-/// For each axis, the axes of the rows and of the bits of a sheet perpendicular to it.
+/// For each axis, the two axes of a plane perpendicular to it: first the axis along which rows of rectangles
+/// follow each other, then the axis along which a row's bits do.
 pub(super) const ACROSS: [(usize, usize); 3] = [(1, 2), (0, 2), (0, 1)];
 
-/// A face or a convex piece of a part, perpendicular to an axis.
+/// A face, or a convex piece of a part of a face, that is perpendicular to an axis.
 pub(super) struct Facet<'a> {
     pub(super) operand: usize,
     pub(super) axis: usize,
-    /// The lattice coordinate of its plane.
+    /// The lattice coordinate of the facet's plane on its axis.
     pub(super) at: i64,
-    /// Whether its normal points to larger coordinates.
+    /// True if the normal points to larger coordinates.
     pub(super) upward: bool,
-    /// The winding number behind it minus the number in front.
+    /// The winding number behind the face minus the number in front of it.
     weight: i32,
     slants: SmallVec<[Slant; 1]>,
     pub(super) place: Place<'a>,
 }
 
-/// The element that a facet comes from.
+/// The face or part of a face that a facet comes from.
 pub(super) enum Place<'a> {
-    /// A triangle of a source.
+    /// A triangle of a mesh, with its corners.
     Face(&'a Source, SourceFace, [Lattice; 3]),
     /// The face of a half-space.
     Plane(&'a Source, Slot),
-    /// A convex piece of a part, with the part's number in the scene.
+    /// A convex piece of a part of a face: the part's number in `Facets::parts`, and the piece.
     Piece(usize, &'a Polygon),
 }
 
-/// A slanted edge in the coordinates of rows and bits, with the facet on its left.
+/// An edge of a facet that is not parallel to an axis, in the two coordinates of the facet's plane; the facet
+/// is on its left.
 #[derive(Clone, Copy)]
 struct Slant {
     from: [i64; 2],
     to: [i64; 2],
 }
 
-/// The facets of a cell by operand, and the parts of their pieces with the slots of their sources.
+/// The facets of a cell, sorted by operand, and the parts of faces that facets are pieces of, with the slots
+/// of their sources.
 pub(super) struct Facets<'a> {
     pub(super) all: Vec<Facet<'a>>,
     pub(super) parts: Vec<(&'a Arc<Part>, Slot)>,
 }
 
 impl<'a> Facets<'a> {
-    /// The facets of lists; `None` if an element is not perpendicular to an axis, or has a slanted edge
-    /// that is not its face's own.
+    /// Makes the facets of all operands; `None` if a listed element is not perpendicular to an axis, or has a
+    /// slanted edge that is no edge of its face.
     pub(super) fn new(cell: &Cell, operands: &'a [Listed], sources: &'a Sources) -> Option<Self> {
         let mut facets = Self {
             all: Vec::with_capacity(operands.iter().map(|l| l.list.len()).sum()),
@@ -172,7 +175,7 @@ impl<'a> Facet<'a> {
         })
     }
 
-    /// Return whether the facet's plane and its bounds meet the cell.
+    /// Returns true if the facet's plane meets the cell, and the bounding box of a triangle does.
     fn may_meet(&self, cell: &Cell) -> bool {
         let (low, high) = (cell.low(), cell.high());
         let within = |i: usize, p: &Lattice| p[i] >= low[i];
@@ -194,7 +197,7 @@ impl<'a> Facet<'a> {
         }
     }
 
-    /// The change of the winding number across the facet along its axis.
+    /// Returns the change of the winding number across the facet in the direction of its axis.
     pub(super) fn change(&self) -> i32 {
         if self.upward {
             -self.weight
@@ -203,23 +206,23 @@ impl<'a> Facet<'a> {
         }
     }
 
-    /// Return whether the point just beyond the lower lines of a row and of a bit is inside all slanted
-    /// edges.
+    /// Returns true if the point just above `corner` in both coordinates, given in half lattice steps, is
+    /// inside all slanted edges.
     pub(super) fn holds(&self, corner: [i64; 2]) -> bool {
         self.slants.iter().all(|s| s.is_left(corner))
     }
 
-    /// Return whether part of a rectangle is inside the slanted edges.
+    /// Returns true if a part of a rectangle is inside all slanted edges.
     pub(super) fn touches(&self, low: [i64; 2], high: [i64; 2]) -> bool {
         self.slants.iter().all(|s| s.reaches(low, high))
     }
 
-    /// Return whether no slanted edge cuts the facet's bounds.
+    /// Returns true if the facet has no slanted edge.
     pub(super) fn is_rectangle(&self) -> bool {
         self.slants.is_empty()
     }
 
-    /// The facet inside the cell.
+    /// Returns the part of the facet inside the cell; `None` if there is none.
     pub(super) fn polygon_in(&self, cell: &Cell) -> Option<Polygon> {
         match &self.place {
             Place::Face(source, face, _) => source.clip(face.id, cell),
@@ -229,30 +232,31 @@ impl<'a> Facet<'a> {
     }
 }
 
-/// The axis of a plane's normal, the plane's lattice coordinate there, and whether the normal points
-/// upward.
+/// Returns the axis that a plane is perpendicular to, its lattice coordinate on this axis, and whether its
+/// normal points to larger coordinates; `None` if it is not such a plane at a lattice coordinate.
 fn upright(plane: &Plane) -> Option<(usize, i64, bool)> {
     let axis = plane.only_axis()?;
     let at = plane.lattice_coordinate(axis)?;
     Some((axis, at, plane.normal()[axis] > 0))
 }
 
-/// Twice the signed area of a triangle.
+/// Returns twice the signed area of a triangle of the plane.
 fn turn(a: &[i64; 2], b: &[i64; 2], c: &[i64; 2]) -> i128 {
     let d = |p: &[i64; 2], i: usize| i128::from(p[i]) - i128::from(a[i]);
     d(b, 0) * d(c, 1) - d(b, 1) * d(c, 0)
 }
 
 impl Slant {
-    /// An edge directed with the facet on its left; `left` says whether it is so as given. `None` if it is
-    /// parallel to an axis.
+    /// Makes an edge with the facet on its left; `left` says whether the facet is on the left of the
+    /// direction given. `None` if the edge is parallel to an axis.
     fn new(from: [i64; 2], to: [i64; 2], left: bool) -> Option<Self> {
         let (from, to) = if left { (from, to) } else { (to, from) };
         let (from, to) = (from.map(|c| 2 * c), to.map(|c| 2 * c));
         (from[0] != to[0] && from[1] != to[1]).then_some(Self { from, to })
     }
 
-    /// Return whether a doubled point moved by (ε, ε²) lies on the left.
+    /// Returns true if a point, given in half lattice steps and moved by (ε, ε²), lies on the left of the
+    /// edge.
     fn is_left(&self, point: [i64; 2]) -> bool {
         match turn(&self.from, &self.to, &point) {
             0 => self.to[1] < self.from[1],
@@ -260,7 +264,7 @@ impl Slant {
         }
     }
 
-    /// Return whether part of a rectangle is on the left.
+    /// Returns true if a part of a rectangle is on the left of the edge.
     fn reaches(&self, low: [i64; 2], high: [i64; 2]) -> bool {
         // If the edge rises along the bits, its left has smaller row coordinates.
         let row = if self.to[1] > self.from[1] {

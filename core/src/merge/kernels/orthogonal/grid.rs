@@ -1,4 +1,4 @@
-//! The grid of a cell along all facets' planes.
+//! The grid into which the planes of all facets (faces perpendicular to axes) divide a cell.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -12,19 +12,21 @@ use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 
-/// The most intervals on each axis: the regions above a rectangle are the bits of one word.
+/// The most intervals on each axis: the boxes of a column along z are the bits of one 64-bit word.
 const MAX_INTERVALS: usize = 64;
 
-/// The grid: on each axis intervals between lines; the first and last lines are the cell's walls.
+/// The grid of a cell: on each axis, coordinates of planes (lines) with intervals between them; the first and
+/// the last are the cell's walls.
 pub(super) struct Grid {
-    /// Doubled coordinates by axis, ascending.
+    /// For each axis the coordinates of its planes in half lattice steps, ascending.
     lines: [Vec<i64>; 3],
-    /// The planes of the lines, the smaller coordinates on their minus sides.
+    /// The planes at these coordinates, with smaller coordinates on their minus sides.
     planes: [Vec<Arc<Plane>>; 3],
 }
 
 impl Grid {
-    /// The grid of facets; `None` if it is too fine.
+    /// Makes the grid of all facets' planes in a cell; `None` if an axis has more than `MAX_INTERVALS`
+    /// intervals.
     pub(super) fn new(cell: &Cell, facets: &Facets) -> Option<Self> {
         let mut lines = [0, 1, 2].map(|i| vec![2 * cell.low()[i] - 1, 2 * cell.high()[i] + 1]);
         for facet in &facets.all {
@@ -43,27 +45,28 @@ impl Grid {
         fits.then_some(Self { lines, planes })
     }
 
-    /// The number of intervals on an axis.
+    /// Returns the number of intervals on an axis.
     pub(super) fn count(&self, axis: usize) -> usize {
         self.lines[axis].len() - 1
     }
 
-    /// The doubled coordinate of a line; interval `i` lies between lines `i` and `i + 1`.
+    /// Returns the coordinate of plane number `line` on an axis, in half lattice steps; interval `i` lies
+    /// between planes `i` and `i + 1`.
     pub(super) fn line(&self, axis: usize, line: usize) -> i64 {
         self.lines[axis][line]
     }
 
-    /// The plane of a line.
+    /// Returns plane number `line` on an axis.
     pub(super) fn plane(&self, axis: usize, line: usize) -> &Arc<Plane> {
         &self.planes[axis][line]
     }
 
-    /// The number of a line with a lattice coordinate.
+    /// Returns the number of the plane at a lattice coordinate on an axis.
     pub(super) fn find(&self, axis: usize, at: i64) -> usize {
         self.lines[axis].partition_point(|l| *l < 2 * at)
     }
 
-    /// Return the intervals between two doubled coordinates.
+    /// Returns the intervals that overlap the range between two coordinates, given in half lattice steps.
     pub(super) fn between(&self, axis: usize, low: i64, high: i64) -> Reach {
         let lines = &self.lines[axis];
         let below = |at: i64| lines.partition_point(|l| *l < at);
@@ -71,7 +74,7 @@ impl Grid {
         Reach::new(&low, below(high), self.count(axis))
     }
 
-    /// Return the intervals of a polygon's bounds.
+    /// Returns the intervals on an axis that a polygon's bounds overlap.
     pub(super) fn under(&self, axis: usize, polygon: &Polygon) -> Reach {
         let (mut low, mut below) = (usize::MAX..usize::MAX, 0);
         for corner in polygon.corners() {
@@ -82,7 +85,8 @@ impl Grid {
         Reach::new(&low, below, self.count(axis))
     }
 
-    /// The range from the number of lines below a point to the number of lines not above it.
+    /// Returns the number of planes on an axis below a point, and the number of planes below it or through
+    /// it.
     fn place(&self, axis: usize, point: &Vertex) -> Range<usize> {
         let lines = &self.lines[axis];
         if let Some(at) = point.doubled(axis) {
@@ -95,17 +99,19 @@ impl Grid {
         start..start + count(&self.planes[axis][start..], |line| side(line) == Side::On)
     }
 
-    /// The number of columns along z.
+    /// Returns the number of columns of boxes along z.
     pub(super) fn columns(&self) -> usize {
         self.count(0) * self.count(1)
     }
 
-    /// The index of a column.
+    /// Returns the index of the column of boxes in interval `x` on the first and interval `y` on the second
+    /// axis.
     pub(super) fn column(&self, x: usize, y: usize) -> usize {
         x * self.count(1) + y
     }
 
-    /// The rectangles in one row below and above a line, as bits, in a field of columns.
+    /// Returns two words of bits for a row of rectangles in plane number `line` on an axis: the values of the
+    /// boxes below and above them. `field` has a word of values for each column along z.
     pub(super) fn sides(&self, field: &[u64], axis: usize, line: usize, row: usize) -> [u64; 2] {
         match axis {
             0 => [line - 1, line].map(|x| field[self.column(x, row)]),
@@ -122,17 +128,17 @@ impl Grid {
     }
 }
 
-/// The intervals of an axis that overlap bounds.
+/// The intervals on an axis of the grid that overlap the bounds of a facet.
 pub(super) struct Reach {
-    /// The intervals that share more than a point with the bounds.
+    /// The intervals that share more than a point with the facet's bounds.
     pub(super) touched: Range<usize>,
-    /// The first interval that begins inside the bounds.
+    /// The first interval that begins inside the facet's bounds.
     first: usize,
 }
 
 impl Reach {
-    /// Bounds from a place, given by the numbers of lines below it and not above it, to a place with
-    /// `below` lines below it, among `count` intervals.
+    /// Makes the intervals for bounds whose low end has `low.start` planes below it and `low.end` below or
+    /// through it, and whose high end has `below` planes below it; `count` is the number of intervals.
     fn new(low: &Range<usize>, below: usize, count: usize) -> Self {
         let end = below.min(count);
         Self {
@@ -141,7 +147,7 @@ impl Reach {
         }
     }
 
-    /// All of `count` intervals.
+    /// Makes a range of all `count` intervals.
     pub(super) fn all(count: usize) -> Self {
         Self {
             touched: 0..count,
@@ -149,18 +155,18 @@ impl Reach {
         }
     }
 
-    /// The intervals that begin inside the bounds.
+    /// Returns the intervals that begin inside the facet's bounds.
     pub(super) fn begun(&self) -> Range<usize> {
         self.first.min(self.touched.end)..self.touched.end
     }
 }
 
-/// Count the leading lines for which a condition holds.
+/// Returns the number of leading planes for which `holds` is true.
 fn count(planes: &[Arc<Plane>], holds: impl Fn(&Arc<Plane>) -> bool) -> usize {
     planes.iter().take_while(|line| holds(line)).count()
 }
 
-/// The bits of a range.
+/// Returns a word with the bits of a range set.
 pub(super) fn mask(range: &Range<usize>) -> u64 {
     if range.is_empty() {
         return 0;

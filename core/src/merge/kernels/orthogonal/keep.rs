@@ -1,4 +1,4 @@
-//! The faces that an expression keeps of the facets of a grid.
+//! Decides which parts of the facets (faces perpendicular to axes) of a cell bound the result.
 
 use std::ops::Range;
 
@@ -14,27 +14,27 @@ use crate::merge::expression::Expression;
 use crate::merge::kernels::kept::Kept;
 use crate::merge::kernels::stays::{kept, Settled, Stays};
 
-/// A cell with all its computed data.
+/// A cell with its grid, facets and values.
 pub(super) struct Scene<'a> {
     pub(super) cell: &'a Cell,
     pub(super) grid: &'a Grid,
     pub(super) facets: &'a Facets<'a>,
-    /// The extents of the facets in the grid.
+    /// For each facet, its position and its rectangles in the grid.
     pub(super) extents: &'a [Extent],
-    /// The columns of the grid for each operand.
+    /// For each operand, the boxes of the grid inside it, as a word of bits for each column.
     pub(super) fields: &'a [Vec<u64>],
-    /// The columns of the expression's value.
+    /// The boxes of the grid in which the expression is true, as a word of bits for each column.
     pub(super) value: &'a [u64],
     pub(super) expression: &'a Expression,
-    /// The operands' indices by their numbers.
+    /// The index of each operand by its number in the expression.
     pub(super) places: &'a [usize],
 }
 
-/// A plane by its axis and the number of its line.
+/// A plane of the grid: the axis it is perpendicular to, and its number on this axis.
 type Plane = (usize, usize);
 
 impl Scene<'_> {
-    /// Return what stays of all facets; `None` if two facets of one operand overlap.
+    /// Returns the parts of all facets that bound the result; `None` if two facets of one operand overlap.
     pub(super) fn keep(&self) -> Option<Vec<Kept>> {
         let all = &self.facets.all;
         let mut order: Vec<usize> = (0..all.len()).collect();
@@ -50,7 +50,8 @@ impl Scene<'_> {
         Some(kept(settled.into_iter(), &self.facets.parts, polygon))
     }
 
-    /// Decides the facets of one plane.
+    /// Decides which parts of the facets in one plane of the grid bound the result; `None` if two facets of
+    /// one operand overlap.
     fn keep_sheet(&self, sheet: &[usize], settled: &mut Vec<Settled>) -> Option<()> {
         let all = &self.facets.all;
         let facet = &all[sheet[0]];
@@ -68,8 +69,8 @@ impl Scene<'_> {
         Some(())
     }
 
-    /// For each operand with facets in a plane, the rectangles that it owns and where the expression
-    /// changes, row by row: with the inside below, and above.
+    /// Returns for each operand with facets in a plane the rectangles in which its faces stay, row by row, as
+    /// two words: rectangles with the inside of the result below the plane, and with the inside above it.
     fn owned(&self, plane: Plane, operands: &[usize]) -> SmallVec<[Vec<[u64; 2]>; 2]> {
         let (row, _) = ACROSS[plane.0];
         let rows = self.grid.count(row);
@@ -97,8 +98,9 @@ impl Scene<'_> {
         owned
     }
 
-    /// The owners of rectangles in a row of a plane that bound the expression with faces of several
-    /// operands.
+    /// Returns whose face stays in rectangles of a row in which faces of several operands bound the
+    /// expression, as pairs of an operand's index and a word of rectangles; `contested` marks these
+    /// rectangles.
     fn owners(&self, contested: u64, plane: Plane, row: usize) -> Vec<(usize, u64)> {
         if contested == 0 {
             return Vec::new();
@@ -109,7 +111,7 @@ impl Scene<'_> {
         owners.map(|(k, won)| (place(k), won)).collect()
     }
 
-    /// The rectangles in a row of a plane across which an operand's label changes.
+    /// Returns the rectangles in a row of a plane across which an operand changes between inside and outside.
     fn changes(&self, operand: usize, plane: Plane, row: usize) -> u64 {
         let [below, above] = self.sides(&self.fields[operand], plane, row);
         below ^ above
@@ -119,8 +121,8 @@ impl Scene<'_> {
         self.grid.sides(field, axis, line, row)
     }
 
-    /// Return whether facets of one operand and plane with opposite orientations overlap. Facets with one
-    /// orientation do not overlap where winding numbers are 0 and 1.
+    /// Returns true if facets of one operand and plane with opposite orientations overlap. Facets with the
+    /// same orientation cannot overlap if all winding numbers are 0 or 1.
     fn overlap(&self, own: &[usize]) -> bool {
         let rises = |i: &&usize| self.facets.all[**i].change() > 0;
         let (up, down): (Vec<&usize>, Vec<&usize>) = own.iter().partition(rises);
@@ -141,8 +143,8 @@ impl Scene<'_> {
         }
     }
 
-    /// Return what stays of a facet, from the rectangles of its plane that stay with the inside below and
-    /// above; `None` if it does not meet the cell.
+    /// Returns the parts of a facet that bound the result in each orientation, given the rectangles of its
+    /// plane in which the operand's faces stay; `None` if the facet does not meet the cell.
     fn settled(&self, i: usize, owned: &[[u64; 2]]) -> Option<Settled> {
         let (facet, extent) = (&self.facets.all[i], &self.extents[i]);
         let owned = &owned[extent.rows.touched.clone()];
@@ -162,7 +164,8 @@ impl Scene<'_> {
         Some((i, facet.owner(), stays?))
     }
 
-    /// Return what stays of a facet on one side, from the rectangles that it touches, starting at a row.
+    /// Returns the part of a facet that bounds the result in one orientation; `held` has the rectangles that
+    /// the facet touches, row by row from row `first` on, and `owned` the rectangles that stay.
     fn side(
         &self,
         facet: &Facet,
@@ -181,7 +184,7 @@ impl Scene<'_> {
         Stays::of(pieces(self.cell, self.grid, facet, first, held, &kept))
     }
 
-    /// The rectangles that a facet touches, row by row.
+    /// Returns the rectangles of the grid that a facet touches, as a word of bits for each row.
     fn touched<'b>(
         &'b self,
         facet: &'b Facet,
@@ -200,7 +203,7 @@ impl Scene<'_> {
     }
 }
 
-/// Return the bits set in more than one word.
+/// Returns the bits that are set in more than one word.
 fn contested(words: &[u64]) -> u64 {
     let (mut once, mut more) = (0, 0);
     for word in words {
@@ -210,7 +213,8 @@ fn contested(words: &[u64]) -> u64 {
     more
 }
 
-/// Return whether a mask's bits on one side are set in all rows, or in none; `None` if they are mixed.
+/// Returns true if all bits of `mask` are set in all rows, and false if no bit is set in any row; `None` if
+/// they are mixed. `side` selects one of the two words of a row.
 fn all_alike(owned: &[[u64; 2]], side: usize, mask: u64) -> Option<bool> {
     let mut bits = owned.iter().map(|o| o[side] & mask);
     let first = bits.next()?;

@@ -1,4 +1,4 @@
-//! The cells of the grid in which an operand is inside.
+//! Determines the boxes of a cell's grid that are inside an operand.
 
 use std::ops::Range;
 
@@ -7,17 +7,17 @@ use super::facet::{Facet, ACROSS};
 use super::grid::{mask, Grid, Reach};
 use crate::interrupt::poll;
 
-/// The coarser grid of one operand's own planes, with its winding numbers.
+/// The coarser grid of one operand's own planes, with the operand's winding number in each box.
 struct Own<'a> {
     grid: &'a Grid,
-    /// On each axis, the numbers of the grid's lines where the operand's intervals begin, and the grid's
-    /// number of intervals.
+    /// For each axis, the numbers of the planes of the finer grid at which the operand's intervals begin; at
+    /// the end, the finer grid's number of intervals.
     starts: [Vec<usize>; 3],
     numbers: Vec<i32>,
 }
 
-/// The columns of the grid with a bit for each region inside an operand; `None` if a winding number is
-/// neither 0 nor 1.
+/// Returns a word for each column of the grid, with a bit for each box inside the operand; `None` if a
+/// winding number is neither 0 nor 1. `corner` is the winding number at the cell's corner.
 pub(super) fn field<'b>(
     grid: &Grid,
     facets: impl Iterator<Item = (&'b Facet<'b>, &'b Extent)> + Clone,
@@ -61,15 +61,15 @@ impl<'a> Own<'a> {
         (x * self.count(1) + y) * self.count(2) + z
     }
 
-    /// The operand's intervals that begin in a range of the grid's intervals.
+    /// Returns the operand's intervals on an axis that begin in a range of intervals of the finer grid.
     fn within(&self, axis: usize, range: &Range<usize>) -> Range<usize> {
         let starts = &self.starts[axis][..self.count(axis)];
         let first = starts.partition_point(|s| *s < range.start);
         first..starts.partition_point(|s| *s < range.end)
     }
 
-    /// Records the change across a facet: everywhere if it is across z, at the bottom if it is across y,
-    /// and in one row if it is across x.
+    /// Records the change of the winding number across a facet. A facet across z changes all its boxes, a
+    /// facet across y only boxes at the lowest z, and a facet across x only the box at the lowest y and z.
     fn enter(&mut self, facet: &Facet, extent: &Extent) {
         let axis = facet.axis;
         let at = self.starts[axis].partition_point(|s| *s < extent.line);
@@ -97,7 +97,7 @@ impl<'a> Own<'a> {
         }
     }
 
-    /// Adds up the changes: along x, then from there along y, then from there along z.
+    /// Adds up the changes of the winding number along x, then from there along y, then from there along z.
     fn add_up(&mut self) {
         let [nx, ny, nz] = [0, 1, 2].map(|i| self.count(i));
         for x in 1..nx {
@@ -120,7 +120,7 @@ impl<'a> Own<'a> {
         self.starts[axis][i]..self.starts[axis][i + 1]
     }
 
-    /// The numbers as bits of the grid's columns.
+    /// Returns for each column of the finer grid a word with the bits of the boxes whose winding number is 1.
     fn field(&self) -> Vec<u64> {
         let mut field = vec![0; self.grid.columns()];
         for x in 0..self.count(0) {

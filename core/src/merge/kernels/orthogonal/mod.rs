@@ -1,8 +1,9 @@
 //! The kernel for cells in which every face is perpendicular to an axis.
 //!
-//! The planes of the faces form a grid in the cell. An operand is inside in whole regions of it. So sets of
-//! regions are bits, expressions are evaluated a word at a time, and faces in one plane are no special
-//! case. The rectangles of a face's plane determine what stays of it.
+//! The planes of the faces form a grid in the cell, and each box of the grid is inside or outside an operand
+//! as a whole. So sets of boxes are bits, expressions are evaluated a 64-bit word at a time, and faces in one
+//! plane need no care. The rectangles of the grid in a face's plane determine which parts of the face bound
+//! the result.
 
 mod extent;
 mod facet;
@@ -20,13 +21,13 @@ use facet::Facets;
 use grid::Grid;
 use keep::Scene;
 
-/// The most words for all operands' columns: two megabytes, which stay in a cache.
+/// The most 64-bit words for the grid columns of all operands: two megabytes, which fit into a cache.
 const MAX_WORDS: usize = 1 << 18;
 
-/// Works on the grid of the faces' planes.
+/// The kernel that solves cells on the grid formed by the planes of their faces.
 ///
-/// Refuses cells with a face that is not perpendicular to an axis or an operand that overlaps itself, and
-/// grids that are too fine.
+/// It refuses cells with a face that is not perpendicular to an axis or with an operand that overlaps itself,
+/// and grids that are too fine.
 #[derive(Debug)]
 pub struct Orthogonal;
 
@@ -38,7 +39,8 @@ impl Kernel for Orthogonal {
     }
 }
 
-/// Return what stays of the operands' boundaries, and the value at the cell's corner.
+/// Returns the parts of the operands' faces that bound the result, and the expression's value at the cell's
+/// corner (1 for inside); `None` if the kernel refuses the cell.
 fn kept_and_corner(problem: &CellProblem) -> Option<(Vec<Kept>, i32)> {
     let operands = &problem.operands;
     let facets = Facets::new(problem.cell, operands, problem.sources)?;
@@ -64,7 +66,8 @@ fn kept_and_corner(problem: &CellProblem) -> Option<(Vec<Kept>, i32)> {
     Some((kept, i32::from(value[0] & 1 != 0)))
 }
 
-/// Return the cells in which each operand is inside.
+/// Returns for each operand the boxes of the grid that are inside it, as a word of bits for each column along
+/// z; `None` if a winding number is neither 0 nor 1.
 fn fields(
     grid: &Grid,
     facets: &Facets,
@@ -81,7 +84,7 @@ fn fields(
     operands.iter().enumerate().map(field).collect()
 }
 
-/// Return the indices of operands by their numbers.
+/// Returns a table that maps the numbers of operands in the expression to their indices in the list.
 fn places(operands: &[Listed]) -> Vec<usize> {
     let last = operands.last().map_or(0, |l| l.number as usize);
     let mut places = vec![0; last + 1];
@@ -91,7 +94,7 @@ fn places(operands: &[Listed]) -> Vec<usize> {
     places
 }
 
-/// Return the cells in which an expression is true.
+/// Returns the boxes of the grid in which an expression is true, as a word of bits for each column along z.
 fn value(
     expression: &Expression,
     places: &[usize],
@@ -111,7 +114,7 @@ mod tests {
     use crate::merge::expression::Term;
     use crate::merge::scenes::{both, counts, crossing, cuboid, Shared};
 
-    /// Two adjacent boxes lose the walls between them.
+    /// The union of two adjacent boxes has no wall between them.
     #[test]
     fn faces_in_one_plane_need_no_care() {
         let boxes = [[[0; 3], [4; 3]], [[4, 0, 0], [8, 4, 4]]];

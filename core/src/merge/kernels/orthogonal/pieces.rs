@@ -1,4 +1,4 @@
-//! A facet cut into the pieces that stay.
+//! Cuts a facet (a face perpendicular to an axis) into the pieces that bound the result.
 
 use super::facet::{Facet, ACROSS};
 use super::grid::Grid;
@@ -6,10 +6,11 @@ use crate::geometry::cell::Cell;
 use crate::geometry::polygon::{Polygon, PolygonSplit};
 use crate::interrupt::poll;
 
-/// The pieces of a facet that cover its touched rectangles that stay.
+/// Returns pieces of a facet that cover its rectangles that stay in the result.
 ///
-/// Rectangles are bits in rows, from row `first` on. Compatible rows form one slab, and each run of bits in
-/// a slab one piece.
+/// Rectangles of the grid are bits in rows, from row `first` on; `touched` marks those that the facet
+/// touches, and `stay` those that stay. Compatible rows form one slab, and each run of bits in a slab one
+/// piece.
 pub(super) fn pieces(
     cell: &Cell,
     grid: &Grid,
@@ -39,7 +40,7 @@ pub(super) fn pieces(
     found
 }
 
-/// Rows that agree wherever the facet touches them.
+/// Consecutive rows of rectangles that agree on which rectangles of the facet stay and which go.
 struct Slab {
     rows: usize,
     stay: u64,
@@ -47,7 +48,7 @@ struct Slab {
 }
 
 impl Slab {
-    /// The longest prefix of rows that agree.
+    /// Returns the longest sequence of first rows that agree.
     fn new(touched: &[u64], kept: &[u64]) -> Self {
         let (mut stay, mut go) = (kept[0], touched[0] & !kept[0]);
         let more = touched[1..].iter().zip(&kept[1..]);
@@ -63,7 +64,8 @@ impl Slab {
         Self { rows, stay, go }
     }
 
-    /// The next run of bits from one on: where it starts, and the first bit after it that goes.
+    /// Returns the next run of rectangles that stay, from bit `from` on: its first bit, and the first later
+    /// bit that goes; `None` if there is no further run.
     fn run(&self, from: u32) -> Option<(u32, u32)> {
         let rest = self.stay & u64::MAX.checked_shl(from)?;
         if rest == 0 {
@@ -75,7 +77,8 @@ impl Slab {
     }
 }
 
-/// The pieces for the runs of bits in a slab's part of a facet.
+/// Adds the pieces for the runs of rectangles that stay in one slab of a facet; `polygon` is the part of the
+/// facet in the slab.
 fn cut_slab(
     polygon: Option<Polygon>,
     grid: &Grid,
@@ -86,7 +89,7 @@ fn cut_slab(
     let mut rest = polygon;
     let mut from = 0;
     while let Some((start, end)) = slab.run(from) {
-        // A bit that goes lies before the run, unless it is the first run.
+        // Before the run lies a bit that goes, unless this is the first run.
         if slab.go & ((1 << start) - 1) != 0 {
             take_below(&mut rest, grid, bit, start as usize);
         }
@@ -99,7 +102,7 @@ fn cut_slab(
     }
 }
 
-/// Cuts off the part below a line.
+/// Cuts off and returns the part of the polygon `rest` below a plane of the grid; `None` if there is none.
 fn take_below(
     rest: &mut Option<Polygon>,
     grid: &Grid,

@@ -1,7 +1,8 @@
-//! Partitions a plane by the edges of the fragments in it.
+//! Partitions a plane by the edges of the fragments (pieces of faces) in it.
 //!
-//! Each edge is followed only through the cells that it crosses, and each cell has one number for all that
-//! covers it. To cut overlapping fragments out of each other would cost the square.
+//! Each edge is followed only through the cells of the plane that it crosses, and each cell has one sum of
+//! weights for all fragments that cover it. Cutting overlapping fragments out of each other would cost the
+//! square of their number.
 
 use std::sync::Arc;
 
@@ -15,8 +16,8 @@ use crate::geometry::polygon::{straddle, Polygon, PolygonSplit};
 use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
 
-/// The fragments of one plane made disjoint: where some overlap, the piece has the sum of the weights and
-/// the first one's face.
+/// Makes the fragments of one plane disjoint: where fragments overlap, the piece has the sum of their weights
+/// and the face of the first one.
 pub(super) fn partitioned(fragments: &[Fragment]) -> Vec<Fragment> {
     let Some(region) = fragments
         .first()
@@ -32,11 +33,11 @@ pub(super) fn partitioned(fragments: &[Fragment]) -> Vec<Fragment> {
     partition.pieces(fragments)
 }
 
-/// A fragment by its edges.
+/// A fragment, given by planes through its edges.
 struct Shape {
-    /// Planes through the edges, the fragment on their minus sides.
+    /// For each edge a plane through it, with the fragment on its minus side.
     walls: SmallVec<[Arc<Plane>; 4]>,
-    /// The jump of the winding number, relative to the partitioned plane.
+    /// The winding number on the minus side of the partitioned plane, minus the number on its plus side.
     weight: i32,
 }
 
@@ -57,11 +58,11 @@ impl Shape {
     }
 }
 
-/// The fragments that cover a cell: their sum and the first.
+/// The fragments that cover a cell of the plane: the sum of their weights, and the first of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Cover {
     weight: i32,
-    /// The index of the first one.
+    /// The index of the first covering fragment; `None` if there is none.
     first: Option<u32>,
 }
 
@@ -73,17 +74,19 @@ impl Cover {
         }
     }
 
-    /// Return whether two adjacent cells can be merged.
+    /// Returns true if two adjacent cells can be merged: they have the same weight and, unless this is 0, the
+    /// same first fragment.
     fn is_like(self, other: Self) -> bool {
         self.weight == other.weight && (self.weight == 0 || self.first == other.first)
     }
 }
 
-/// A cell of the partition.
+/// A cell of the partitioned plane.
 struct Covered {
     region: Polygon,
     cover: Cover,
-    /// The halves on the minus and the plus side of the cell's cut.
+    /// The indices of the halves on the minus and the plus side of the cell's cut; `None` if the cell is not
+    /// divided.
     children: Option<[usize; 2]>,
 }
 
@@ -97,7 +100,7 @@ impl Covered {
     }
 }
 
-/// A fragment that covers part of a cell, and its walls that cross the cell.
+/// A fragment that covers a part of a cell, and the indices of its edges that may cross the cell.
 #[derive(Clone)]
 struct Crossing {
     place: u32,
@@ -110,7 +113,7 @@ struct Partition {
 }
 
 impl Partition {
-    /// Divides the first cell until no wall crosses a cell.
+    /// Divides the whole plane until no edge of a fragment crosses a cell.
     fn grow(&mut self) {
         let all = (0u32..).zip(&self.shapes).map(|(place, shape)| Crossing {
             place,
@@ -133,7 +136,8 @@ impl Partition {
         }
     }
 
-    /// Counts the fragments that cover a cell, and returns those that cover only part of it.
+    /// Adds the fragments that cover all of a cell to its cover, and returns the fragments that cover only a
+    /// part of it.
     fn settle(&mut self, cell: usize, crossing: Vec<Crossing>) -> Vec<Crossing> {
         let mut left = Vec::with_capacity(crossing.len());
         for one in crossing {
@@ -151,7 +155,7 @@ impl Partition {
         left
     }
 
-    /// The walls of a fragment that cross a cell; `None` if the cell lies beyond one.
+    /// Returns the edges of a fragment that cross a cell; `None` if the cell lies outside the fragment.
     fn walls_across(&self, cell: usize, crossing: &Crossing) -> Option<SmallVec<[u32; 4]>> {
         let shape = &self.shapes[crossing.place as usize];
         let mut across = SmallVec::new();
@@ -166,7 +170,8 @@ impl Partition {
         Some(across)
     }
 
-    /// The halves of a cell, cut by a wall of the fragment in the middle of the list.
+    /// Returns the halves of a cell, cut along an edge of the fragment in the middle of the list; `None` if
+    /// the list is empty.
     fn halves(&self, cell: usize, crossing: &[Crossing]) -> Option<[Polygon; 2]> {
         let one = crossing.get(crossing.len() / 2)?;
         let wall = *one.walls.first()?;
@@ -177,7 +182,7 @@ impl Partition {
         }
     }
 
-    /// The covered cells, with equal halves merged.
+    /// Returns the covered cells as pieces of fragments; halves with the same cover are merged.
     fn pieces(mut self, fragments: &[Fragment]) -> Vec<Fragment> {
         for cell in (0..self.cells.len()).rev() {
             poll();
@@ -212,7 +217,7 @@ impl Partition {
     }
 }
 
-/// A region as a piece of a fragment, with the fragment's orientation.
+/// Returns a region of the plane as a piece of a fragment, with the fragment's orientation.
 fn piece(region: &Polygon, weight: i32, of: &Fragment) -> Fragment {
     let same = of.polygon.support().coincides(region.support()) == Some(Orientation::Same);
     Fragment {
@@ -262,13 +267,13 @@ mod tests {
         assert_eq!(weights_of(&[turned, one, turned]), [(0, 1)]);
         let beside = [[8, 8, 0], [0, 8, 0], [8, 0, 0]];
         assert_eq!(weights_of(&[one, beside]), [(0, 1), (1, 1)]);
-        // The second covers a corner of the first one.
+        // The second triangle covers a corner of the first one.
         let inner = [[0, 0, 0], [4, 0, 0], [0, 4, 0]];
         assert_eq!(weights_of(&[one, inner]), [(0, 1), (0, 2)]);
         assert_eq!(weights_of(&[inner, one]), [(0, 2), (1, 1)]);
     }
 
-    /// Return whether a lattice point lies in a convex polygon; `None` on the line of an edge.
+    /// Returns whether a lattice point lies in a convex polygon; `None` if it lies on the line of an edge.
     fn contains(polygon: &Polygon, point: &Lattice) -> Option<bool> {
         let support = polygon.support();
         let planes = polygon.edges().map(|(_, _, edge)| edge.plane(support));

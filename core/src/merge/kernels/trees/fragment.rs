@@ -1,17 +1,17 @@
-//! Fragments: the parts of an operand's faces in a cell.
+//! Fragments: convex pieces of an operand's faces in a cell.
 
 use crate::geometry::polygon::Polygon;
 use crate::mesh::handle::SourceFace;
 
-/// A fragment of an operand's boundary in a cell.
+/// A convex piece of an operand's boundary in a cell.
 #[derive(Clone, Debug)]
 pub struct Fragment {
-    /// The fragment.
+    /// The polygon of the fragment.
     pub polygon: Polygon,
-    /// The jump of the winding number from the support's plus to its minus side.
+    /// The winding number on the minus side of the polygon's plane, minus the number on its plus side.
     pub weight: i32,
-    /// The face.
+    /// The face that the fragment is a piece of.
     pub face: SourceFace,
-    /// Whether the fragment is all of a whole face inside the cell.
+    /// True if the fragment is all of a whole face inside the cell.
     pub intact: bool,
 }

@@ -1,8 +1,8 @@
-//! The local autopartition of one operand inside a small cell.
+//! A partition tree of one operand inside a small cell, cut by the planes of the operand's own faces.
 //!
-//! A transient BSP tree cut by the supporting planes of the operand's own fragments. Regions are labelled
-//! with winding numbers by adjacency, which is correct for overlapping, nested and inverted boundaries too:
-//! labels by plane sides would be correct for simple boundaries only.
+//! The tree exists only while its cell is solved. Winding numbers spread from region to region across the
+//! fragments between them. This is correct for overlapping, nested and inverted boundaries, too; labels by
+//! the sides of planes would be correct for simple boundaries only.
 //!
 //! # Source
 //! Thibault and Naylor 1987 (construction, classification).
@@ -17,30 +17,30 @@ use crate::geometry::side::{Half, Orientation, Side};
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 
-/// A convex piece of boundary with its multiplicity.
+/// A convex piece of boundary, with the jump of the winding number across it.
 ///
-/// The winding number on the minus side of the polygon's support exceeds the plus side's by
+/// The winding number on the minus side of the polygon's plane exceeds the number on its plus side by
 /// `weight`.
 #[derive(Clone, Debug)]
 pub struct Weighted {
-    /// The piece.
+    /// The polygon of the piece.
     pub polygon: Polygon,
-    /// The jump of the winding number.
+    /// The winding number on the minus side of the polygon's plane, minus the number on its plus side.
     pub weight: i32,
 }
 
-/// A piece of a fragment and the winding numbers on its support's minus and plus sides.
+/// A piece of a polygon, and the winding numbers of an operand on the minus and the plus side of its plane.
 #[derive(Debug)]
 pub struct Sided {
-    /// The piece.
+    /// The polygon of the piece.
     pub polygon: Polygon,
-    /// The winding number on the minus side.
+    /// The winding number on the minus side of the polygon's plane.
     pub minus: i32,
-    /// The winding number on the plus side.
+    /// The winding number on the plus side of the polygon's plane.
     pub plus: i32,
 }
 
-/// A leaf, by the index of its label.
+/// A region (leaf) of the tree, by the index of its winding number.
 #[derive(Clone, Copy, Debug)]
 struct Region(u32);
 
@@ -50,7 +50,7 @@ impl Region {
     }
 }
 
-/// A subtree: a node, or a leaf.
+/// A subtree: an inner node, or a region.
 #[derive(Clone, Copy, Debug)]
 enum Child {
     Node(NodeId),
@@ -61,27 +61,27 @@ enum Child {
 struct LocalNode {
     cut: Arc<Plane>,
     children: [Child; 2],
-    /// A box around all fragments in its region.
+    /// A box around all fragments in the node's region.
     extent: Extent,
 }
 
-/// A labelled autopartition.
+/// A partition tree of one operand in a small cell; each region has a winding number.
 #[derive(Debug)]
 pub struct LocalTree {
     nodes: Vec<LocalNode>,
     labels: Vec<i32>,
 }
 
-/// A fragment or a piece of one during construction.
+/// A fragment, or a piece of a fragment, while the tree is built.
 struct PendingFragment {
     fragment: Weighted,
     extent: Extent,
 }
 
-/// The fragments and pieces to distribute among nodes, which refer to them by index.
+/// The fragments and their pieces while the tree is built; tasks refer to them by index.
 struct TreeBuilder {
     all: Vec<PendingFragment>,
-    /// One fragment of each node's coplanar set, which relates the labels on both sides of the node.
+    /// For each node one fragment in its plane, which relates the winding numbers on both sides of the node.
     links: Vec<usize>,
     open: Vec<Task>,
 }
@@ -92,9 +92,9 @@ struct Task {
 }
 
 impl LocalTree {
-    /// Builds the tree of disjoint fragments in a cell.
+    /// Builds the tree of fragments in a cell, no two of which overlap.
     ///
-    /// `corner` is the cell's low corner in half steps, `label` the winding number there.
+    /// `corner` is the cell's low corner in half lattice steps, and `label` the winding number there.
     pub fn build(fragments: Vec<Weighted>, corner: &Lattice, label: i32) -> Self {
         let mut tree = Self {
             nodes: Vec::new(),
@@ -117,7 +117,7 @@ impl LocalTree {
         tree
     }
 
-    /// The tree of one region.
+    /// Makes a tree of one region with this winding number.
     pub fn uniform(label: i32) -> Self {
         Self {
             nodes: Vec::new(),
@@ -125,7 +125,7 @@ impl LocalTree {
         }
     }
 
-    /// The winding numbers of all regions.
+    /// Returns the winding numbers of all regions.
     pub fn labels(&self) -> &[i32] {
         &self.labels
     }
@@ -160,10 +160,11 @@ impl LocalTree {
         Child::Node(node)
     }
 
-    /// Labels the corner's region, then all others across the links.
+    /// Labels the region at the cell's corner with its winding number, then all other regions across the
+    /// links.
     ///
-    /// The links connect all regions: there is one for each node, between a region of its minus subtree and
-    /// one of its plus subtree.
+    /// A link is a fragment in a node's plane, between a region of the minus subtree and one of the plus
+    /// subtree. There is one for each node, so the links connect all regions.
     fn spread_labels(&mut self, builder: &TreeBuilder, corner: &Lattice, label: i32) {
         let mut neighbours: Vec<Vec<(Region, i32)>> = vec![Vec::new(); self.labels.len()];
         for (node, link) in self.nodes.iter().zip(&builder.links) {
@@ -189,7 +190,8 @@ impl LocalTree {
         }
     }
 
-    /// The leaf of a subtree that a polygon borders or lies in, near its first corner.
+    /// Returns the region of a subtree in which a polygon lies, or on whose border it lies, near its first
+    /// corner.
     ///
     /// A point of the polygon near a corner, next to the edge that leaves it, lies in a plane only if the
     /// whole polygon does.
@@ -222,7 +224,7 @@ impl LocalTree {
         }
     }
 
-    /// The winding number at a lattice point that lies on no fragment.
+    /// Returns the winding number at a lattice point that lies on no fragment.
     pub fn label_at(&self, point: &Lattice) -> i32 {
         let mut at = self.root();
         loop {
@@ -236,7 +238,8 @@ impl LocalTree {
         }
     }
 
-    /// Pushes a polygon down the tree; returns its pieces with the winding numbers on both sides.
+    /// Cuts a polygon where winding numbers change, and returns its pieces with the winding numbers on both
+    /// sides.
     pub fn sides(&self, polygon: Polygon) -> Vec<Sided> {
         let mut found = Vec::new();
         let mut open = vec![(self.root(), polygon)];
@@ -260,7 +263,8 @@ impl LocalTree {
         found
     }
 
-    /// The pieces of a polygon in a node's cut: each side's label from that side's subtree.
+    /// Adds the pieces of a polygon that lies in a node's plane: the winding number on each side comes from
+    /// the subtree of this side.
     fn coplanar_sides(
         &self,
         node: &LocalNode,
@@ -284,7 +288,8 @@ impl LocalTree {
         }
     }
 
-    /// The pieces of a polygon by the leaves of a subtree; the polygon lies in none of its planes.
+    /// Returns the pieces into which the regions of a subtree divide a polygon, with the winding number
+    /// around each; no fragment of the subtree lies in the polygon's plane.
     fn labelled(&self, from: Child, polygon: Polygon) -> Vec<(Polygon, i32)> {
         let mut found = Vec::new();
         let mut open = vec![(from, polygon)];
@@ -300,9 +305,11 @@ impl LocalTree {
         found
     }
 
-    /// Pushes a polygon down a subtree until its labels are known; adds cut-off pieces to `open`.
+    /// Pushes a polygon down a subtree until the winding numbers beside it are known. Returns the remaining
+    /// polygon and the end of its path; pieces cut off are added to `open`.
     ///
-    /// If no fragment of the subtree is near, the whole polygon has the labels of any leaf that it borders.
+    /// If no fragment of the subtree is near the polygon, the number of any region that it borders holds for
+    /// all of it.
     fn descend(
         &self,
         from: Child,
@@ -338,11 +345,11 @@ impl LocalTree {
     }
 }
 
-/// Where the path of a polygon down a tree ends.
+/// The end of the path of a polygon down a tree.
 enum PathEnd<'t> {
-    /// In a leaf, or in several with the same label.
+    /// The polygon lies in this region, or in several with the same winding number.
     Within(Region),
-    /// At a node in whose plane it lies.
+    /// The polygon lies in the plane of this node, in this orientation.
     Coplanar(&'t LocalNode, Orientation),
 }
 
@@ -360,7 +367,8 @@ impl TreeBuilder {
         }
     }
 
-    /// The pieces on either side of a plane, without those in it.
+    /// Divides pieces by a plane and returns those on its minus and on its plus side, without pieces that lie
+    /// in it.
     fn divide(&mut self, pieces: &[usize], cut: &Arc<Plane>) -> [Vec<usize>; 2] {
         let (mut minus, mut plus) = (Vec::new(), Vec::new());
         for &piece in pieces {
@@ -396,7 +404,7 @@ impl PendingFragment {
     }
 }
 
-/// A box around a polygon.
+/// Returns a box around a polygon, rounded outwards.
 pub(super) fn extent(polygon: &Polygon) -> Extent {
     let (low, high) = polygon.bounds();
     Extent { low, high }
@@ -409,7 +417,7 @@ mod tests {
     use crate::merge::scenes::{cuboid, triangle};
     use crate::mesh::handle::Slot;
 
-    /// The faces of boxes, each with the weight of its box.
+    /// Returns the tree of the faces of boxes, each with the weight of its box.
     fn tree(boxes: &[([Lattice; 2], i32)]) -> LocalTree {
         let mut fragments = Vec::new();
         let cell = Cell::around(&[0; 3], &[15; 3]);

@@ -1,9 +1,9 @@
-//! The kernel that takes every cell: local trees.
+//! The kernel that solves every cell, by small partition trees (local trees).
 //!
-//! Each operand gets a local autopartition; each operand's fragments are pushed through the others' trees,
-//! and a piece stays if the expression differs on its two sides. This is the dual of merging the trees
-//! (`merge::merge`, which tests compare): it labels the same regions, but cuts only fragments, never
-//! regions.
+//! Each operand gets a local tree, cut by the planes of its own faces. The fragments (pieces of faces) of
+//! each operand are cut by the other operands' trees, and a piece stays if the expression differs on its two
+//! sides. This is the dual of merging the trees (`merge::merge`, with which tests compare it): it labels the
+//! same regions, but cuts only fragments, never regions.
 
 mod coverage;
 mod fragment;
@@ -24,13 +24,13 @@ use local_tree::{LocalTree, Sided};
 pub use operand::LeafTree;
 use operand::Operand;
 
-/// Pushes fragments through local trees.
+/// The kernel that cuts the faces of each operand by small partition trees of the other operands.
 ///
-/// The result is the reduced boundary for any operands.
+/// The result lists each wall between inside and outside once and nothing else, for any operands.
 #[derive(Debug)]
 pub struct LocalTrees;
 
-/// A piece of a fragment, with the operands' labels on its two sides.
+/// A piece of a fragment, with the labels on its two sides: for each operand whether this side is inside it.
 pub(in crate::merge) struct Piece {
     pub(in crate::merge) polygon: Polygon,
     pub(in crate::merge) minus: Vec<bool>,
@@ -49,7 +49,8 @@ impl Kernel for LocalTrees {
     }
 }
 
-/// Return what stays of all operands, and the value at the cell's corner.
+/// Returns the parts of all operands' faces that bound the result, and the expression's value at the cell's
+/// corner (1 for inside).
 fn keep_all(operands: &[Operand], expression: &Expression, rule: Rule) -> (Vec<Kept>, i32) {
     let bounds = Bounds {
         operands,
@@ -71,7 +72,7 @@ fn keep_all(operands: &[Operand], expression: &Expression, rule: Rule) -> (Vec<K
     (kept, corner)
 }
 
-/// The pieces that bound an expression.
+/// Decides which pieces of faces bound the value of an expression.
 struct Bounds<'a> {
     operands: &'a [Operand],
     expression: &'a Expression,
@@ -88,8 +89,8 @@ impl Bounds<'_> {
         self.expression.value(label, scratch)
     }
 
-    /// Return the orientation in which a piece of an operand bounds the expression; `None` if it does not,
-    /// or another operand owns the place.
+    /// Returns the orientation in which a piece of an operand bounds the expression's value; `None` if it
+    /// does not, or if a coinciding face of another operand stays instead.
     fn side(&self, piece: &Piece, own: usize, scratch: &mut Vec<u64>) -> Option<Orientation> {
         if piece.minus[own] == piece.plus[own] {
             return None;
@@ -109,7 +110,8 @@ impl Bounds<'_> {
     }
 }
 
-/// Return the orientation of a piece with these values behind and in front of it, if they differ.
+/// Returns the orientation in which a piece bounds a set, given whether its minus and its plus side are
+/// inside the set; `None` if both are equal.
 pub(in crate::merge) fn orientation([minus, plus]: [bool; 2]) -> Option<Orientation> {
     (minus != plus).then_some(if minus {
         Orientation::Same
@@ -118,7 +120,7 @@ pub(in crate::merge) fn orientation([minus, plus]: [bool; 2]) -> Option<Orientat
     })
 }
 
-/// Cuts a fragment into pieces on whose sides each operand has one label.
+/// Cuts a fragment into pieces such that each side of a piece is inside or outside each operand as a whole.
 fn sides(fragment: &Fragment, own: usize, operands: &[Operand], rule: Rule) -> Vec<Piece> {
     let first = Piece {
         polygon: fragment.polygon.clone(),
@@ -147,7 +149,7 @@ impl Piece {
     fn pushed(self, tree: &LocalTree, rule: Rule) -> Vec<Self> {
         poll();
         let mut sided = tree.sides(self.polygon);
-        // The last piece, usually the only one, reuses the labels' memory.
+        // The last piece, usually the only one, reuses the memory of the labels.
         let last = sided.pop();
         let labelled = |s: Sided, mut minus: Vec<bool>, mut plus: Vec<bool>| {
             minus.push(rule.inside(s.minus));
@@ -166,14 +168,15 @@ impl Piece {
         pieces
     }
 
-    /// Return whether no other operand's label differs on the two sides.
+    /// Returns true if no other operand changes between inside and outside across the piece.
     fn is_only_boundary_of(&self, operand: usize) -> bool {
         let differs = |k: usize| self.minus[k] != self.plus[k];
         (0..self.minus.len()).all(|k| k == operand || !differs(k))
     }
 }
 
-/// The pieces of a fragment that stay, in their orientations.
+/// Returns the parts of a fragment that bound the result, in each orientation; `side` returns the orientation
+/// in which a piece bounds the result, or `None`.
 pub(in crate::merge) fn keep(
     fragment: &Fragment,
     pieces: Vec<Piece>,

@@ -1,4 +1,4 @@
-//! One operand in a small cell: its fragments and its local tree.
+//! One operand in a small cell: its fragments (convex pieces of faces) and its local tree.
 
 use super::fragment::Fragment;
 use super::local_tree::{LocalTree, Weighted};
@@ -10,15 +10,15 @@ use crate::interrupt::poll;
 use crate::merge::lists::list::{List, Sources};
 use crate::mesh::handle::{FaceId, SourceFace};
 
-/// One operand inside the cell.
+/// One operand inside a small cell.
 pub(super) struct Operand {
-    /// Its number in the expression.
+    /// The number of the operand in the expression.
     pub(super) number: u32,
-    /// The winding number at the cell's low corner.
+    /// The operand's winding number at the cell's low corner.
     pub(super) corner: i32,
     pub(super) fragments: Vec<Fragment>,
     pub(super) tree: LocalTree,
-    /// Whether nothing overlaps in the cell and all winding numbers are 0 or 1.
+    /// True if no fragments overlap in the cell and all winding numbers are 0 or 1.
     pub(super) simple: bool,
 }
 
@@ -51,7 +51,7 @@ impl Operand {
     }
 }
 
-/// The fragments of a list's elements, clipped to the cell.
+/// Returns the listed faces and the convex pieces of listed parts, clipped to the cell.
 fn fragments(list: &List, cell: &Cell, sources: &Sources) -> Vec<Fragment> {
     let mut found = Vec::with_capacity(list.len());
     for r in &list.records {
@@ -83,37 +83,38 @@ fn fragments(list: &List, cell: &Cell, sources: &Sources) -> Vec<Fragment> {
     found
 }
 
-/// One operand's local tree in a small cell, for queries.
+/// The local tree of one operand in a small cell, for queries of points and polygons.
 pub struct LeafTree(Operand);
 
 impl LeafTree {
-    /// Builds the tree of the listed faces inside a cell.
+    /// Builds the local tree of the listed faces and parts inside a cell.
     pub fn new(list: &List, cell: &Cell, sources: &Sources) -> Self {
         Self(Operand::new(0, list, cell, sources))
     }
 
-    /// The pieces of boundary in the cell.
+    /// Returns the convex pieces of the operand's boundary in the cell.
     pub fn polygons(&self) -> impl Iterator<Item = &Polygon> {
         self.0.fragments.iter().map(|f| &f.polygon)
     }
 
-    /// Return whether nothing overlaps in the cell and all winding numbers are 0 or 1.
+    /// Returns true if no faces overlap in the cell and all winding numbers are 0 or 1.
     pub fn is_simple(&self) -> bool {
         self.0.simple
     }
 
-    /// The faces with a fragment in the cell.
+    /// Returns for each fragment in the cell the number of its face.
     pub fn faces(&self) -> impl Iterator<Item = FaceId> + '_ {
         self.0.fragments.iter().map(|f| f.face.id)
     }
 
-    /// The winding numbers behind and in front of a polygon that crosses no piece.
+    /// Returns the winding numbers behind and in front of a polygon that crosses no face of the operand;
+    /// always `Some`.
     pub fn sides_of(&self, polygon: Polygon) -> Option<[i32; 2]> {
         let sides = self.0.tree.sides(polygon);
         sides.first().map(|s| [s.minus, s.plus])
     }
 
-    /// The winding number at a lattice point that lies on none of the pieces.
+    /// Returns the winding number at a lattice point that lies on no face.
     pub fn label_at(&self, point: &Lattice) -> i32 {
         self.0.tree.label_at(point)
     }

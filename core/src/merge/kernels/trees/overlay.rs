@@ -1,4 +1,4 @@
-//! Makes coplanar fragments of one operand disjoint and adds up their weights.
+//! Makes coplanar fragments (pieces of faces) of one operand disjoint, and adds up their weights.
 
 use std::sync::Arc;
 
@@ -9,9 +9,11 @@ use crate::geometry::doubles::extent::Extent;
 use crate::geometry::plane::Plane;
 use crate::interrupt::poll;
 
-/// Makes fragments disjoint: where some overlap, the first one stays, with the sum of the weights.
+/// Makes fragments disjoint: where fragments overlap, a piece of the first one stays, with the sum of the
+/// weights.
 ///
-/// Pieces with the sum 0 bound nothing and are dropped. Also returns whether any fragments overlapped.
+/// Pieces with the sum 0 bound nothing and are dropped. The returned flag is true if any fragments
+/// overlapped.
 pub fn disjoint(fragments: Vec<Fragment>) -> (Vec<Fragment>, bool) {
     let mut overlap = false;
     let mut all = Vec::with_capacity(fragments.len());
@@ -31,7 +33,7 @@ pub fn disjoint(fragments: Vec<Fragment>) -> (Vec<Fragment>, bool) {
     (all, overlap)
 }
 
-/// The fragments in groups of one plane each.
+/// Groups fragments by their planes.
 fn by_planes(fragments: Vec<Fragment>) -> Vec<Vec<Fragment>> {
     let mut groups: Vec<Vec<Fragment>> = Vec::new();
     let mut names: Vec<Arc<Plane>> = Vec::new();
@@ -49,7 +51,7 @@ fn by_planes(fragments: Vec<Fragment>) -> Vec<Vec<Fragment>> {
     groups
 }
 
-/// For each fragment of a plane whether it has an area in common with another one.
+/// Returns for each fragment of a plane whether it has an area in common with another one.
 fn overlapping(group: &[Fragment]) -> Vec<bool> {
     let extents: Vec<Extent> = group.iter().map(|f| extent(&f.polygon)).collect();
     let lie_beside = |i: usize, j: usize| {
