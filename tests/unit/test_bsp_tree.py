@@ -309,7 +309,7 @@ class TestDumps:
         assert bsp.PartitionTree.load(tmp_path / "tree.json") == tree
         with pytest.raises(b.FormatError, match="No such file"):
             bsp.PartitionTree.load(tmp_path / "none.json")
-        with pytest.raises(b.FormatError, match="no folder"):
+        with pytest.raises(b.FormatError, match="does not exist"):
             tree.save(tmp_path / "none" / "tree.json")
         assert tree != bsp.PartitionTree(CROSS[:1])
         assert tree != "tree"
