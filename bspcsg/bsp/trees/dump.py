@@ -61,7 +61,7 @@ def parsed(text: str) -> Parts:
     if not known:
         message = (
             f"The stored tree has the format {content['format']!r} in version"
-            f" {content.get('version')!r}, but only {_FORMAT!r} up to version {_VERSION} can be read."
+            f" {content.get('version')!r}, but only {_FORMAT!r} up to version {_VERSION} is read."
         )
         raise FormatError(message, "bad_snapshot")
     checksum = content.pop("checksum", None)
