@@ -159,8 +159,8 @@ class MeshLeaf:
         leaf._content = replace(self._settled(), arrays=(vertices, faces))
         if not is_exact:
             leaf._rounded = (
-                f"an operand was rounded to steps of 10^{pitch}, as another reaches beyond the"
-                f" lattice of its own pitch 10^{self.pitch}"
+                f"an operand was rounded to a coarser lattice of step 10^{pitch}, because"
+                f" another operand is too large for its own lattice of step 10^{self.pitch}"
             )
         return leaf
 
@@ -670,8 +670,8 @@ def _transforming(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
         return moved
     if not isinstance(leaf, TreeLeaf) or leaf.record is None:
         raise UnboundedError(
-            "This solid and its complement both reach to infinity, so there is no mesh that"
-            " the transform could act on; transform its operands instead.",
+            "This solid and its complement both reach to infinity, so it has no mesh that"
+            " could be transformed; transform the operands of the operation instead.",
             "unbounded",
         )
     leaves = []

@@ -112,8 +112,9 @@ def overlaps_of(solid: "Solid") -> tuple[Finding, ...]:
     if turned and not crossing:
         return turned
     message = (
-        f"faces cross, overlap, touch or lie inside: {len(mesh.faces)} triangles, where the"
-        f" boundary of the solid has {len(reduced.to_mesh().faces)}"
+        "the mesh has faces that cross, overlap, touch or lie inside the solid: it has"
+        f" {len(mesh.faces)} triangles, but the boundary of the solid has"
+        f" {len(reduced.to_mesh().faces)}"
     )
     if crossing:
         message += (
@@ -146,7 +147,7 @@ def _turned_shells(mesh: Mesh, reduced: "Solid") -> tuple[Finding, ...]:
     if not found:
         return ()
     many = "1 body is" if len(found) == 1 else f"{len(found)} bodies are"
-    message = f"{many} inside out, and left out of the solid; the first near {_near(mesh, found)}"
+    message = f"{many} inside out, so left out of the solid; the first is near {_near(mesh, found)}"
     return (
         Finding("inside_out", "warning", message, tuple(found[:_MAX_PLACES_NAMED]), len(found)),
     )
@@ -177,18 +178,18 @@ def _crossings_of(solid: "Solid", *, is_on_lattice: bool) -> tuple[Finding, ...]
     crossing = _crossing_faces(mesh)
     if not crossing:
         return ()
-    code, much = "crossing", " of inputs cross or overlap others by less than a step of the lattice"
+    code, much = "crossing", " of the inputs cross or overlap others by less than a lattice step"
     if is_on_lattice:
         code, much = "self_overlap", " cross or overlap others"
-    message = f"these triangles{much}; the first near {_near(mesh, crossing)}"
+    message = f"these triangles{much}; the first is near {_near(mesh, crossing)}"
     return (Finding(code, "warning", message, tuple(crossing[:_MAX_PLACES_NAMED]), len(crossing)),)
 
 
 def _flat(mesh: Mesh, faces: list[int]) -> Finding:
     """Return the finding about triangles that have area on the lattice, but none in doubles."""
     message = (
-        "these triangles of inputs have no area in doubles, though their corners have on the"
-        f" lattice; the first near {_near(mesh, faces)}"
+        "these triangles of the inputs have no area in doubles, although they have on the"
+        f" lattice; the first is near {_near(mesh, faces)}"
     )
     return Finding("flat", "note", message, tuple(faces[:_MAX_PLACES_NAMED]), len(faces))
 

@@ -81,7 +81,10 @@ class Movable(ABC):
         """
         turns = number(x, "x"), number(y, "y"), number(z, "z")
         if angle is not None and any(turns):
-            raise invalid_parameter("A rotation is by an angle and an axis, or by x, y and z.")
+            raise invalid_parameter(
+                "Both an angle and rotations about x, y or z are given; give either angle and"
+                " axis, or x, y and z."
+            )
         turn: Any = turns if angle is None else angle
         is_one = axes_of(turn) == 0
         factors = (transform.rotation(turn, axis),) if is_one else transform.euler_rotation(turn)

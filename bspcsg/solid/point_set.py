@@ -119,10 +119,14 @@ class PointSet(ABC):
         For several points `classify` is faster, and it tells the boundary from the inside.
         """
         if isinstance(point, PointSet):
-            raise invalid_parameter("Only points are in a set; for parts of it use <=.")
+            raise invalid_parameter(
+                "“in” tests points only; to test whether a set is part of another, use <=."
+            )
         sides = self.classify([point])
         if len(sides) != 1:
-            raise invalid_parameter(f"A point has coordinates, unlike {shown(point)}.")
+            raise invalid_parameter(
+                f"A point must be one tuple of coordinates, not {shown(point)}."
+            )
         return bool(sides[0] >= 0)
 
     @uncounted

@@ -66,10 +66,12 @@ def program_of(op: str, count: int) -> list[ProgramLine]:
         If there is no such operation, or no operand.
     """
     if not isinstance(op, str) or op not in _NAMED:
-        message = f"Unknown operation {shown(op)}; one of {', '.join(_NAMED)}."
+        message = f"Unknown operation {shown(op)}; known are {', '.join(_NAMED)}."
         raise invalid_parameter(message + question(op, _NAMED))
     if count == 0:
-        raise invalid_parameter(f"The {op} of no operands cannot be compared.")
+        raise invalid_parameter(
+            f"There are no operands, so the {op} cannot be compared; give at least one operand."
+        )
     lines: list[ProgramLine] = [("leaf", [number]) for number in range(count)]
     return lines + _NAMED[op](count)
 

@@ -49,7 +49,10 @@ class Triangles(_Array):
             If the solid reaches to infinity.
         """
         if self._solid is None:
-            raise invalid_parameter("This array is no solid's any more; ask solid.faces().")
+            raise invalid_parameter(
+                "This copy of the array does not know its solid any more; call faces() of the"
+                " solid instead."
+            )
         from ..modelling.making.faces import faces_of
 
         return faces_of(self._solid, all=all, angle=angle)

@@ -111,7 +111,7 @@ def far_and_wide(scene: Scene, kernel: Kernel) -> Iterator[str]:
     finally:
         b.set_threads(0)
     if len(found) > 1:
-        yield f"threads: {len(found)} different meshes"
+        yield f"threads: {len(found)} unchanged input meshes"
     yield from _untouched(scene, mesh)
 
 

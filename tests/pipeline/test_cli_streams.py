@@ -59,7 +59,10 @@ def test_files_without_a_suffix(folder: Path, capsys: Capture) -> None:
         (["union", "-", "-", "-o", "x.ply", "--from", "stl"], "only once"),
         (["union", "a.off", "c.stl", "-o", "-"], "--to"),
         (["union", "a.off", "c.stl", "-o", "-", "--to", "ply", "--json"], "--json"),
-        (["union", "a.off", "c.stl", "-o", "x.ply", "--to", "step"], "'step' is no format"),
+        (
+            ["union", "a.off", "c.stl", "-o", "x.ply", "--to", "step"],
+            "'step' is not a known format",
+        ),
         (["info", "-"], "--from"),
     ],
 )
@@ -195,7 +198,7 @@ def test_no_permission(folder: Path, capsys: Capture) -> None:
     assert code == 3 and "Permission denied" in err
     folder.chmod(0o500)
     code, _, err = ran(capsys, "convert", "c.stl", "-o", "x.ply")
-    assert code == 5 and "can be written to" in err
+    assert code == 5 and "is not writable" in err
 
 
 def test_forbidden_files_as_the_system_tells_it(
@@ -283,7 +286,7 @@ def test_folders_that_are_forbidden(
     monkeypatch.setattr(os, "access", lambda *_: False)
     for arguments in (["convert", "a.off"], ["eval", "a.off"], ["split", "a.off"]):
         code, out, err = ran(capsys, *arguments, "-o", "x.ply")
-        assert (code, out) == (5, "") and "no folder . that can be written to" in err
+        assert (code, out) == (5, "") and "the folder . does not exist or is not writable" in err
 
 
 #: Environments in which Python's own streams are unbuffered or buffered.

@@ -159,7 +159,7 @@ def test_scripts_are_interrupted_quietly_while_python_starts(
     )
     (tmp_path / "cube.py").write_text("import bspcsg\nresult = bspcsg.box(1, 1, 1)\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    with pytest.raises(b.FormatError, match="with code 130"):
+    with pytest.raises(b.FormatError, match="with exit code 130"):
         run.run_script(str(tmp_path / "cube.py"))
     assert capfd.readouterr() == ("", "")
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, set())

@@ -104,5 +104,5 @@ def test_sources_that_are_not_compiled_say_so(tmp_path: Path) -> None:
         command, cwd=tmp_path, capture_output=True, text=True, timeout=100, check=False
     )
     last = done.stderr.splitlines()[-1]
-    assert last.startswith("ImportError: ") and "run Python in another folder" in last
+    assert last.startswith("ImportError: ") and "Run Python in another folder" in last
     assert str(tmp_path) in last

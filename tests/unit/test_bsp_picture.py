@@ -272,7 +272,7 @@ def test_svg_needs_no_pillow(monkeypatch: pytest.MonkeyPatch) -> None:
     [
         ({"size": (0, 10)}, "width"),
         ({"size": (10, 2.5)}, "height"),
-        ({"size": 10}, "width and a height"),
+        ({"size": 10}, "pair .width, height."),
         ({"size": (10, 20000)}, "at most"),
         ({"style": "wire"}, "style"),
         ({"edges": "some"}, "edges"),
@@ -281,7 +281,7 @@ def test_svg_needs_no_pillow(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"crease": float("nan")}, "crease"),
         ({"colors": "blue-ish"}, "colors"),
         ({"colors": [(1, 0, 0)] * 3}, "shape"),
-        ({"colors": ["#fff"] * 3}, "12 colors"),
+        ({"colors": ["#fff"] * 3}, "12 colours"),
         ({"colors": (0.0, 2, 0)}, "0 to 1"),
         ({"background": "#12345"}, "background"),
         ({"line_width": 0}, "line_width"),

@@ -382,7 +382,7 @@ def test_facets_that_lose_their_extent_leave_a_moved_scene() -> None:
     moved[0], moved[2] = 7, [[3, 0], [3, 1]]
     again = caster.refitted(moved)
     assert again.all_hits([-1, 0.5], [1, 0]).hits.facet.tolist() == [1, 2]
-    with pytest.raises(b.InvalidMeshError, match="same shape"):
+    with pytest.raises(b.InvalidMeshError, match="same array shape"):
         caster.refitted(facets[:2])
     with pytest.raises(b.LimitError):
         caster.refitted(facets * 1e9)

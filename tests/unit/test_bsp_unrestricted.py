@@ -321,7 +321,7 @@ def test_a_volume_is_seen_in_no_box_that_is_turned_over() -> None:
 
 # Found: a spherical polygon with equal corners ended in a raw `TypeError`.
 def test_spherical_polygons_need_corners_that_differ() -> None:
-    with pytest.raises(InvalidParameterError, match="must not all have one direction"):
+    with pytest.raises(InvalidParameterError, match="must not all have the same direction"):
         bsp.SphericalRegion.polygon([[1, 0, 0], [2, 0, 0], [3, 0, 0]])
 
 

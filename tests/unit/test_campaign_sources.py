@@ -91,7 +91,9 @@ MESH = {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], "faces": [[0, 
 def test_other_files_of_cases_are_refused(tmp_path: Path, document: Any) -> None:
     path = tmp_path / "cases.json"
     path.write_text(document if isinstance(document, str) else json.dumps(document))
-    with pytest.raises(b.FormatError, match=r"cases\.json: this is no file of cases") as caught:
+    with pytest.raises(
+        b.FormatError, match=r"cases\.json: the file is not a valid list of cases"
+    ) as caught:
         cases_of(inputs_in([path]), SET_OPS, Draw())
     assert '{"cases": [{"operation"' in caught.value.message
 

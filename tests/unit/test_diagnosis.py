@@ -179,7 +179,7 @@ def test_objects_that_clash_are_told_with_place_and_measured_once() -> None:
     found = examine(with_objects(cube(2), moved(cube(), (5, 0, 0)), moved(cube(), (1.5, 0, 0))))
     (finding,) = found.found.findings
     assert (finding.code, finding.severity, finding.count) == ("clash", "warning", 1)
-    assert "“a” and “c”, 0.5 near (1.75, 0.5, 0.5)" in finding.message
+    assert "“a” and “c”, with a common volume of 0.5 near (1.75, 0.5, 0.5)" in finding.message
     assert found.found.volume == 8 + 1 + 0.5 and found.found.signed_volume == 10
 
 

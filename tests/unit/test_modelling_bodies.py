@@ -132,7 +132,7 @@ def test_sums_refuse_what_is_unbounded_or_too_large() -> None:
 
 def test_sums_refuse_what_would_take_all_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(touching, "_MAX_PIECE_FACES", 100)
-    with pytest.raises(b.LimitError, match="choose coarser") as caught:
+    with pytest.raises(b.LimitError, match="choose solids with fewer faces") as caught:
         b.minkowski(frame(), b.cube(1))
     assert caught.value.code == "too_large"
 

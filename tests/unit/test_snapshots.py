@@ -126,9 +126,9 @@ def test_a_later_version_is_named() -> None:
 
 def test_a_snapshot_of_another_kind_is_refused() -> None:
     region = bsp.Region.circle(2) - bsp.Region.rectangle(1)
-    with core_errors(), pytest.raises(_core.CoreError, match="do not begin as one"):
+    with core_errors(), pytest.raises(_core.CoreError, match="do not start with its header"):
         _core.Tree.load(region._tree.dump())
-    with core_errors(), pytest.raises(_core.CoreError, match="do not begin as one"):
+    with core_errors(), pytest.raises(_core.CoreError, match="do not start with its header"):
         _core.ObjectTree.load(solid().tree.dump())
 
 

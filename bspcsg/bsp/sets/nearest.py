@@ -22,9 +22,14 @@ def nearest_on_boundary(tree: "ObjectTree", points: Any) -> tuple[FloatArray, Fl
     """Return for each point the nearest boundary point of a set, (k, d), and the distance, (k,)."""
     array = point_rows(points, tree.dimension)
     if not np.isfinite(array).all():
-        raise InvalidMeshError("Points must be finite.", "non_finite")
+        raise InvalidMeshError(
+            "The points have coordinates that are not finite numbers; remove these points.",
+            "non_finite",
+        )
     if tree.is_empty or tree.is_full:
-        raise invalid_parameter("A set without boundary has no nearest boundary point.")
+        raise invalid_parameter(
+            "The set is empty or all of space, so it has no boundary and no nearest boundary point."
+        )
     nearest = _nearest_of(tree, array)
     return nearest, np.sqrt(((nearest - array) ** 2).sum(axis=1))
 

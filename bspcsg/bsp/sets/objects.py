@@ -179,8 +179,8 @@ class ObjectTree(TreeSet):
         """Return the core trees of both sets on the finer of their two lattices."""
         if self.dimension != other.dimension:
             raise invalid_parameter(
-                f"A set of dimension {self.dimension} cannot be combined with one of dimension"
-                f" {other.dimension}."
+                f"A set of dimension {self.dimension} cannot be combined with a set of"
+                f" dimension {other.dimension}; both must have the same dimension."
             )
         # The empty set and the whole space fit on any lattice.
         pitches = [s.pitch for s in (self, other.tree) if not (s.is_empty or s.is_full)]

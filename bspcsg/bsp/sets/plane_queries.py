@@ -11,7 +11,7 @@ from ..._core import ObjectTree as CoreTree
 from ..._types import FloatArray, Vector
 from ...errors import LimitError, core_errors, invalid_parameter
 from ...geometry.polygon import convex_corners
-from ...parameters import number
+from ...parameters import number, shown
 from .loops import Outline, loop_segments
 from .objects import ObjectTree
 from .pieces import Pieces
@@ -52,7 +52,7 @@ def cast_line(tree: CoreTree, origin: Vector, direction: Vector) -> FloatArray:
     """Return the segments of a line in a set of the plane as pairs of t (see `Region.cast`)."""
     start, along = vector2(origin, "origin"), vector2(direction, "direction")
     if not np.any(along):
-        raise invalid_parameter("The direction must not be zero.")
+        raise invalid_parameter("direction must not be the zero vector.")
     with core_errors():
         points, _, _ = tree.cast(list(start), list(along))
     axis = int(np.abs(along).argmax())
@@ -101,8 +101,9 @@ def _on_lattice(tree: ObjectTree, pitch: int) -> CoreTree:
     step = Fraction(10) ** pitch
     if loops is None or any(Fraction(*x) % step for loop in loops for p in loop for x in p):
         message = (
-            "One region does not fit the lattice of 2^53 steps that the corners of another need."
-            f" Round those corners to {float(step):g}, or cut off distant parts."
+            "One region extends beyond the 2^53 steps of the fine lattice that the corners of"
+            f" another region need. Round those corners to multiples of {float(step):g}, or"
+            " cut off distant parts."
         )
         raise LimitError(message, "too_large")
     corners = [np.array([[n / d for n, d in point] for point in loop]) for loop in loops]
@@ -115,5 +116,5 @@ def vector2(value: Any, name: str) -> tuple[float, float]:
     try:
         x, y = value
     except (TypeError, ValueError) as error:
-        raise invalid_parameter(f"{name} must have two numbers.") from error
+        raise invalid_parameter(f"{name} must be two numbers, not {shown(value)}.") from error
     return number(x, name), number(y, name)

@@ -128,7 +128,10 @@ class Region(FlatSet):
         InvalidMeshError
             If the segments do not form closed outlines (`where` lists segments).
         """
-        refusal = invalid_parameter("Segments are pairs of points, of two numbers each.")
+        refusal = invalid_parameter(
+            "Segments must be pairs of points with two numbers each, in an array of shape (n, 2,"
+            " 2)."
+        )
         given = doubles(segments, refusal)
         if given.size % 4:
             raise refusal
@@ -207,7 +210,7 @@ class Region(FlatSet):
         if flats is None:
             return cls(unit_circle(around) * positive(radius(r, d, "A regular polygon"), "r"))
         if r is not None or d is not None:
-            raise invalid_parameter("Give r, d or flats, and only one of them.")
+            raise invalid_parameter("A regular polygon needs exactly one of r, d and flats.")
         # Every second corner of a polygon with twice as many makes axis-parallel sides exact.
         corners = unit_circle(2 * around)[1::2]
         return cls(corners * (positive(flats, "flats") / 2 / corners[0, 0]))
@@ -241,7 +244,7 @@ class Region(FlatSet):
         size, whole = positive(radius(r, d, "A slot"), "r"), positive(length, "length")
         if whole < 2 * size:
             raise invalid_parameter(
-                f"A slot is at least as long as wide: {whole:g} is below {2 * size:g}."
+                f"The length of a slot must be at least its width {2 * size:g}, not {whole:g}."
             )
         steps = -(-sides_around(4, segments, "segments") // 2)
         turned = unit_circle(2 * steps)[: steps + 1]
@@ -285,7 +288,9 @@ class Region(FlatSet):
         10.0
         """
         if not isinstance(regions, Iterable):
-            raise invalid_parameter(f"regions must be a list of them, not {shown(regions)}.")
+            raise invalid_parameter(
+                f"regions must be a list of Region objects, not {shown(regions)}."
+            )
         parts = [of_kind(Region, part, "Each part") for part in regions]
         if not parts:
             return cls()
@@ -521,9 +526,12 @@ class Region(FlatSet):
         UnboundedError
             If the map is not a lattice motion, and the region and its complement are unbounded.
         """
-        rows = doubles(matrix, invalid_parameter("A map of the plane is a matrix of numbers."))
+        rows = doubles(matrix, invalid_parameter("matrix must be an array of numbers."))
         if rows.shape not in ((3, 3), (2, 3)) or (len(rows) == 3 and list(rows[2]) != [0, 0, 1]):
-            raise invalid_parameter("A map of the plane is a (3, 3) or (2, 3) affine matrix.")
+            raise invalid_parameter(
+                "matrix must be an affine matrix of the plane, of shape (2, 3), or of shape (3,"
+                " 3) with the last row 0, 0, 1."
+            )
         wide = np.eye(4)
         wide[:2, [0, 1, 3]] = rows[:2]
         return self._placed(transform.matrix_factor(wide))
@@ -549,8 +557,9 @@ class Region(FlatSet):
         outside = ~self
         if not outside.is_bounded:
             raise UnboundedError(
-                "This region and its complement both reach to infinity; such a region can only be"
-                " moved by whole lattice steps, quarter turns and mirrors of the axes.",
+                "This region and its complement both reach to infinity, so it can only be"
+                " translated by whole lattice steps, rotated by quarter turns and mirrored at"
+                " the axes. Intersect it with a bounded region first.",
                 "unbounded",
             )
         return ~outside._placed(factor)
@@ -816,7 +825,10 @@ class Region(FlatSet):
         name = file_path(path)
         suffix = os.path.splitext(name)[1].lower()
         if suffix not in (".svg", ".dxf"):
-            message = f"{name}: a region is written as .svg or .dxf."
+            message = (
+                f"{name}: a region cannot be written in this format; choose a file name that ends"
+                " in .svg or .dxf."
+            )
             raise FormatError(message, "unknown_format")
         if suffix == ".svg":
             self.to_svg(path, **options)
@@ -863,14 +875,20 @@ class Region(FlatSet):
 
 def _moved_corners(points: FloatArray, given: Any) -> FloatArray:
     """Return the corners that a function returned, or raise an error if they are invalid."""
-    wrong = invalid_parameter(f"The function must return an array of shape {points.shape}.")
+    wrong = invalid_parameter(
+        "The function must return an array of numbers of the shape that it is given,"
+        f" {points.shape}."
+    )
     moved = doubles(given, wrong)
     if moved.shape != points.shape:
         raise wrong
     bad = np.flatnonzero(~np.isfinite(moved).all(axis=1))
     if len(bad):
         x, y = points[bad[0]].tolist()
-        message = f"The function returns no finite point for ({x:g}, {y:g})."
+        message = (
+            f"The function must return finite coordinates, but does not for the point ({x:g},"
+            f" {y:g})."
+        )
         raise invalid_parameter(message, bad[:20].tolist())
     return moved
 

@@ -36,7 +36,7 @@ def _painted(tree: "PartitionTree", eye: Any, direction: Any) -> IndexArray:
 
 def _viewpoint(tree: "PartitionTree", eye: Any, direction: Any) -> tuple[list[float], bool]:
     if (eye is None) == (direction is None):
-        raise invalid_parameter("Give either an eye or a direction.")
+        raise invalid_parameter("Give exactly one of eye and direction.")
     at_infinity = eye is None
     name = "direction" if at_infinity else "eye"
     refusal = invalid_parameter(f"The {name} must be {tree.dimension} numbers.")
@@ -107,7 +107,9 @@ def _traversed(
 def visit(tree: "PartitionTree", visitor: Visitor, order: Literal["pre", "in", "post"]) -> None:
     """Call ``visitor.node(node)`` or ``visitor.leaf(leaf)`` for each, in the order given."""
     if not (hasattr(visitor, "node") and hasattr(visitor, "leaf")):
-        raise invalid_parameter(f"visitor must have node() and leaf(), not {shown(visitor)}.")
+        raise invalid_parameter(
+            f"visitor must be an object with methods node() and leaf(), not {shown(visitor)}."
+        )
     for place in walk(tree, order):
         if isinstance(place, Leaf):
             visitor.leaf(place)

@@ -423,7 +423,10 @@ class PartitionTree:
         """Return the path of one ray through the tree, step by step, as `test_ray` follows it."""
         first, second = self._rays(origin, direction)
         if len(first) != 1:
-            raise invalid_parameter("A trace is that of one ray.")
+            raise invalid_parameter(
+                f"A trace is made for one ray only, but there are {len(first)} rays; pass one"
+                " origin and one direction."
+            )
         with core_errors():
             hit, rows = self.core.ray_events(_filled(first[0]), _filled(second[0]))
         if hit is None:
@@ -434,7 +437,10 @@ class PartitionTree:
         first = vector_rows(origins, self.dimension, "Origins")
         second = vector_rows(directions, self.dimension, "Directions")
         if len(first) != len(second) and 1 not in (len(first), len(second)):
-            raise invalid_parameter(f"There are {len(first)} origins and {len(second)} directions.")
+            raise invalid_parameter(
+                f"There are {len(first)} origins but {len(second)} directions; give equally many,"
+                " or one of either."
+            )
         first, second = np.broadcast_arrays(first, second)
         return np.ascontiguousarray(first), np.ascontiguousarray(second)
 
@@ -462,7 +468,10 @@ class PartitionTree:
         """
         corners, offsets = corners_of(facets)
         if corners.shape[1] != self.dimension:
-            message = f"The tree has dimension {self.dimension}, the facets {corners.shape[1]}."
+            message = (
+                f"The facets have dimension {corners.shape[1]}, but the tree has dimension"
+                f" {self.dimension}."
+            )
             raise invalid_parameter(message)
         options = core_options(seed, sample, alpha, 0, self.pitch)
         name = checked_policy(policy)
@@ -616,7 +625,7 @@ def _restored(kind: type[PartitionTree], parts: Any, margin: float | None) -> Pa
 
 
 def _cut_rows(cuts: Any) -> IndexArray:
-    message = "Cuts are rows of two whole numbers, one for each node."
+    message = "cuts must be an integer array of shape (n, 2), with one row for each node."
     rows = doubles(cuts, invalid_parameter(message))
     if rows.size % 2 or not (np.isfinite(rows) & (rows == np.trunc(rows))).all():
         raise invalid_parameter(message)
@@ -637,7 +646,9 @@ def _place(of: Node | Leaf | None) -> tuple[int | None, int]:
     if isinstance(of, Node):
         return of.index, 0
     if not isinstance(of, Leaf):
-        raise invalid_parameter(f"region takes a node or a leaf, not {shown(of)}.")
+        raise invalid_parameter(
+            f"The argument of region must be a Node or a Leaf, not {shown(of)}."
+        )
     sides: dict[Side, int] = {"minus": -1, "plus": 1}
     return (None, 0) if of.parent is None else (of.parent.index, sides[of.side])
 

@@ -344,6 +344,6 @@ fn running(outlines: &Outlines, stops: &Stops) -> (Vec<Running>, Vec<u32>) {
 }
 
 fn not_closed() -> Error {
-    let text = "the outlines do not close: their winding numbers contradict each other";
+    let text = "the outlines are not closed: their winding numbers are inconsistent";
     Error::new(ErrorKind::NotClosed, text)
 }

@@ -139,12 +139,13 @@ fn given<S: Affine>(
         NodeCut::Axis { axis, at } => S::axis_cut(axis, at),
         NodeCut::Own(number) => own.get(number as usize).cloned(),
     };
-    let hyperplane = hyperplane.ok_or_else(|| unsuited("a cut's facet is not in its region"))?;
+    let hyperplane =
+        hyperplane.ok_or_else(|| unsuited("the facet of a cut does not lie in its region"))?;
     Ok((cut, hyperplane, Reason::Given))
 }
 
 fn unsuited(why: &str) -> Error {
-    let text = format!("the stored cuts do not suit the facets: {why}");
+    let text = format!("the stored cuts do not fit the facets: {why}");
     Error::new(ErrorKind::BadSnapshot, text)
 }
 
@@ -187,7 +188,9 @@ fn asked<S: Affine>(
         Answer::Candidate(place) => {
             let place = shown.get(place).ok_or_else(|| {
                 let count = shown.len();
-                let text = format!("the policy chose candidate {place} of {count}");
+                let text = format!(
+                    "the policy chose candidate {place}, but there are only {count} candidates"
+                );
                 Error::new(ErrorKind::IndexOutOfRange, text)
             })?;
             Ok(supporting(&pieces[*place], Reason::Asked))
@@ -195,7 +198,7 @@ fn asked<S: Affine>(
         Answer::Hyperplane(cut) => {
             if Tally::of(pieces, &cut).larger() >= pieces.len() {
                 let text = "the policy chose a hyperplane that leaves all facets of a region on \
-                            one side, or cuts each of them; nothing would be gained";
+                            one side, or cuts each of them; choose one that separates them";
                 return Err(Error::new(ErrorKind::BadNormal, text));
             }
             own.push(cut.clone());
