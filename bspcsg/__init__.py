@@ -21,8 +21,9 @@ with _Quietly():
         import_module("._core", __name__)
     except ModuleNotFoundError:
         raise ImportError(
-            f"{__path__[0]} holds the sources of bspcsg, without the compiled core. To use what is"
-            " installed, run Python in another folder; to compile the core here, run scripts/setup."
+            f"{__path__[0]} contains the source code of bspcsg without its compiled core. Run"
+            " Python in another folder to use the installed package, or run scripts/setup to"
+            " compile the core here."
         ) from None
 
     import sys as _sys

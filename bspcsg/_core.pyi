@@ -49,7 +49,7 @@ class CoreError(Exception):
     code: str
     where: list[int]
     message: str
-    # Of defects only, for the report: what was called on what.
+    # Only for defects: the call of the core and its inputs, for the report.
     call: str
     inputs: dict[str, object]
 

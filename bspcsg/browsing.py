@@ -18,12 +18,15 @@ def has_screen() -> bool:
 def opened(address: str) -> str:
     """Open a page in a browser; return an empty text, or the reason why that failed."""
     if not has_screen():
-        return "there is no screen here; open the page in a browser yourself."
+        return (
+            "no browser was opened, because this machine has no display; open the page in a"
+            " browser yourself."
+        )
     import webbrowser
 
     if webbrowser.open(address):
         return ""
-    return "no browser could be started; open the page yourself."
+    return "no browser could be started; open the page in a browser yourself."
 
 
 def temporary_page(stem: str) -> Path:

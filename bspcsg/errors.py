@@ -150,9 +150,9 @@ _ADVICE = {
     "not_closed": "Before making a solid, close the holes and orient the faces consistently.",
     "empty_mesh": "A mesh without faces is no solid; use Solid.empty() for the empty set.",
     "degenerate": "Leave it out, or choose a finer pitch if it is only very small.",
-    "non_planar": "Pass triangles, or non_planar='triangulate' to have it taken apart.",
-    "not_simple": "Give the outline of a simple polygon.",
-    "not_reduced": "Make the solid without trusted=True; then it is united with itself.",
+    "non_planar": "Pass triangles, or non_planar='triangulate' to divide it into triangles.",
+    "not_simple": "Give an outline that does not cross or touch itself.",
+    "not_reduced": "Make the solid without trusted=True, so that its overlaps are resolved.",
     "too_large": "Choose a coarser pitch (for example pitch=-6), or move or scale the solids.",
     "too_small": "Choose a finer pitch (for example pitch=-12), or scale the solid up.",
 }
@@ -210,7 +210,7 @@ def format_errors(name: str, what: str) -> Iterator[None]:
         raise
     except Exception as error:
         reason = f"{type(error).__name__}: {words_of(error)}"
-        message = f"{name}: this file cannot be read as {what} ({reason})."
+        message = f"{name}: the file cannot be read as {what} ({reason})."
         raise FormatError(message, "malformed") from error
 
 
@@ -226,7 +226,7 @@ class _CoreErrors:
         if isinstance(error, _CoreError):
             raise from_core(error) from error
         if isinstance(error, _PanicException):
-            raise internal(f"a panic: {error}") from error
+            raise internal(f"the compiled core failed: {error}") from error
 
 
 _CORE_ERRORS = _CoreErrors()
@@ -240,7 +240,7 @@ def core_errors() -> AbstractContextManager[None]:
 def held(value: _Value | None, name: str) -> _Value:
     """Return a value that cannot be None; raise `InternalError` if it is None."""
     if value is None:
-        raise internal(f"{name} is missing")
+        raise internal(f"the internal value “{name}” is missing")
     return value
 
 
@@ -274,7 +274,9 @@ def invalid_parameter(message: str, where: Sequence[int] = ()) -> InvalidParamet
 
 def missing_part(part: str, purpose: str, remedy: str) -> MissingPartError:
     """Return the error for a missing dependency, with its purpose and an installing command."""
-    return MissingPartError(f"{part} is needed {purpose}. Try: {remedy}", "missing_part")
+    return MissingPartError(
+        f"{part} is needed {purpose}, but is missing or incomplete. Try: {remedy}", "missing_part"
+    )
 
 
 @dataclass(frozen=True)

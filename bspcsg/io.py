@@ -103,13 +103,18 @@ def loads(data: Any, suffix: str | None, **options: Any) -> Solid:
     named = f".{text_value('' if suffix is None else suffix, 'suffix').lower().removeprefix('.')}"
     if named not in FORMATS:
         known = ", ".join(name[1:] for name in sorted(FORMATS))
-        message = f"To read bytes, say their format: one of {known}, not {shown(suffix)}."
+        message = (
+            f"To read bytes, suffix must name their format, one of {known}, not {shown(suffix)}."
+        )
         raise FormatError(message, "unknown_format")
     content = data.read() if hasattr(data, "read") else data
     if isinstance(content, (bytearray, memoryview)):
         content = bytes(content)
     if not isinstance(content, bytes):
-        raise FormatError("A mesh is read from bytes; open the file with mode 'rb'.", "unreadable")
+        raise FormatError(
+            "The file gives text instead of bytes; open it in binary mode, with open(path, 'rb').",
+            "unreadable",
+        )
     name = getattr(data, "name", None)
     called = name if isinstance(name, str) else "<bytes>"
     files: dict[str, bytes] | None = None if _is_on_disk(data) else {}

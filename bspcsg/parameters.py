@@ -71,7 +71,7 @@ def number(value: Any, name: str) -> float:
     except (TypeError, ValueError, OverflowError) as error:
         raise invalid_parameter(f"{name} must be a number, not {shown(value)}.") from error
     if not math.isfinite(result):
-        raise invalid_parameter(f"{name} must be finite, not {result}.")
+        raise invalid_parameter(f"{name} must be a finite number, not {result}.")
     return result
 
 
@@ -92,7 +92,7 @@ def not_negative(value: Any, name: str) -> float:
     """Check that a parameter is a finite number of at least 0, and return it as a float."""
     result = number(value, name)
     if result < 0:
-        raise invalid_parameter(f"{name} must not be below 0, but is {result:g}.")
+        raise invalid_parameter(f"{name} must be at least 0, not {result:g}.")
     return result
 
 
@@ -105,7 +105,7 @@ def seconds(value: Any, name: str) -> float | None:
         return None
     time = positive(value, name)
     if time > MAX_SECONDS:
-        message = f"{name} must be {MAX_SECONDS} at most, or None, not {time:g}."
+        message = f"{name} must be None or at most {MAX_SECONDS} seconds, not {time:g}."
         raise invalid_parameter(message)
     return time
 
@@ -115,7 +115,7 @@ def at_least(least: int, value: Any, name: str) -> int:
     result = _whole(value, name)
     if result is None or result < least:
         raise invalid_parameter(
-            f"{name} must be a whole number from {least} on, not {shown(value)}."
+            f"{name} must be an integer of at least {least}, not {shown(value)}."
         )
     return result
 
@@ -141,8 +141,8 @@ def sides_around(least: int, value: Any, name: str) -> int:
     count = at_least(least, value, name)
     if count > MAX_SEGMENTS:
         message = (
-            f"{name} must be {MAX_SEGMENTS} at most, not {shown(count)}: more sides are no"
-            " rounder, for corners lie on a lattice."
+            f"{name} must be at most {MAX_SEGMENTS}, not {shown(count)}; more segments would"
+            " not make the shape rounder, because corners are rounded to the lattice."
         )
         raise LimitError(message, "too_many")
     return count
@@ -155,8 +155,8 @@ def refuse_many_corners(count: float, what: str) -> None:
     """
     if count > MAX_CORNERS:
         amount = f"{count:.0f}" if count < _MAX_COUNT_SHOWN else "far too many"
-        message = f"{what} would have {amount} corners, and {MAX_CORNERS} are the most."
-        raise LimitError(f"{message} Choose fewer sides.", "too_many")
+        message = f"{what} would have {amount} corners, and at most {MAX_CORNERS} are allowed."
+        raise LimitError(f"{message} Choose fewer sides or segments.", "too_many")
 
 
 def truth_value(value: Any, name: str) -> bool:
@@ -186,10 +186,10 @@ def radius(r: Any, d: Any, owner: str, *, default: Any = None) -> Any:
         If both are given, or if neither is given and there is no default.
     """
     if r is not None and d is not None:
-        raise invalid_parameter("Give a radius or a diameter, not both.")
+        raise invalid_parameter("Both a radius and a diameter are given; give one of them.")
     found = default if r is None and d is None else r if d is None else not_negative(d, "d") / 2
     if found is None:
-        raise invalid_parameter(f"{owner} needs r, or d.")
+        raise invalid_parameter(f"{owner} needs a radius or a diameter.")
     return found
 
 
@@ -200,7 +200,9 @@ def pair(value: Any, name: str) -> tuple[Any, Any]:
     except TypeError:
         return value, value
     if len(entries) != 2:
-        raise invalid_parameter(f"{name} must be one number or two, not {shown(value)}.")
+        raise invalid_parameter(
+            f"{name} must be one number or a pair of numbers, not {shown(value)}."
+        )
     return entries
 
 
@@ -209,24 +211,26 @@ def file_path(value: Any, name: str = "path") -> str:
     try:
         path = os.fspath(value)
     except TypeError as error:
-        raise invalid_parameter(f"{name} must name a file, not {shown(value)}.") from error
+        raise invalid_parameter(
+            f"{name} must be a file name or path, not {shown(value)}."
+        ) from error
     if isinstance(path, str):
         return path
-    raise invalid_parameter(f"{name} must be a text or a path, not {shown(value)}.")
+    raise invalid_parameter(f"{name} must be a file name as str or path, not {shown(value)}.")
 
 
 def text_value(value: Any, name: str) -> str:
     """Check that a parameter is a text, and return it as a plain `str`."""
     if isinstance(value, str):
         return str(value)
-    raise invalid_parameter(f"{name} must be a text, not {shown(value)}.")
+    raise invalid_parameter(f"{name} must be a str, not {shown(value)}.")
 
 
 def texts(value: Any, name: str) -> list[str]:
     """Check that a parameter is an iterable of texts, not a single text, and return a list."""
     if isinstance(value, (str, bytes)) or not isinstance(value, Iterable):
-        raise invalid_parameter(f"{name} must be a list of texts, not {shown(value)}.")
-    return [text_value(entry, f"each of {name}") for entry in value]
+        raise invalid_parameter(f"{name} must be a list of str, not {shown(value)}.")
+    return [text_value(entry, f"each entry of {name}") for entry in value]
 
 
 def values_by_name(value: Any, name: str) -> dict[str, Any]:
@@ -234,7 +238,7 @@ def values_by_name(value: Any, name: str) -> dict[str, Any]:
     if value is None:
         return {}
     if not isinstance(value, Mapping):
-        raise invalid_parameter(f"{name} must be a dict of values by name, not {shown(value)}.")
+        raise invalid_parameter(f"{name} must be a dict from names to values, not {shown(value)}.")
     return {text_value(key, f"each name in {name}"): entry for key, entry in value.items()}
 
 
@@ -267,8 +271,9 @@ def no_options(options: Mapping[str, Any], solid: object) -> None:
     if options:
         given = ", ".join(options)
         raise invalid_parameter(
-            f"{given}: says how a mesh is read, but this {type(solid).__name__} is a solid. "
-            "Give it where the solid is made, or pass the mesh of the solid instead."
+            f"{given} can only be given when a mesh is read, but the argument already is a"
+            f" solid, of type {type(solid).__name__}. Pass these options where the solid is"
+            " made, or pass its mesh instead."
         )
 
 
@@ -285,7 +290,8 @@ def pitch_exponent(value: Any) -> int:
     result = _whole(value, "pitch")
     if result is None:
         raise invalid_parameter(
-            f"pitch is the exponent of ten of the lattice step, a whole number, not {shown(value)}."
+            "pitch must be an integer, the exponent of ten of the lattice step, not"
+            f" {shown(value)}."
         )
     if abs(result) > MAX_PITCH:
         raise LimitError(
@@ -304,7 +310,7 @@ def thread_count(value: Any) -> int:
     result = _whole(value, "threads")
     if result is None or not 0 <= result <= MAX_THREADS:
         raise invalid_parameter(
-            f"threads must be a whole number from 0 to {MAX_THREADS}, not {shown(value)}."
+            f"threads must be an integer from 0 to {MAX_THREADS}, not {shown(value)}."
         )
     return result
 
@@ -331,7 +337,7 @@ def winding_rule(value: Any) -> "WindingRule":
         if isinstance(value, str) and value == rule:
             return rule
     known = ", ".join(_WINDING_RULES)
-    raise invalid_parameter(f"Unknown winding rule {shown(value)}; there are {known}.")
+    raise invalid_parameter(f"Unknown winding rule {shown(value)}; known are {known}.")
 
 
 def _whole(value: Any, name: str) -> int | None:
@@ -350,7 +356,7 @@ def shown(value: Any) -> str:
     try:
         text = repr(value)
     except ValueError:  # an integer of thousands of digits
-        return "a number of thousands of digits"
+        return "an integer with thousands of digits"
     return (
         text
         if len(text) <= _MAX_VALUE_CHARACTERS

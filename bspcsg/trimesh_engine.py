@@ -57,8 +57,8 @@ def register(default: bool = False) -> None:
     available = getattr(trimesh.boolean, "engines_available", None)
     if not isinstance(engines, dict) or not isinstance(available, set):
         message = (
-            f"trimesh {trimesh.__version__} keeps no table of boolean engines to register in."
-            " Try: pip install 'trimesh>=5,<6'"
+            f"trimesh {trimesh.__version__} has no registry of boolean engines, so bspcsg"
+            " cannot be registered. Try: pip install 'trimesh>=5,<6'"
         )
         raise MissingPartError(message, "missing_part")
     engines[NAME] = boolean
@@ -104,7 +104,7 @@ def boolean(
     given: list[Any] = list(meshes)
     if operation not in _KNOWN:
         known = ", ".join(_KNOWN)
-        message = f"Unknown operation {operation!r}; this engine has {known}."
+        message = f"Unknown operation {operation!r}; known are {known}."
         raise invalid_parameter(message + question(operation, _KNOWN))
     if operation == "difference" and len(given) < 2:
         raise invalid_parameter("A difference needs at least two meshes.")
@@ -122,6 +122,6 @@ def _refuse_surfaces(meshes: list[Any]) -> None:
     if bad:
         which = ", ".join(map(str, bad))
         raise invalid_parameter(
-            f"Not all meshes are volumes: number {which} (from 0) is open, inconsistently oriented"
-            " or inside out; check_volume=False goes on if it is closed."
+            "These meshes (counted from 0) are open, inconsistently oriented or inside out:"
+            f" {which}. If they are closed, check_volume=False allows them."
         )

@@ -179,11 +179,15 @@ def _part(one: ExaminedObject) -> Part:
 def _clash_finding(clashes: Sequence[Clash]) -> Iterator[Finding]:
     if clashes:
         first = clashes[0]
-        pairs = "1 pair of objects has" if len(clashes) == 1 else f"{len(clashes)} pairs have"
+        pairs = (
+            "1 pair of objects has"
+            if len(clashes) == 1
+            else f"{len(clashes)} pairs of objects have"
+        )
         place = "({:.6g}, {:.6g}, {:.6g})".format(*first.place.tolist())
         message = (
-            f"{pairs} volume in common; the first “{first.first}” and “{first.second}”,"
-            f" {first.volume:.6g} near {place}"
+            f"{pairs} volume in common; the first pair is “{first.first}” and"
+            f" “{first.second}”, with a common volume of {first.volume:.6g} near {place}"
         )
         yield Finding("clash", "warning", message, (), len(clashes))
 

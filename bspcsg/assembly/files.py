@@ -133,23 +133,37 @@ def _written(assembly: Assembly, path: str | os.PathLike[str], suffix: str) -> t
         return (*write(whole, path), *_left_out(lost, suffix))
     form = form_of(path)
     if suffix not in _TREES:
-        message = f"{os.fspath(path)}: assemblies are written as 3MF, GLB, OBJ and .csg."
+        message = (
+            f"{os.fspath(path)}: an assembly cannot be written in this format; choose a file name"
+            " that ends in .3mf, .glb, .obj or .csg."
+        )
         raise FormatError(message, "unknown_format")
     describing = _Describing(form)
     try:
         scene = describing.node(assembly, None)
     except OverflowError:
-        message = f"{os.fspath(path)}: coordinates are beyond single precision; write 3MF."
+        message = (
+            f"{os.fspath(path)}: a coordinate is too large for the single-precision numbers of"
+            " this format; write 3MF instead."
+        )
         raise FormatError(message, "too_large") from None
     if scene is None:
-        raise FormatError(f"{os.fspath(path)}: no part of the assembly has volume.", "empty")
+        raise FormatError(
+            f"{os.fspath(path)}: the assembly is not written, because none of its parts has a"
+            " volume.",
+            "empty",
+        )
     given = scene
     scene = _As3mf().node(scene) if suffix == ".3mf" else glb.as_written(scene)
 
     def prove(file: BinaryIO) -> None:
         found = _decoded(os.fspath(path), file.read(), suffix)
         if not are_alike(scene, found) or (suffix == ".3mf" and not say_alike(scene, found)):
-            message = f"{os.fspath(path)}: the file that was written is not the assembly."
+            message = (
+                f"{os.fspath(path)}: the written file was discarded, because it differs from the"
+                " assembly when it is read back. The disk may be at fault; if it happens again,"
+                " please report it."
+            )
             raise FormatError(message, "write_mismatch")
 
     write_file(path, _TREES[suffix][1](scene), prove)
@@ -167,7 +181,7 @@ def _densities(assembly: Assembly) -> tuple[Finding, ...]:
     count = sum(part.density is not None for part in assembly.parts)
     if not count:
         return ()
-    message = f"files have no room for densities; those of {count} parts were left out."
+    message = f"mesh files cannot store densities; the densities of {count} parts were left out."
     return (Finding("densities_left_out", "warning", message, (), count),)
 
 

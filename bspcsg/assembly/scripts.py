@@ -96,5 +96,5 @@ def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...
     count = sum(bool(part.name) for part in assembly.parts)
     if not count:
         return lost
-    message = f"scripts have no names; those of {count} parts were left out."
+    message = f".csg scripts cannot store part names; the names of {count} parts were left out."
     return (*lost, Finding("names_left_out", "warning", message, (), count))

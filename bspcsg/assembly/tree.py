@@ -118,7 +118,10 @@ class Assembly(Movable):
         self.factors: Factors = ()
         self._depth: int = 1 + max((child._depth for child in children), default=0)
         if self._depth > _MAX_DEPTH:
-            raise invalid_parameter(f"Assemblies lie in one another at most {_MAX_DEPTH} deep.")
+            raise invalid_parameter(
+                f"The assembly is nested {self._depth} levels deep, and at most {_MAX_DEPTH} are"
+                " allowed; use fewer levels."
+            )
 
     def _with(self, **changes: Any) -> "Assembly":
         other = object.__new__(Assembly)
@@ -171,7 +174,10 @@ class Assembly(Movable):
         found = found or [part for part in self.parts if part.name == path]
         if len(found) != 1:
             known = ", ".join(part.path for part in self.parts)
-            raise KeyError(f"{len(found)} parts are called “{path}”; there are {known}")
+            raise KeyError(
+                f"{len(found)} parts have the path or name “{path}”, but exactly one must; the"
+                f" known paths are {known}"
+            )
         return found[0]
 
     def __repr__(self) -> str:
@@ -330,7 +336,8 @@ def moved(solid: Solid, factors: Factors) -> Solid:
 def _children(content: Any) -> tuple[Assembly, ...]:
     if not isinstance(content, Iterable):
         raise invalid_parameter(
-            f"An assembly is made of a Solid or of several, not {shown(content)}."
+            "The content of an assembly must be a Solid, an Assembly or a list of these, not"
+            f" {shown(content)}."
         )
     return tuple(map(_as_assembly, content))
 

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from .._types import BoolArray, FloatArray, IndexArray
 from ..errors import InvalidMeshError
 from ..geometry.arrays import is_masked
+from ..parameters import shown
 from .colours import COLOR, colors_of, in_bytes
 from .material import Material
 
@@ -308,7 +309,10 @@ class Given:
         names = [name for kind in KINDS for name in found[kind]]
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
-            raise _refused(f"“{twice[0]}” is given for two of vertices, corners and faces.")
+            raise _refused(
+                f"the attribute “{twice[0]}” is given twice, for different ones of vertices,"
+                " corners and faces; rename one of them."
+            )
         own = faces.copy()
         own.flags.writeable = False
         return Attributes(own, **found, materials=materials)
@@ -318,10 +322,13 @@ def _named(given: Mapping[str, Any] | None, kind: Kind) -> list[tuple[str, Any]]
     if given is None:
         return []
     if not isinstance(given, Mapping):
-        raise _refused(f"{kind}_attributes must be a dictionary of arrays by their names.")
+        raise _refused(
+            f"{kind}_attributes must be a dictionary from attribute names to arrays, not"
+            f" {shown(given)}."
+        )
     for name in given:
         if not isinstance(name, str) or not name:
-            raise _refused(f"an attribute's name is text, not {name!r}.")
+            raise _refused(f"the name of an attribute must be a non-empty string, not {name!r}.")
     return list(given.items())
 
 
@@ -331,18 +338,26 @@ def array_of(values: Any, name: str) -> Values:
     Raise `InvalidMeshError` if they are masked or cannot form an array.
     """
     if is_masked(values):
-        raise _refused(f"“{name}” has values that are masked out.")
+        raise _refused(
+            f"the attribute “{name}” is a masked array with masked values; fill them before you"
+            " pass it."
+        )
     try:
         return np.array(values, order="C")
     except ValueError as error:
-        raise _refused(f"the values of “{name}” are no array: {error}.") from error
+        raise _refused(
+            f"the values of the attribute “{name}” do not form an array: {error}."
+        ) from error
 
 
 def _array(values: Any, name: str, kind: Kind, shape: tuple[int, ...]) -> Values:
     array = _colors(values, shape) if name == COLOR else array_of(values, name)
     if array.dtype.kind not in _TYPES:
-        allowed = "truth values, whole numbers, floats and text"
-        raise _refused(f"“{name}” holds values of type {array.dtype}; there may be {allowed}.")
+        allowed = "bool, integers, floats and strings"
+        raise _refused(
+            f"the attribute “{name}” has the unsupported dtype {array.dtype}; supported are"
+            f" {allowed}."
+        )
     if array.shape[: len(shape)] != shape:
         wanted = ", ".join(map(str, shape))
         raise _refused(
@@ -371,10 +386,12 @@ def _colors(given: Any, shape: tuple[int, ...]) -> Values:
 
 def _materials(given: Mapping[str, Material] | None) -> Mapping[str, Material]:
     if given is not None and not isinstance(given, Mapping):
-        raise _refused("materials are given by a mapping of their names.")
+        raise _refused("materials must be a mapping from names to bspcsg.Material objects.")
     for name, material in (given or {}).items():
         if not isinstance(material, Material):
-            raise _refused(f"the material “{name}” is no bspcsg.Material.")
+            raise _refused(
+                f"the material “{name}” must be a bspcsg.Material, not {shown(material)}."
+            )
     return dict(given or {})
 
 

@@ -349,13 +349,15 @@ def common_type(name: str, parts: Sequence[Values], depth: int) -> np.dtype[Any]
     if len(shapes) > 1:
         told = " and ".join(map(str, shapes))
         message = (
-            f"Attributes: “{name}” has values of shapes {told} in different operands; rename one,"
-            " or give both the same."
+            f"Attributes: “{name}” has values of shapes {told} in different operands; rename"
+            " one attribute, or give both the same shape."
         )
         raise InvalidMeshError(message, "attributes")
     if len({part.dtype.kind == "U" for part in parts}) > 1:
         raise InvalidMeshError(
-            f"Attributes: “{name}” is text in one operand and numbers in another.", "attributes"
+            f"Attributes: “{name}” is text in one operand and numbers in another; rename one"
+            " attribute, or give both the same type.",
+            "attributes",
         )
     return np.result_type(*(part.dtype for part in parts))
 

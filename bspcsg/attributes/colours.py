@@ -228,6 +228,6 @@ def hexadecimal(color: Sequence[float]) -> str:
 
 def _refused(given: Any, name: str) -> InvalidParameterError:
     return invalid_parameter(
-        f"The {name} must be like 'orange', '#3070b0', or three or four numbers: floats from 0 to 1"
-        f" or whole numbers from 0 to 255; not {shown(given)}."
+        f"The {name} must be a colour name or code such as 'orange' or '#3070b0', or three or"
+        f" four numbers (floats from 0 to 1 or integers from 0 to 255), not {shown(given)}."
     )

@@ -32,7 +32,10 @@ class Material:
         object.__setattr__(self, "texture", texture)
         is_picture = isinstance(texture, bytes) and self.media is not None
         if texture is not None and not is_picture:
-            raise InvalidMeshError("A texture is a PNG or JPEG file, as bytes.", "attributes")
+            raise InvalidMeshError(
+                "The texture of a material must be the contents of a PNG or JPEG file, as bytes.",
+                "attributes",
+            )
 
     @property
     def media(self) -> str | None:

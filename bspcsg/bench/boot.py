@@ -15,7 +15,9 @@ def put_in_place(core: str) -> None:
     name = "bspcsg._core"
     spec = spec_from_file_location(name, core, loader=ExtensionFileLoader(name, core))
     if spec is None or spec.loader is None:
-        raise ImportError(f"{core} is no compiled module")
+        raise ImportError(
+            f"{core} is not a compiled Python module; pass the compiled core of bspcsg"
+        )
     module = module_from_spec(spec)
     sys.modules[name] = module
     spec.loader.exec_module(module)

@@ -147,7 +147,7 @@ class _Manifold(Engine):
     def _refuse_errors(self, solid: Any) -> None:
         status = solid.status()
         if status != self._package.Error.NoError:
-            raise EngineError(f"manifold3d says {status.name}")
+            raise EngineError(f"manifold3d reports the status {status.name}")
 
 
 class _Trueform(Engine):
@@ -237,7 +237,7 @@ class _Meshlib(_OfArrays):
     def _combined(self, first: Any, second: Any, kind: Any) -> Any:
         result = self._package.boolean(first, second, kind)
         if not result.valid():
-            raise EngineError(f"meshlib says: {result.errorString}")
+            raise EngineError(f"meshlib reports: {result.errorString}")
         return result.mesh
 
     def volume(self, solid: Any) -> float:

@@ -75,7 +75,15 @@ def plot(record: dict[str, Any]) -> str:
     """
     lines = _lines_of(record)
     if not lines:
-        return _svg([_text(_LEFT, _TOP, f"The record holds no times of the case {_CASE}.")])
+        return _svg(
+            [
+                _text(
+                    _LEFT,
+                    _TOP,
+                    f"The record has no times of the case {_CASE}; run bspcsg bench {_CASE}.",
+                )
+            ]
+        )
     points = [point for line in lines for point in line.points]
     across = _Scale.around([size for size, _ in points], _LEFT, _RIGHT)
     upwards = _Scale.around([seconds for _, seconds in points], _BOTTOM, _TOP)

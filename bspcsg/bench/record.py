@@ -68,9 +68,12 @@ def read(path: Path) -> dict[str, Any]:
     except (ValueError, RecursionError):
         record = None
     if not isinstance(record, dict) or record.get("type") != "bench":
-        message = f"{path}: this is no record; bspcsg bench -o writes such files."
+        message = (
+            f"{path}: the file is not a record of measurements; give a file that bspcsg bench -o"
+            " wrote."
+        )
         raise FormatError(message, "unreadable")
     if record.get("schema") != SCHEMA:
-        said = f"schema {record.get('schema')}, and this version reads {SCHEMA}"
+        said = f"the record has schema {record.get('schema')}, but this version reads {SCHEMA} only"
         raise FormatError(f"{path}: {said}; measure it again.", "unreadable")
     return record

@@ -226,10 +226,15 @@ def _parsed(line: str, path: Path, number: int) -> dict[str, Any]:
         found = None
     known = isinstance(found, dict) and found.get("type") in ("run", "case")
     if not known or (found["type"] == "case" and not isinstance(found.get("key"), str)):
-        message = f"{path}:{number}: this is no line of a results file."
-        raise FormatError(f"{message} bspcsg crosscheck --results writes such files.", "malformed")
+        message = f"{path}:{number}: this line is not a record of a results file."
+        raise FormatError(
+            f"{message} Give a file that bspcsg crosscheck --results wrote.", "malformed"
+        )
     if found.get("schema") != SCHEMA:
-        message = f"{path}:{number}: schema {found.get('schema')!r}, but {SCHEMA} is known."
+        message = (
+            f"{path}:{number}: the record has schema {found.get('schema')!r}, but this version"
+            f" reads {SCHEMA} only; run bspcsg crosscheck again."
+        )
         raise FormatError(message, "unknown_schema")
     return cast(dict[str, Any], found)
 
@@ -293,7 +298,10 @@ class Journal:
         with self.path.open("r+b") as file:
             start = file.read(len(_START))
             if start != _START[: len(start)]:
-                message = f"{self.path}: this is no results file, so nothing is added to it."
+                message = (
+                    f"{self.path}: this existing file is not a results file of bspcsg crosscheck,"
+                    " so nothing is appended to it; choose another name."
+                )
                 raise FormatError(message, "unwritable")
             size = file.seek(0, os.SEEK_END)
             file.truncate(_end_of_last_line(self.path, size))

@@ -49,7 +49,7 @@ def targets_of(
         If no output is given, two files have the same output, or an output would replace an input.
     """
     if (target is None) == (outdir is None):
-        raise click.UsageError("say where to write: either -o FILE or --outdir DIR.")
+        raise click.UsageError("no output is given; add either -o FILE or --outdir DIR.")
     if outdir is not None:
         pairs = [
             (path, outdir / f"{_stem(path)}{suffix or _own(path, keeps_format)}") for path in files
@@ -60,7 +60,8 @@ def targets_of(
         return [(path, target) for path in files]
     elif "%" not in target.name:
         raise click.UsageError(
-            "for several inputs, -o needs a % for their names, as in 'web/%.glb'; or say --outdir."
+            "with several inputs, the name in -o must contain a % for the name of each input,"
+            " as in 'web/%.glb'; or give --outdir DIR."
         )
     else:
         pairs = [(path, expanded(target, _stem(path))) for path in files]
@@ -71,7 +72,7 @@ def targets_of(
 def _own(path: Path, keeps_format: bool) -> str:
     """Return the suffix of an input for its output; raise a usage error if it cannot be used."""
     if not keeps_format or str(path) == STREAM or path.suffix.lower() in SUFFIXES:
-        raise click.UsageError("--outdir needs the format: --to glb.")
+        raise click.UsageError("--outdir needs the output format, such as --to glb.")
     return path.suffix
 
 
@@ -85,9 +86,15 @@ def _refuse_twins(pairs: Sequence[tuple[Path, Path]]) -> None:
     for path, where in pairs:
         other = inputs.get(where.resolve(), path)
         if other.resolve() != path.resolve():
-            raise click.UsageError(f"{path} would be written to {where}, which is an input, too.")
+            raise click.UsageError(
+                f"the result of {path} would overwrite {where}, which is also an input; choose"
+                " another output."
+            )
         if where in seen:
-            raise click.UsageError(f"{seen[where]} and {path} would both be written to {where}.")
+            raise click.UsageError(
+                f"the results of {seen[where]} and {path} would both be written to {where}; rename"
+                " one input, or convert them separately."
+            )
         seen[where] = path
 
 

@@ -78,16 +78,23 @@ class Drawing(ABC):
         if form is not None:
             suffix = f".{form.lower().removeprefix('.')}"
             if suffix not in self._suffixes:
-                raise click.UsageError(f"--to: {form!r} cannot be drawn; it takes {known}.")
+                raise click.UsageError(f"--to: {form!r} is not a drawing format; use {known}.")
         elif is_dropped(self.target):
             suffix = self._suffixes[0]
         elif self._is_stream:
-            raise click.UsageError(f"to write to standard output, say the format: --to {known}.")
+            raise click.UsageError(
+                f"to write to standard output, give the format with --to {known}."
+            )
         else:
             suffix = self.target.suffix.lower()
         if self._is_stream and self.settings["as_json"]:
-            raise click.UsageError("--json and a drawing cannot both go to standard output.")
+            raise click.UsageError(
+                "--json and a drawing cannot both go to standard output; give -o a file name, or"
+                " leave out --json."
+            )
         if suffix not in self._suffixes:
-            message = f"{shown(self.target)}: the name must end in {known}."
+            message = (
+                f"{shown(self.target)}: the format is unknown; the output name must end in {known}."
+            )
             raise FormatError(message, "unknown_format")
         return suffix

@@ -124,7 +124,10 @@ class Job(ABC):
         self._noticed = result.normalized().findings
         simple = result.simplify(self.settings["tolerance"])
         if simple is result:
-            self.out.note(f"{shown(self.target.path)}: nothing to simplify within the tolerance")
+            self.out.note(
+                f"{shown(self.target.path)}: no edge or triangle is small enough to be simplified"
+                " within the tolerance"
+            )
             self._noticed = ()
         else:
             mesh = self._mesh_of(simple)
@@ -139,8 +142,8 @@ class Job(ABC):
         mesh = result.normalized().to_mesh()
         if len(mesh.faces) == 0 and not self.settings["allow_empty"]:
             raise output.EmptyResultError(
-                f"{shown(self.target.path)}: nothing is left, so nothing was written;"
-                " say --allow-empty if that is meant.",
+                f"{shown(self.target.path)}: the result is empty, so nothing was written;"
+                " --allow-empty writes an empty file.",
                 "empty_result",
             )
         return mesh

@@ -99,11 +99,12 @@ class _Verbs(click.Group):
         known = {*_VERBS, *_ALIASES}
         if args and args[0] not in known and not args[0].startswith("-"):
             asks = question(args[0], _VERBS)
-            raise click.UsageError(f"there is no verb {args[0]!r}.{asks}", ctx)
+            raise click.UsageError(f"there is no command {args[0]!r}.{asks}", ctx)
         if args and args[0] in _FORMER and not terminal.QUIET.intersection(ctx.obj or ()):
             terminal.say(
                 "note",
-                f"{args[0]} is called {_ALIASES[args[0]]} now; the old name will be removed later.",
+                f"{args[0]} is now called {_ALIASES[args[0]]}; the old name will be removed"
+                " later, so use the new one.",
             )
         return super().resolve_command(ctx, args)
 
@@ -248,5 +249,8 @@ def _failed(error: Exception, as_json: bool) -> int:
     if isinstance(error, OSError) and error.errno in _NO_ROOM:
         return output.tell_error(_unwritable(error), as_json)
     said = "out of memory" if isinstance(error, MemoryError) else f"{type(error).__name__}: {error}"
-    message = f"{said}. This is a defect of bspcsg; run it again with --debug to see where."
+    message = (
+        f"{said}. This is a defect of bspcsg; run the command again with --debug to see where it"
+        " happens, and report it."
+    )
     return output.tell_error(InternalError(message), as_json)

@@ -231,7 +231,7 @@ class _Cache:
         placed = _placed(error, node, self.run.script)
         if not is_left_out(error, lenient=self.run.lenient):
             raise placed from error
-        self.run.tell(f"{placed.message} It is left out.")
+        self.run.tell(f"{placed.message} This node is left out.")
         return nothing_of(node)
 
     def _part(self, body: Geometry) -> Geometry:

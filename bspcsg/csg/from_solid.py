@@ -78,7 +78,10 @@ def tree_of(solid: Solid, *, flat: bool = False) -> CsgTree:
     if body is None or body.size > _MAX_BODY_SIZE or body.negated:
         body = _polyhedron(solid)
     if body is None or body.negated:
-        message = "A solid that reaches to infinity cannot be written as a script."
+        message = (
+            "The solid reaches to infinity, so it cannot be written as a script; intersect it"
+            " with a box first."
+        )
         raise UnboundedError(message, "unbounded")
     return CsgTree(() if body.node is None else (body.node,))
 
@@ -104,7 +107,7 @@ def lost_attributes(solids: Iterable[Solid]) -> tuple[Finding, ...]:
     if not names:
         return ()
     told = ", ".join(f"“{name}”" for name in sorted(names))
-    message = f"scripts have no place for attributes: {told} were left out."
+    message = f".csg scripts cannot store attributes; {told} were left out."
     return (Finding("attributes_left_out", "warning", message, (), len(names)),)
 
 

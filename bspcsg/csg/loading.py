@@ -127,7 +127,10 @@ def read_tree(path: str | os.PathLike[str], **options: Any) -> CsgTree:
     if suffix == ".scad":
         return read_scad(file, **options)
     if options:
-        raise FormatError(f"{name}: {', '.join(options)} is for .scad files only.", "bad_argument")
+        raise FormatError(
+            f"{name}: {', '.join(options)} can be given for .scad files only; leave it out.",
+            "bad_argument",
+        )
     text = _text(file, name)
     if suffix == ".json":
         return from_json(text, name, file.parent)
@@ -138,13 +141,16 @@ def _text(file: Path, name: str) -> str:
     try:
         return limited_content(file).decode("utf-8")
     except UnicodeDecodeError as error:
-        message = f"{name}: this is no text: byte {error.start} is no UTF-8."
+        message = f"{name}: the file is not UTF-8 text: byte {error.start} cannot be decoded."
         raise FormatError(message, "syntax", [error.start]) from error
 
 
 def _solid(body: Geometry, name: str) -> Solid:
     if isinstance(body, Region):
-        message = f"{name}: the model is a plane figure; put linear_extrude(height = 1) around it."
+        message = (
+            f"{name}: the model is two-dimensional, and a solid is needed; put"
+            " linear_extrude(height = 1) around it."
+        )
         raise FormatError(message, "not_3d")
     if body is None:
         return Solid.empty()
@@ -210,6 +216,9 @@ def dump(model: Solid | CsgTree, path: str | os.PathLike[str], *, flat: bool = F
     try:
         data = text.encode()
     except UnicodeEncodeError as error:
-        message = f"{name}: a text in the tree holds half of a character; leave that out."
+        message = (
+            f"{name}: a string in the tree contains half of a character (a lone surrogate), which"
+            " cannot be written; remove it."
+        )
         raise FormatError(message, "bad_argument") from error
     write_file(name, [data])

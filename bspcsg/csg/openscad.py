@@ -70,8 +70,8 @@ def _convert(path: Path, output: Path, values: dict[str, Any], timeout: float | 
     program = shutil.which("openscad")
     if program is None:
         message = (
-            f"{path}: OpenSCAD's language needs the program openscad, which is not on the PATH."
-            " Install it (apt install openscad), or give a .csg file."
+            f"{path}: reading .scad files needs the program openscad, which is not on the"
+            " PATH. Install it (apt install openscad), or give a .csg file."
         )
         raise FormatError(message, "missing_program")
     options = [f"-D{name}={value_text(value)}" for name, value in values.items()]
@@ -80,10 +80,15 @@ def _convert(path: Path, output: Path, values: dict[str, Any], timeout: float | 
     try:
         done = run_program(command, timeout, {**os.environ, "QT_QPA_PLATFORM": "offscreen"})
     except subprocess.TimeoutExpired as error:
-        message = f"{path}: openscad took longer than {timeout:g} seconds."
+        message = (
+            f"{path}: openscad took longer than the time limit of {timeout:g} seconds and was"
+            " stopped; raise the limit, or simplify the script."
+        )
         raise FormatError(message, "timeout") from error
     if done.returncode != 0 or not output.is_file():
-        raise FormatError(f"{path}: openscad refused it: {_complaint(done.stderr)}", "refused")
+        raise FormatError(
+            f"{path}: openscad cannot evaluate the script: {_complaint(done.stderr)}", "refused"
+        )
 
 
 def _refuse_no_values(found: tuple[Any, ...]) -> None:
@@ -93,8 +98,8 @@ def _refuse_no_values(found: tuple[Any, ...]) -> None:
             _refuse_no_values(one)
         elif not (one is None or isinstance(one, (str, bool)) or is_number(one)):
             message = (
-                "defines must hold numbers, texts, truth values, None and tuples of such,"
-                f" not {shown(one)}."
+                "The values of defines must be numbers, strings, bools, None or tuples of"
+                f" these, not {shown(one)}."
             )
             raise invalid_parameter(message)
 
@@ -103,4 +108,4 @@ def _complaint(text: str) -> str:
     """Return the last line of openscad's output that contains "ERROR", or else the last line."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     errors = [line for line in lines if "ERROR" in line.upper()]
-    return (errors or lines or ["it said nothing"])[-1]
+    return (errors or lines or ["it printed no message"])[-1]

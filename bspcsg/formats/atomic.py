@@ -104,10 +104,10 @@ def _check_target(name: str) -> None:
     if path.is_dir():
         raise IsADirectoryError(21, "it is a folder")
     if path.exists() and not path.is_file():
-        raise OSError(22, "it is no ordinary file")
+        raise OSError(22, "it is not an ordinary file")
     folder = Path(os.path.realpath(name)).parent
     if not folder.is_dir():
-        raise FileNotFoundError(2, f"there is no folder {folder}")
+        raise FileNotFoundError(2, f"the folder {folder} does not exist")
 
 
 #: The number of bytes that are buffered before they are written. A smaller buffer takes more time;

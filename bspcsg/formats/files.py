@@ -22,10 +22,10 @@ from .said import left_out, said_of, saying
 from .source import Source, present, whole_content
 
 _BREP = (
-    "{} is a format of curved surfaces, and bspcsg reads meshes only. Make a mesh of it first, for"
-    " example with FreeCAD, Gmsh or the Python package cascadio."
+    "{} files contain curved surfaces, and bspcsg reads triangle meshes only. Convert the"
+    " file to a mesh first, for example with FreeCAD, Gmsh or the Python package cascadio."
 )
-_NO_LIBRARY = "{} cannot be read, for lack of a maintained library; export {} instead."
+_NO_LIBRARY = "{} files cannot be read; export {} instead."
 
 #: Advice, by suffix, on formats that users try to read, but that are not supported.
 _REFUSALS = {
@@ -33,21 +33,26 @@ _REFUSALS = {
     **dict.fromkeys((".iges", ".igs"), _BREP.format("IGES")),
     ".brep": _BREP.format("BREP"),
     ".amf": _NO_LIBRARY.format("AMF", "3MF"),
-    ".vtp": "VTP cannot be read here, only by VTK's own large package. Export VTU instead, or read"
-    " the file with pyvista and pass the mesh to Solid.from_mesh.",
-    ".gltf": "glTF with separate files is not read; pack it into one GLB file.",
+    ".vtp": "VTP files cannot be read. Export VTU instead, or read the file with pyvista and pass"
+    " the mesh to Solid.from_mesh.",
+    ".gltf": (
+        ".gltf files, whose data are in separate files, cannot be read; pack the model into one"
+        " GLB file."
+    ),
 }
 
-_CURVED = "{} is a format of curved surfaces, not of meshes; write 3MF or STL."
+_CURVED = (
+    "{} files describe curved surfaces, so meshes cannot be written to them; write 3MF or STL."
+)
 
 #: Advice, by suffix, on formats that users try to write, but that are not supported.
 _UNWRITTEN = {
     **dict.fromkeys((".step", ".stp"), _CURVED.format("STEP")),
     **dict.fromkeys((".iges", ".igs"), _CURVED.format("IGES")),
     ".brep": _CURVED.format("BREP"),
-    ".amf": "AMF is not written; 3MF holds the same.",
-    ".vtp": "VTP is not written; VTU holds the same.",
-    ".gltf": "glTF with separate files is not written; GLB is the same in one file.",
+    ".amf": "AMF files cannot be written; write 3MF, which stores the same data.",
+    ".vtp": "VTP files cannot be written; write VTU, which stores the same data.",
+    ".gltf": ".gltf files cannot be written; write GLB, which stores the same data in one file.",
 }
 
 
@@ -68,9 +73,9 @@ def _format_of(path: str | os.PathLike[str], refusals: Mapping[str, str]) -> For
     if suffix in FORMATS:
         return FORMATS[suffix]
     known = ", ".join(sorted(FORMATS))
-    message = f"“{suffix}” is no known mesh format; known are {known}."
+    message = f"“{suffix}” is not a known mesh format; known are {known}."
     if not suffix:
-        message = f"the name needs a suffix that says the format: {known}."
+        message = f"the file name has no suffix to tell the format; it must end in one of {known}."
     raise FormatError(f"{name}: {refusals.get(suffix, message)}", "unknown_format")
 
 
@@ -88,7 +93,9 @@ def form_of(path: str | os.PathLike[str], text: bool = False) -> Form:
     form = chosen.text if truth_value(text, "text") else chosen.binary or chosen.text
     if form is None:
         textual = ", ".join(sorted(suffix for suffix, one in FORMATS.items() if one.text))
-        message = f"{os.fspath(path)}: this format is never text; text can be {textual}."
+        message = (
+            f"{os.fspath(path)}: this format has no text form; formats with one are {textual}."
+        )
         raise FormatError(message, "unknown_format")
     return form
 
@@ -150,7 +157,9 @@ def decoded(
     text_value(name, "name")
     of_kind(bytes, data, "data")
     if not (files is None or isinstance(files, Mapping)):
-        raise invalid_parameter(f"files must be a dictionary of bytes, not {shown(files)}.")
+        raise invalid_parameter(
+            f"files must be a dictionary from file names to bytes, not {shown(files)}."
+        )
     if not data:
         raise FormatError(f"{name}: the file is empty.", "empty_file")
     present(name, data)
@@ -261,7 +270,10 @@ def encoded(
             mesh, mended = single.settled(mesh)
             findings = (*findings, *mended)
     except OverflowError:
-        message = f"{name}: coordinates are beyond single precision; write PLY, OBJ, OFF or 3MF."
+        message = (
+            f"{name}: a coordinate is too large for the single-precision numbers of this format;"
+            " write PLY, OBJ, OFF or 3MF instead."
+        )
         raise FormatError(message, "too_large") from None
     said = said_of(mesh)
     kept = form.keeps(said, mesh.vertices) if said is not None and form.keeps is not None else None
@@ -294,10 +306,13 @@ def _refuse_unwritable(name: str, mesh: Mesh | RawMesh, form: Form) -> None:
     if not np.isfinite(mesh.vertices).all():
         raise FormatError(f"{name}: a coordinate is not a finite number.", "non_finite")
     if len(mesh.faces) and not 0 <= mesh.faces.min() <= mesh.faces.max() < count:
-        message = f"{name}: a triangle names a vertex that does not exist."
+        message = f"{name}: a triangle has a vertex index outside 0 to {count - 1}."
         raise FormatError(message, "index_out_of_range")
     if form.needs_vertices and not count and not says_empty_set(mesh):
-        message = f"{name}: there are no vertices, and this format cannot be read without them."
-        raise FormatError(f"{message} An empty Solid or Mesh can be written.", "empty")
+        message = (
+            f"{name}: the mesh has no vertices, and a file of this format without vertices cannot"
+            " be read back."
+        )
+        raise FormatError(f"{message} Write an empty Solid or Mesh instead.", "empty")
     if form.beyond is not None and (reason := form.beyond(mesh)):
         raise FormatError(f"{name}: {reason}", "too_large")

@@ -76,7 +76,7 @@ def read(source: Source) -> RawMesh:
     source = source.without_mark()
     found = _collected(source)
     if not found.rows:
-        raise source.error("this is no OBJ mesh: it has no vertex.")
+        raise source.error("the file is not an OBJ mesh: it has no vertex.")
     vertices = source.coordinates(found.rows, found.row_lines)
     polygons = _faces(source, found.polygons, found.face_lines)
     positions = polygons.positions(
@@ -176,7 +176,8 @@ def _missing(names: list[str]) -> tuple[Finding, ...]:
         return ()
     told = ", ".join(f"“{name}”" for name in dict.fromkeys(names))
     message = (
-        f"the files {told} are missing beside this one, and so are their colours and pictures."
+        f"the files {told}, to which this OBJ refers, were not found in its folder, so their"
+        " colours and pictures are missing."
     )
     return (Finding("ignored", "warning", message, (), len(names)),)
 
@@ -253,7 +254,10 @@ def _statements(source: Source) -> Iterator[tuple[int, list[bytes]]]:
         held = []
     if held and held[0] not in _NAMING:
         raise source.error(
-            "the file ends in a line that a backslash continues.", "truncated", line=start
+            "the last line ends in a backslash, so its continuation is missing; the file may"
+            " be incomplete.",
+            "truncated",
+            line=start,
         )
     if held:
         yield start, _ended(held, is_in_word)
@@ -283,13 +287,15 @@ def _references(source: Source, number: int, words: list[bytes], known: int) -> 
     try:
         references = [whole(word.partition(b"/")[0]) for word in words[1:]]
     except ValueError:
-        message = f"expected vertex numbers, found {quoted(b' '.join(words[1:]))}."
+        message = (
+            f"expected integer vertex numbers after “f”, found {quoted(b' '.join(words[1:]))}."
+        )
         raise source.error(message, line=number) from None
     if all(reference > 0 for reference in references):
         return [reference - 1 for reference in references]
     if 0 in references or min(references) < -known:
         wrong = 0 if 0 in references else min(references)
-        message = f"vertex number {wrong} names no vertex; {known} precede this face."
+        message = f"vertex number {wrong} does not exist; {known} vertices precede this face."
         raise source.error(message, "index_out_of_range", line=number)
     return [known + reference if reference < 0 else reference - 1 for reference in references]
 
@@ -303,13 +309,18 @@ def _faces(source: Source, polygons: list[list[int]], lines: list[int]) -> Index
 
 
 def _too_large(source: Source, line: int) -> FormatError:
-    return source.error("a vertex number is far too large.", "index_out_of_range", line=line)
+    return source.error(
+        "a vertex number is too large: it must be below 2^63.", "index_out_of_range", line=line
+    )
 
 
 def _curved(count: int) -> tuple[Finding, ...]:
     if not count:
         return ()
-    message = f"{count} statements about free-form curves and surfaces were ignored."
+    message = (
+        f"{count} statements about free-form curves and surfaces were ignored, because only"
+        " polygons are read."
+    )
     return (Finding("curves_ignored", "warning", message, (), count),)
 
 

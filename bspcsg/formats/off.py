@@ -74,8 +74,8 @@ def _mesh(
 ) -> RawMesh:
     if vertex_count + face_count > len(lines):
         message = (
-            f"the file ends after {len(lines)} lines of data, but its header promises"
-            f" {vertex_count} vertices and {face_count} faces, on a line each."
+            f"the file is incomplete: it has {len(lines)} lines of data, but its header says"
+            f" {vertex_count} vertices and {face_count} faces, one on each line."
         )
         raise source.error(message, "truncated", line=lines[-1][0] if lines else 1)
     points, polygons = lines[:vertex_count], lines[vertex_count : vertex_count + face_count]
@@ -151,10 +151,16 @@ def _lines(source: Source) -> Iterator[_Line]:
     keyword = _KEYWORD.fullmatch(words[0])
     if keyword is None:
         if not words[0].isdigit():
-            raise source.error(f"this is no OFF: it begins with {quoted(words[0])}.", line=number)
+            raise source.error(
+                f"the file is not an OFF mesh: it begins with {quoted(words[0])}.", line=number
+            )
         yield number, words
     elif keyword[2] or keyword[3]:
-        raise source.error("only OFF in three dimensions can be read.", line=number)
+        raise source.error(
+            "the OFF file is not three-dimensional (4OFF or nOFF), and only three-dimensional"
+            " ones can be read.",
+            line=number,
+        )
     elif keyword[4]:
         yield number, [keyword[4], *words[1:]]
     elif len(words) > 1 and words[1].upper() == b"BINARY":
@@ -173,7 +179,9 @@ def _counts(source: Source, lines: list[_Line]) -> tuple[int, int, list[_Line]]:
         counts = []
     if len(counts) < 2 or min(counts) < 0:
         found = quoted(b" ".join(words))
-        raise source.error(f"expected numbers of vertices and faces, found {found}.", line=number)
+        raise source.error(
+            f"expected the number of vertices and the number of faces, found {found}.", line=number
+        )
     return counts[0], counts[1], lines[1:]
 
 
@@ -183,13 +191,19 @@ def _corners(source: Source, number: int, words: list[bytes]) -> list[int]:
         count = integral(words[0])
         indices = [integral(word) for word in words[1 : count + 1]]
     except ValueError:
-        message = f"expected a face of whole numbers, found {quoted(b' '.join(words))}."
+        message = (
+            "expected a face as a number of corners and integer vertex indices, found"
+            f" {quoted(b' '.join(words))}."
+        )
         raise source.error(message, line=number) from None
     if len(indices) != count:
-        message = f"a face of {count} corners has only {len(indices)} vertex numbers."
+        message = f"a face of {count} corners has only {len(indices)} vertex indices."
         raise source.error(message, line=number)
     if any(not 0 <= index < 2**63 for index in indices):
-        message = f"a face names vertex {min(indices) if min(indices) < 0 else max(indices)}."
+        message = (
+            f"a face has the vertex index {min(indices) if min(indices) < 0 else max(indices)},"
+            " which is out of range."
+        )
         raise source.error(message, "index_out_of_range", line=number)
     return indices
 

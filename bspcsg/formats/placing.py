@@ -235,8 +235,8 @@ def _flat(count: int) -> tuple[Finding, ...]:
     if not count:
         return ()
     message = (
-        f"{count} triangles without area, or on others that face them, were left out: rounding the"
-        " placed meshes would open gaps there."
+        f"{count} triangles were left out because they have no area or cancel a triangle that"
+        " faces the opposite way: rounding the transformed meshes would open gaps there."
     )
     return (Finding("zero_area", "note", message, (), count),)
 
@@ -249,6 +249,6 @@ def _crossing(places: list[int]) -> tuple[Finding, ...]:
 
 
 _CROSSING = (
-    "rounding the placed meshes makes these triangles cross or overlap others, which"
-    " could not be mended"
+    "rounding the coordinates of the transformed meshes makes these triangles cross or"
+    " overlap others, and no mending was possible"
 )

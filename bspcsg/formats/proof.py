@@ -129,7 +129,7 @@ def _compare_attributes(path: str, mesh: RawMesh, found: RawMesh, rows: IndexArr
         expected = mesh.attributes.at_corners(name, rows) if mesh.attributes else None
         told = found.attributes.at_corners(name)
         if expected is None or not _are_same(expected, told):
-            raise _mismatch(path, f"the values of the attribute “{name}” are others")
+            raise _mismatch(path, f"the values of the attribute “{name}” differ")
     meant_materials = {} if mesh.attributes is None else mesh.attributes.materials
     told_materials = {} if found.attributes is None else found.attributes.materials
     if any(told_materials.get(name) != one for name, one in meant_materials.items()):
@@ -172,13 +172,13 @@ def _compare_counts(
     path: str, expected: list[tuple[str, IndexArray]], held: Sequence[StoredMesh | StoredRows]
 ) -> None:
     if len(expected) != len(held):
-        raise _mismatch(path, f"it holds {len(held)} objects instead of {len(expected)}")
+        raise _mismatch(path, f"it contains {len(held)} objects instead of {len(expected)}")
     for (name, faces), one in zip(expected, held, strict=True):
         if name != one.name:
             raise _mismatch(path, f"an object is called “{one.name}” instead of “{name}”")
         if len(faces) != one.count:
             told = f" in “{name}”" if name else ""
-            message = f"it holds {one.count} triangles{told} instead of {len(faces)}"
+            message = f"it contains {one.count} triangles{told} instead of {len(faces)}"
             raise _mismatch(path, message)
 
 

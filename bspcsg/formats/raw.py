@@ -86,7 +86,9 @@ _PASSED_BY = frozenset({"ignored", "curves_ignored", "extra_data"})
 
 def empty_set() -> RawMesh:
     """Return the mesh that is read from a file of the empty set."""
-    finding = Finding("empty", "note", "this file is the empty set.", (), 1)
+    finding = Finding(
+        "empty", "note", "this file represents the empty set: it has no triangles.", (), 1
+    )
     faces = np.zeros((0, 3), dtype=np.int64)
     return RawMesh(np.zeros((0, 3)), faces, "", (finding,), is_empty_set=True)
 
@@ -248,14 +250,16 @@ class IndexPolygons:
         if (self.counts < 3).any():
             polygon = int(np.flatnonzero(self.counts < 3)[0])
             number = int(self.counts[polygon])
-            raise error_at(polygon, f"a face with {number} corners is no polygon.", "syntax")
+            raise error_at(
+                polygon, f"a face has {number} corners, but a polygon needs at least 3.", "syntax"
+            )
         bad = (self.corners < 0) | (self.corners >= vertex_count)
         if bad.any():
             at = int(np.flatnonzero(bad)[0])
             polygon = int(np.searchsorted(np.cumsum(self.counts), at, side="right"))
             message = (
-                f"a face names vertex {int(self.corners[at])} (counted from 0),"
-                f" but the file has {vertex_count} vertices."
+                f"a face has the vertex index {int(self.corners[at])} (counted from 0), but"
+                f" the file has {vertex_count} vertices."
             )
             raise error_at(polygon, message, "index_out_of_range")
 

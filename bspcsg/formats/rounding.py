@@ -29,5 +29,5 @@ def rounded(mesh: _Kind, digits: int) -> tuple[_Kind, tuple[Finding, ...]]:
     shift = float(np.abs(vertices - mesh.vertices).max(initial=0))
     if shift == 0:
         return mesh, ()
-    message = f"rounding to {digits} digits moved coordinates by up to {shift:.3g}"
+    message = f"rounding to {digits} significant digits changed coordinates by up to {shift:.3g}"
     return replace(mesh, vertices=vertices), (Finding("rounded", "note", message, (), 1),)

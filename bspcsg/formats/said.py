@@ -62,7 +62,7 @@ def not_held(told: Sequence[str], suffix: str) -> tuple[Finding, ...]:
     if not told:
         return ()
     were = "was" if len(told) == 1 else "were"
-    message = f"{suffix[1:].upper()} has no place for {', '.join(told)}, which {were} left out."
+    message = f"{suffix[1:].upper()} cannot store {', '.join(told)}, which {were} left out."
     return (Finding("attributes_left_out", "warning", message, (), len(told)),)
 
 
@@ -75,11 +75,15 @@ def _changed_color(said: Attributes, held: Attributes, suffix: str) -> tuple[Fin
         return ()
     name = suffix[1:].upper()
     if not is_opaque(given) and kept.shape[2:] == (3,):
-        message = f"{name} has no place for the opacity of “color” here, which was left out."
+        message = (
+            f"{name} cannot store the opacity of the attribute “color” here, so it was left out."
+        )
         return (Finding("colors_left_out", "warning", message, (), 1),)
     if np.abs(as_floats(given)[..., :3] - as_floats(kept)[..., :3]).max(initial=0) <= _EQUAL:
         return ()
-    message = f"{name} holds colours in bytes: those of “color” were rounded."
+    message = (
+        f"{name} stores colours as bytes, so the values of the attribute “color” were rounded."
+    )
     return (Finding("colors_rounded", "note", message, (), 1),)
 
 

@@ -45,8 +45,8 @@ def losses(mesh: Mesh | RawMesh, format_name: str) -> tuple[Finding, ...]:
         return ()
     moved = (rounded != mesh.vertices).any(axis=1)
     message = (
-        f"{format_name} holds single precision: coordinates moved by up to {shift:.2g}."
-        " PLY, OBJ, OFF, 3MF and ASCII STL keep every digit."
+        f"{format_name} stores coordinates in single precision, which changed them by up to"
+        f" {shift:.2g}. PLY, OBJ, OFF, 3MF and ASCII STL keep every digit."
     )
     return (
         Finding("single_precision", "note", message, (), 1),
@@ -188,22 +188,25 @@ def _thickened(mesh: Mesh, spacing: float) -> Mesh:
 
 def _mending(count: int) -> Finding:
     message = (
-        f"rounding to single precision makes surfaces cross or leaves triangles no area; {count}"
-        " triangles were changed or left out by the width of that rounding."
+        "rounding to single precision makes surfaces cross or triangles lose their area; to"
+        f" repair this, {count} triangles were moved within the rounding error or left out."
     )
     return Finding("mended_in_single", "note", message, (), count)
 
 
 def _thickening(count: int, spacing: float) -> Finding:
     message = (
-        "all of this is thinner than single precision, and would vanish; the surfaces of"
-        f" {count} triangles were moved outwards by {spacing:.2g}{_REMEDY}"
+        "the whole mesh is so thin that it would vanish in single precision, so the surfaces"
+        f" of {count} triangles were moved outwards by {spacing:.2g}{_REMEDY}"
     )
     return Finding("thickened_in_single", "warning", message, (), count)
 
 
 def _crossing(where: IndexArray) -> Finding:
-    message = f"in single precision {len(where)} triangles cross or overlap others{_REMEDY}"
+    message = (
+        f"after rounding to single precision, {len(where)} triangles cross or overlap"
+        f" others{_REMEDY}"
+    )
     named = tuple(where[:_MAX_TRIANGLES_NAMED].tolist())
     return Finding("crossing_in_single", "warning", message, named, len(where))
 
@@ -213,7 +216,7 @@ def _merged(vertices: FloatArray, rounded: FloatArray, moved: BoolArray) -> tupl
     lost = distinct(vertices[near]) - distinct(rounded[near])
     if not lost:
         return ()
-    message = f"single precision merges {lost} vertices with others{_REMEDY}"
+    message = f"rounding to single precision merges {lost} vertices with others{_REMEDY}"
     return (Finding("merged_by_rounding", "warning", message, (), lost),)
 
 
@@ -233,14 +236,14 @@ def _changed(mesh: Mesh | RawMesh, rounded: FloatArray, moved: BoolArray) -> tup
     """Return findings about triangles that rounding turns over or deprives of their area."""
     flat, turned = _flat_and_turned(mesh.vertices, rounded, mesh.faces, moved)
     told = (
-        ("flattened_by_rounding", "takes the area of", flat),
+        ("flattened_by_rounding", "removes the area of", flat),
         ("turned_by_rounding", "turns over", turned),
     )
     return tuple(
         Finding(
             code,
             "warning",
-            f"single precision {verb} {len(where)} triangles{_REMEDY}",
+            f"rounding to single precision {verb} {len(where)} triangles{_REMEDY}",
             tuple(where[:_MAX_TRIANGLES_NAMED].tolist()),
             len(where),
         )

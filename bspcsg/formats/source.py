@@ -168,7 +168,7 @@ def content_of(path: Path) -> bytes:
     """Return the bytes of a file or pipe; raise an `OSError` for devices, which may never end."""
     mode = path.stat().st_mode
     if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
-        raise OSError(errno.EINVAL, "it is a device")
+        raise OSError(errno.EINVAL, "it is a device, not a file")
     return path.read_bytes()
 
 
@@ -185,7 +185,7 @@ def limited_content(path: str | os.PathLike[str]) -> bytes:
         data = content_of(Path(name)) if Path(name).stat().st_size <= _MAX_TEXT_BYTES else None
     if data is None or len(data) > _MAX_TEXT_BYTES:
         raise FormatError(
-            f"{name}: the file is larger than {_MAX_TEXT_BYTES:,} bytes.", "too_large"
+            f"{name}: the file is larger than the limit of {_MAX_TEXT_BYTES:,} bytes.", "too_large"
         )
     return present(name, data)
 
@@ -213,7 +213,10 @@ def present(name: str, data: bytes) -> bytes:
         If the bytes are a pointer of Git LFS; code ``"unreadable"``.
     """
     if _is_pointer(data):
-        message = f"{name}: this is a pointer of Git LFS; “git lfs pull” fetches the file itself."
+        message = (
+            f"{name}: the file is a Git LFS pointer, not the mesh; fetch the mesh with “git lfs"
+            " pull”."
+        )
         raise FormatError(message, "unreadable")
     return data
 

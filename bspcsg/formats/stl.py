@@ -71,14 +71,20 @@ def _promised(data: bytes) -> int:
 def _read_binary(source: Source) -> RawMesh:
     data = source.data
     if len(data) < _HEADER:
-        message = f"this is no STL: a binary one has at least {_HEADER} bytes, not {len(data)}."
+        message = (
+            f"the file is not an STL mesh: a binary STL has at least {_HEADER} bytes, not"
+            f" {len(data)}."
+        )
         raise source.error(message, "truncated", offset=len(data))
     count, held = _promised(data), (len(data) - _HEADER) // _RECORD.itemsize
     if count > held:
-        message = f"the file ends in triangle {held}, but its header promises {count} triangles."
+        message = (
+            f"the file is incomplete: it ends in triangle {held}, but its header says {count}"
+            " triangles."
+        )
         raise source.error(message, "truncated", offset=len(data))
     if count == 0 and held:
-        message = f"the header promises 0 triangles, but data for {held} follow."
+        message = f"the header says 0 triangles, but data for {held} triangles follow."
         raise source.error(message, offset=_HEADER)
     records = np.frombuffer(data, _RECORD, count, _HEADER)
     extra = len(data) - _HEADER - count * _RECORD.itemsize
@@ -155,7 +161,9 @@ def _read_text(source: Source) -> RawMesh:
     if inside:
         missing = _FACET[step].decode() if step else "endsolid"
         raise source.error(
-            f"the file ends where “{missing}” must follow.", "truncated", line=number
+            f"the file is incomplete: it ends where “{missing}” must follow.",
+            "truncated",
+            line=number,
         )
     raw = _joined(source.coordinates(rows, lines), "", ())
     ends = [*(first for _, first in solids[1:]), len(rows)]

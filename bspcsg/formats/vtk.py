@@ -86,7 +86,10 @@ def _grid_of(source: Source, suffix: str) -> Any:
     """
     meshio = _meshio()
     if b"<!DOCTYPE" in source.data or b"<!ENTITY" in source.data:
-        raise source.error("document types are not allowed here.")
+        raise source.error(
+            "the XML has a document type or entity declaration, which is not supported; save it"
+            " without."
+        )
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"mesh{suffix}"
         path.write_bytes(source.data)
@@ -137,7 +140,9 @@ class _Unpacker:
         found = zlib.decompressobj().decompress(data, self._left)
         self._left -= len(found)
         if self._left <= 0:
-            raise MemoryError(f"its data unpack to more than {self._largest >> 20} MB")
+            raise MemoryError(
+                f"its compressed data unpack to more than the limit of {self._largest >> 20} MB"
+            )
         return found
 
 
@@ -147,7 +152,7 @@ class _Refuser:
     @staticmethod
     def decompress(data: bytes) -> bytes:
         """Raise a `ValueError`: data packed by LZMA are not read."""
-        raise ValueError("data packed by LZMA are not read; pack them by zlib")
+        raise ValueError("LZMA compression is not supported; save the file with zlib compression")
 
 
 @contextlib.contextmanager
@@ -166,12 +171,15 @@ def _bounded(largest: int) -> Iterator[None]:
 def _surface(source: Source, grid: Any) -> RawMesh:
     vertices = np.asarray(grid.points, dtype=np.float64)
     if vertices.ndim != 2 or vertices.shape[1] != 3:
-        raise source.error("the points are not in space.")
+        raise source.error("the points do not have 3 coordinates each.")
     if not np.isfinite(vertices).all():
         raise source.error("a coordinate is not a finite number.", "non_finite")
     unknown = sorted({block.type for block in grid.cells} - {*_FACES, *_OTHER})
     if unknown:
-        message = f"cells of type {', '.join(unknown)} are no faces; extract the surface first."
+        message = (
+            f"cells of type {', '.join(unknown)} are not faces; extract the surface of the grid"
+            " first."
+        )
         raise source.error(message, "unsupported")
     polygons = [
         [int(corner) for corner in face]
@@ -191,7 +199,7 @@ def _surface(source: Source, grid: Any) -> RawMesh:
 def _ignored(count: int) -> tuple[Finding, ...]:
     if not count:
         return ()
-    message = f"{count} points and lines were ignored."
+    message = f"{count} point and line cells were ignored."
     return (Finding("ignored", "warning", message, (), count),)
 
 
@@ -200,7 +208,9 @@ def _write(mesh: Mesh | RawMesh, suffix: str) -> Iterator[bytes]:
         yield EMPTY[suffix]
         return
     if len(mesh.faces) == 0:
-        raise FormatError(f"A mesh without faces cannot be written as {suffix}.", "unwritable")
+        raise FormatError(
+            f"The mesh has no faces, so it cannot be written as {suffix}.", "unwritable"
+        )
     meshio = _meshio()
     grid = meshio.Mesh(np.array(mesh.vertices), [("triangle", np.array(mesh.faces))])
     with tempfile.TemporaryDirectory() as folder:

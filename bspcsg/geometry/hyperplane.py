@@ -66,8 +66,9 @@ class LatticeHyperplane:
         if self.moved is None:
             return None
         return (
-            "the plane holds no point of the lattice, or has too many digits; it was moved by at"
-            f" most {self.moved:.3e} units, to the nearest one that will do"
+            "the plane contains no lattice point, or its coefficients have too many digits;"
+            f" it was moved by at most {self.moved:.3e} units, to the nearest plane that can"
+            " be represented"
         )
 
 
@@ -109,10 +110,14 @@ class Hyperplane:
         try:
             entries, product = [exact_number(entry) for entry in normal], exact_number(offset)
         except (TypeError, ValueError, OverflowError) as error:
-            message = "A hyperplane is a normal and an offset, in finite numbers."
+            message = (
+                "A hyperplane must be a normal vector and an offset, all of them finite numbers."
+            )
             raise InvalidMeshError(message, "bad_normal") from error
         if not any(entries):
-            raise InvalidMeshError("The normal of a hyperplane must not be zero.", "bad_normal")
+            raise InvalidMeshError(
+                "The normal of a hyperplane must not be the zero vector.", "bad_normal"
+            )
         return cls.of(entries, product)
 
     def on_lattice(self, pitch: int) -> LatticeHyperplane:
@@ -193,7 +198,7 @@ def exact_number(value: Any) -> Fraction:
     # np.timedelta64 is a subclass of numpy's integers.
     no_numbers = (bool, np.bool_, np.timedelta64, str, bytes)
     if isinstance(value, no_numbers) or is_complex(value):
-        raise TypeError("truth values, texts, times and complex numbers are no numbers here")
+        raise TypeError("bools, strings, times and complex numbers are not accepted as numbers")
     if isinstance(value, numbers.Rational):
         return Fraction(int(value.numerator), int(value.denominator))
     double = float(value)
@@ -216,7 +221,7 @@ def exact_point(values: Any, dimension: int, name: str) -> list[Fraction]:
         entries = np.atleast_1d(np.asarray(values, dtype=object)).tolist()
         found = [exact_number(entry) for entry in entries]
         if len(found) != dimension:
-            raise ValueError("of another dimension")
+            raise ValueError("wrong number of coordinates")
     except (TypeError, ValueError, OverflowError) as error:
         count = "a finite number" if dimension == 1 else f"{dimension} finite numbers"
         raise invalid_parameter(f"{name} must be {count}, not {shown(values)}.") from error

@@ -30,7 +30,9 @@ def per_axis(given: tuple[Any, ...], name: str, *, missing: float = 0.0, **axes:
     if bool(given) == bool(named):
         fault = "given twice" if given else "missing"
         ways = " and ".join(f"{axis}=" for axis in axes)
-        raise invalid_parameter(f"The {name} is {fault}: give a value, or numbers, or {ways}.")
+        raise invalid_parameter(
+            f"The {name} is {fault}; give one value, or one number for each axis, or {ways}."
+        )
     if named:
         return tuple(named.get(axis, missing) for axis in axes)
     return given[0] if len(given) == 1 else given

@@ -42,7 +42,9 @@ def contours_of(polygon: Any) -> list[FloatArray]:
     shapes = shape_contours(polygon)
     contours = _bare_contours(polygon) if shapes is None else shapes
     if not contours and not hasattr(polygon, "outlines"):
-        raise invalid_parameter("The polygon has no contour.")
+        raise invalid_parameter(
+            "The polygon is empty: it has no contour; give at least one list of (x, y) points."
+        )
     return contours
 
 
@@ -198,7 +200,9 @@ def _polygonal(shapes: Iterable[Any]) -> Iterator[Any]:
             waiting += [(part, mixed) for part in shape.geoms][::-1]
         elif not inside:
             kind = getattr(shape, "geom_type", type(shape).__name__)
-            raise invalid_parameter(f"A {kind} has no area, so it is no polygon.")
+            raise invalid_parameter(
+                f"The shape must be a polygon, but is a {kind}, which has no area."
+            )
 
 
 def _turned(contour: FloatArray, *, clockwise: bool) -> FloatArray:
@@ -216,7 +220,9 @@ def _bare_contours(polygon: Any) -> list[FloatArray]:
         # In a single contour the entries of an entry are numbers.
         single = bool(points) and np.ndim(points[0][0]) == 0
     except (TypeError, IndexError) as error:
-        raise invalid_parameter("A polygon is a list of points, or of contours.") from error
+        raise invalid_parameter(
+            "A polygon must be a list of (x, y) points, or a list of such lists (contours)."
+        ) from error
     whole = polygon if isinstance(polygon, np.ndarray) else points
     return _oriented([_cleaned(contour) for contour in ([whole] if single else points)])
 
@@ -226,11 +232,13 @@ def _cleaned(contour: Any) -> FloatArray:
     if points.ndim != 2 or points.shape[1] != 2:
         raise invalid_parameter(f"A contour must have shape (n, 2), not {points.shape}.")
     if not np.isfinite(points).all():
-        raise invalid_parameter("A contour must have finite coordinates.")
+        raise invalid_parameter("A contour has a coordinate that is not a finite number.")
     # Remove repeated points, such as a closing one.
     points = points[(points != np.roll(points, 1, axis=0)).any(axis=1)]
     if len(points) < 3:
-        raise invalid_parameter("A contour needs at least 3 different points.")
+        raise invalid_parameter(
+            f"A contour needs at least 3 different points, but has {len(points)}."
+        )
     return np.ascontiguousarray(points)
 
 

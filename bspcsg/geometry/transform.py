@@ -144,17 +144,22 @@ def matrix_factor(matrix: Any) -> Factor:
         If the shape is wrong, an entry is not finite, the last row is not 0, 0, 0, 1, or the
         determinant is zero.
     """
-    array = doubles(matrix, invalid_parameter("A transform is a 4x4 matrix of numbers."))
+    array = doubles(matrix, invalid_parameter("A transform must be a 4x4 matrix of numbers."))
     if array.shape == (3, 4):
         array = np.vstack([array, [0.0, 0.0, 0.0, 1.0]])
     if array.shape != (4, 4):
-        raise invalid_parameter(f"A transform is a 4x4 matrix, not one of shape {array.shape}.")
+        raise invalid_parameter(
+            f"A transform must be a matrix of shape (4, 4) or (3, 4), not {array.shape}."
+        )
     if not np.isfinite(array).all():
-        raise invalid_parameter("A transform needs finite entries.")
+        raise invalid_parameter("A transform has an entry that is not a finite number.")
     if array[3].tolist() != [0.0, 0.0, 0.0, 1.0]:
         raise invalid_parameter("The last row of a transform must be 0, 0, 0, 1.")
     if determinant_sign(array) == 0:
-        raise invalid_parameter("The transform flattens space: its determinant is zero.")
+        raise invalid_parameter(
+            "The transform has determinant zero, so it would flatten the solid; use an invertible"
+            " matrix."
+        )
     return Factor(array)
 
 
@@ -201,7 +206,11 @@ def _dot(a: list[float], b: list[float]) -> float:
     except (OverflowError, ValueError):
         value = math.inf
     if not math.isfinite(value):
-        raise LimitError("These transforms together lead beyond all doubles.", "too_large")
+        raise LimitError(
+            "The product of these transforms has an entry that is too large for doubles; scale or"
+            " move less.",
+            "too_large",
+        )
     return value
 
 
@@ -380,7 +389,9 @@ def along(axis: str | Vector) -> Vector:
     if not isinstance(axis, str):
         return axis
     if axis.lower() not in _AXES:
-        raise invalid_parameter(f"An axis is 'x', 'y', 'z' or a vector, not {shown(axis)}.")
+        raise invalid_parameter(
+            f"An axis must be 'x', 'y', 'z' or a vector of three numbers, not {shown(axis)}."
+        )
     return _AXES[axis.lower()]
 
 

@@ -54,15 +54,15 @@ def arrays_from(mesh: Any, tolerance: float = TESSELLATION_TOLERANCE) -> AnyArra
         if all(hasattr(mesh, name) for name in names):
             return reader(mesh)
     raise invalid_parameter(
-        f"Cannot find a mesh in {type(mesh).__name__}: expected vertices and faces, or a pair"
-        f" (vertices, faces).{_advice(mesh)}"
+        f"The {type(mesh).__name__} is not a mesh: expected an object with vertices and faces,"
+        f" or a pair (vertices, faces).{_advice(mesh)}"
     )
 
 
 def _advice(mesh: Any) -> str:
     """Return advice for an object that is a grid of cells, no surface; else an empty string."""
     if hasattr(mesh, "extract_surface"):
-        return " A grid of cells has a surface: pass mesh.extract_surface()."
+        return " For a grid of cells, pass mesh.extract_surface()."
     return ""
 
 
@@ -96,7 +96,7 @@ def points_array(points: Any, name: str = "Points") -> FloatArray:
     """Return points as (n, 3) float64 in C order, without a copy if possible."""
     array = doubles_or_none(points)
     if array is None:
-        raise InvalidMeshError(f"{name} must be numbers, three for each.", "shape")
+        raise InvalidMeshError(f"{name} must be an array of numbers of shape (n, 3).", "shape")
     if array.size == 0:
         return np.zeros((0, 3))
     if array.ndim != 2 or array.shape[1] != 3:
@@ -107,7 +107,9 @@ def points_array(points: Any, name: str = "Points") -> FloatArray:
 def face_array(faces: Any, vertices: FloatArray) -> IndexArray:
     """Return faces as triangles, (m, 3) int64 in C order; larger polygons are triangulated."""
     if is_masked(faces):
-        raise InvalidMeshError("Faces must not be masked out.", "shape")
+        raise InvalidMeshError(
+            "Faces must not be a masked array; pass the unmasked faces only.", "shape"
+        )
     try:
         array = np.asarray(faces)
     except ValueError:  # faces of different lengths
@@ -115,7 +117,9 @@ def face_array(faces: Any, vertices: FloatArray) -> IndexArray:
     if array.size == 0:
         return np.zeros((0, 3), dtype=np.int64)
     if array.ndim == 0:
-        raise InvalidMeshError("Faces must be lists of at least 3 indices.", "shape")
+        raise InvalidMeshError(
+            "Faces must be a list of lists of at least 3 vertex indices each.", "shape"
+        )
     if array.dtype == object:
         return _triangles(faces, vertices)
     if array.ndim != 2 or array.shape[1] < 3:
@@ -132,14 +136,16 @@ def _own(array: _Array, given: Any) -> _Array:
 def _whole(array: Any) -> IndexArray:
     """Return indices as int64; raise an `InvalidMeshError` if a number is not a 64-bit integer."""
     if array.dtype.kind not in "iuf":
-        raise InvalidMeshError(f"Face indices must be integers, not {array.dtype}.", "shape")
+        raise InvalidMeshError(
+            f"Vertex indices of faces must be integers, not {array.dtype}.", "shape"
+        )
     if array.dtype.kind == "i":
         integers: IndexArray = array.astype(np.int64, copy=False)
         return integers
     with np.errstate(invalid="ignore"):  # NaN, which the comparison finds
         indices: IndexArray = array.astype(np.int64)
     if not (indices == array).all():
-        raise InvalidMeshError("Face indices must be whole numbers below 2**63.", "shape")
+        raise InvalidMeshError("Vertex indices of faces must be integers below 2**63.", "shape")
     return indices
 
 
@@ -148,9 +154,11 @@ def _triangles(faces: Iterable[Any], vertices: FloatArray) -> IndexArray:
     for number, face in enumerate(faces):
         corners = _whole(np.asarray(face))
         if corners.ndim != 1 or len(corners) < 3:
-            raise InvalidMeshError(f"Face {number} has fewer than 3 corners.", "shape", [number])
+            raise InvalidMeshError(
+                f"Face {number} must be a list of at least 3 vertex indices.", "shape", [number]
+            )
         if corners.min() < 0 or corners.max() >= len(vertices):
-            message = f"Face {number} names a vertex that does not exist."
+            message = f"Face {number} has a vertex index outside 0 to {len(vertices) - 1}."
             raise InvalidMeshError(message, "index_out_of_range", [number])
         triangles.append(corners[triangulate_face(vertices[corners])])
     return np.concatenate(triangles) if triangles else np.zeros((0, 3), dtype=np.int64)
@@ -204,7 +212,10 @@ def _from_meshio(mesh: Any) -> AnyArrays:
     surface = [block for block in mesh.cells if block.type in ("triangle", "quad", "polygon")]
     unknown = kinds - {"triangle", "quad", "polygon", "vertex", "line"}
     if unknown:
-        raise invalid_parameter(f"Cells of type {', '.join(sorted(unknown))} are no faces.")
+        raise invalid_parameter(
+            f"The mesh has cells of type {', '.join(sorted(unknown))}, which are not faces; pass"
+            " its surface instead."
+        )
     if len(surface) == 1:
         return mesh.points, surface[0].data
     return mesh.points, [face for block in surface for face in block.data]
@@ -273,7 +284,10 @@ def optional(name: str, package: str) -> Any:
     try:
         return importlib.import_module(name)
     except ImportError as error:
-        message = f"This needs the package {name.partition('.')[0]}: pip install {package}."
+        message = (
+            f"The package {name.partition('.')[0]} is needed but not installed. Try: pip install"
+            f" {package}"
+        )
         raise MissingPartError(message, "missing_package") from error
 
 

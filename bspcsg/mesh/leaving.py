@@ -49,7 +49,7 @@ def _said_of(mesh: Mesh, library: str) -> Attributes | None:
     try:
         said = mesh.attributes.without_empty_material()
     except InvalidMeshError as error:
-        _tell(f"{library} gets no attributes: {error.message}", 1)
+        _tell(f"the attributes were not passed to {library}: {error.message}", 1)
         return None
     return None if said.is_empty or not len(mesh.faces) else said
 
@@ -91,8 +91,8 @@ class _TrimeshAttributes:
             return
         if kind == "corner":
             _tell(
-                "trimesh has no colours of corners: each face shows the mean of its own, and"
-                f" metadata[{CORNERS!r}] has them.",
+                "trimesh cannot store colours of corners, so each face gets the mean colour"
+                f" of its corners; metadata[{CORNERS!r}] has the full colours.",
                 1,
             )
             self._show(face_colors=mean_colors(values))
@@ -119,8 +119,9 @@ class _TrimeshAttributes:
             return
         if has_picture:
             _tell(
-                "trimesh shows a picture if one material has all faces and texture coordinates are"
-                " of vertices: the pictures are in its metadata only.",
+                "trimesh shows a texture only if all faces have one material and the texture"
+                " coordinates belong to vertices, so the pictures were stored in its metadata"
+                " only.",
                 1,
             )
         if not self._is_colored:
@@ -236,7 +237,10 @@ def manifold_of(mesh: Mesh) -> "manifold3d.Manifold":
     others = [name for name in said.names if not _are_finite(said, name)]
     if others:
         told = ", ".join(f"“{name}”" for name in others)
-        _tell(f"manifold3d holds finite numbers only: {told} were left out.", len(others))
+        _tell(
+            f"manifold3d stores finite numbers only, so the attributes {told} were left out.",
+            len(others),
+        )
     columns = tuple(_column(said, name) for name in _in_order(said) if name not in others)
     return _with_properties(mesh, said, columns) if columns else to_manifold(mesh)
 

@@ -65,7 +65,10 @@ class Block:
             While the block is open, or if it ended in an error; code ``"open_block"``.
         """
         if self._solid is None:
-            message = "A block has its solid after its with statement, if that ends without error."
+            message = (
+                "The solid of a block is available only after its with statement has ended"
+                " without an error."
+            )
             raise InvalidMeshError(message, "open_block")
         return self._solid
 
@@ -82,10 +85,15 @@ class Block:
 
     def _refuse_ended(self, solids: Sequence[Solid]) -> None:
         if not self._ledger.is_open:
-            raise invalid_parameter("This block has ended; what counts in it is settled.")
+            raise invalid_parameter(
+                "The with statement of this block has ended, so no solid can be added or removed"
+                " any more."
+            )
         for solid in solids:
             if not isinstance(solid, Solid):
-                raise invalid_parameter(f"Expected solids, not {type(solid).__name__}.")
+                raise invalid_parameter(
+                    f"The arguments must be Solid objects, not {type(solid).__name__}."
+                )
 
     def end(self, failed: bool) -> None:
         """Close the block, and carry out its operation unless the block failed.

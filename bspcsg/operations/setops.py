@@ -240,8 +240,8 @@ def _applied(op: SetOp, entries: Iterable[Any]) -> Any:
     for entry in sets:
         if not sets[0]._is_alike(entry):
             raise invalid_parameter(
-                f"Expected sets of one kind, not {type(sets[0]).__name__} and "
-                f"{type(entry).__name__}."
+                "All operands must be of the same kind and dimension, but they are"
+                f" {type(sets[0]).__name__} and {type(entry).__name__}."
             )
     if op == "difference":
         return sets[0] - _balanced(operator.or_, sets[1:]) if sets[1:] else sets[0]
@@ -263,5 +263,8 @@ def _flat(entries: Iterable[Any]) -> list[Any]:
         flat.extend(entry if is_list else [entry])
     for entry in flat:
         if not isinstance(entry, PointSet):
-            raise invalid_parameter(f"Expected solids or regions, not {type(entry).__name__}.")
+            raise invalid_parameter(
+                "The operands must be Solid objects or sets of one kind, such as Region, not"
+                f" {type(entry).__name__}."
+            )
     return flat

@@ -65,7 +65,10 @@ def hex_bolt(
     gap = play(clearance, chosen)
     cut = chosen.threaded(long) if thread is None else not_negative(thread, "thread")
     if cut > long:
-        raise invalid_parameter(f"thread must be length at most: {cut:g} is above {long:g}.")
+        raise invalid_parameter(
+            f"thread, the length of the threaded part, must be at most the length {long:g} of the"
+            f" bolt, not {cut:g}."
+        )
     head = _hexagon(chosen.flats, chosen.head, segments, both=False).mirror((0, 0, 1))
     inner, outer = radii(chosen, gap)
     if cut == 0:

@@ -92,11 +92,16 @@ def spur_gear(
     # Compute in modules, so that rounding errors are relative to the gear's size.
     thickness = math.pi / 2 - not_negative(backlash, "backlash") / size
     if thickness <= 0:
-        raise invalid_parameter(f"backlash leaves nothing of the teeth: {backlash:g} is too much.")
+        raise invalid_parameter(
+            f"backlash {backlash:g} is larger than the thickness of the teeth; choose a smaller"
+            " one."
+        )
     form = _Form(count, math.radians(angle), thickness)
     if hole >= form.root * size:
         wide = 2 * form.root * size
-        raise invalid_parameter(f"bore must be below {wide:g}, the diameter at the teeth's feet.")
+        raise invalid_parameter(
+            f"bore must be below {wide:g}, the root diameter of the gear, but is {2 * hole:g}."
+        )
     tooth = _tooth(form, around // 4)
     turns = [tooth @ _turn(2 * math.pi * k / count) for k in range(count)]
     figure = Region(np.concatenate(turns) * size)
@@ -181,7 +186,10 @@ def _tooth(form: _Form, steps: int) -> FloatArray:
     radii = np.concatenate([low, high])
     halves = np.concatenate([form.foot(low), form.flank(high)])
     if halves[-1] <= 0:
-        raise invalid_parameter(f"Gears of {form.teeth} teeth would be pointed.")
+        raise invalid_parameter(
+            f"The {form.teeth} teeth of this gear would be pointed; choose more teeth, or a"
+            " smaller pressure_angle or backlash."
+        )
     right = np.column_stack([radii * np.cos(halves), -radii * np.sin(halves)])
     return np.concatenate([right, [(tip, 0)], right[::-1] * (1, -1)])
 

@@ -101,4 +101,4 @@ def metric(size: str) -> MetricSize:
     """
     if isinstance(size, str) and size.upper() in METRIC:
         return METRIC[size.upper()]
-    raise invalid_parameter(f"There is no size {shown(size)}; there are {', '.join(METRIC)}.")
+    raise invalid_parameter(f"Unknown metric size {shown(size)}; known are {', '.join(METRIC)}.")

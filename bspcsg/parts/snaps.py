@@ -107,7 +107,9 @@ def snap_socket(
     nose = _nose(length, thickness, undercut, entrance, retention)
     gap, wide = not_negative(clearance, "clearance"), positive(width, "width")
     if gap >= nose[0, 1]:
-        raise invalid_parameter(f"clearance must be below the length, not {gap:g}.")
+        raise invalid_parameter(
+            f"clearance must be smaller than the length {nose[0, 1]:g}, but is {gap:g}."
+        )
     catch, tip = nose[1], nose[-1, 1] + gap
     bent = -(catch[0] - nose[0, 0]) - gap
     channel = [(bent, 0.0), (nose[0, 0] + gap, 0.0), (nose[0, 0] + gap, tip), (bent, tip)]
@@ -156,8 +158,8 @@ def _nose(
     )
     if max(out, thick) > long or min(out, thick) < _MIN_RATIO * long:
         raise invalid_parameter(
-            f"thickness and undercut must be from a thousandth of the length to all of it, not"
-            f" {thick:g} and {out:g} of {long:g}."
+            f"thickness and undercut must be between {_MIN_RATIO:g} and 1 times the length"
+            f" {long:g}, but are {thick:g} and {out:g}."
         )
     if not 10 <= slide <= 60:
         raise invalid_parameter(f"entrance must be from 10 to 60 degrees, not {slide:g}.")

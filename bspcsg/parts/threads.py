@@ -132,7 +132,8 @@ def play(clearance: Scalar | None, size: MetricSize) -> float:
     given = not_negative(clearance, "clearance")
     if given >= size.pitch:
         raise invalid_parameter(
-            f"clearance must be below the pitch: {given:g} is not below {size.pitch:g}."
+            f"clearance must be smaller than the pitch {size.pitch:g} of the thread, but is"
+            f" {given:g}."
         )
     return given
 

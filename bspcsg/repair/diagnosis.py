@@ -190,8 +190,8 @@ def _edge_findings(mesh: Mesh, edges: EdgeUses) -> list[Finding]:
         count = int(connected(edges.ends[edges.open]).max()) + 1
         holes = f" around {_many(count, 'hole')}"
     kinds = (
-        ("open_edges", "error", edges.open, f"with one triangle only,{holes}"),
-        ("orientation", "error", edges.turned, "whose triangles do not run opposite ways"),
+        ("open_edges", "error", edges.open, f"with only one triangle (open edges),{holes}"),
+        ("orientation", "error", edges.turned, "whose two triangles have opposite orientations"),
         ("non_manifold", "warning", edges.crowded, "with more than two triangles"),
     )
     found = []
@@ -222,7 +222,7 @@ def _face_findings(mesh: Mesh, edges: EdgeUses) -> list[Finding]:
         found.append(Finding("degenerate", "warning", message, _few(flat), len(flat)))
     repeated = repeated_faces(mesh.faces)
     if len(repeated):
-        message = f"{_many(len(repeated), 'triangle')} over the corners of another"
+        message = f"{_many(len(repeated), 'triangle')} with the same corners as another triangle"
         message += _first(mesh, repeated)
         found.append(Finding("duplicate", "warning", message, _few(repeated), len(repeated)))
     unused = len(mesh.vertices) - len(np.unique(mesh.faces))
@@ -276,7 +276,10 @@ def _as_solid(raw: RawMesh, findings: list[Finding]) -> tuple[Solid | None, str]
         return None, names.get(error.code, "refused")
     for index, found in enumerate(findings):
         if found.code in ("open_edges", "orientation"):
-            message = f"{found.message}; the gaps are of no width, so the mesh counts as closed"
+            message = (
+                f"{found.message}; the gaps have no width on the lattice, so the mesh counts as"
+                " closed"
+            )
             findings[index] = Finding(found.code, "note", message, found.where, found.count)
     told = {found.code for found in findings} | {"zero_area"}
     new = [Finding.from_core(found) for found in solid.tree.findings]

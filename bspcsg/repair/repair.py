@@ -96,10 +96,10 @@ def repair(
     """
     unknown = set(steps) - set(STEPS)
     if unknown:
-        message = f"Unknown step {sorted(unknown)[0]!r}; one of {', '.join(STEPS)}."
+        message = f"Unknown repair step {sorted(unknown)[0]!r}; known are {', '.join(STEPS)}."
         raise invalid_parameter(message)
     if len(raw.faces) == 0:
-        message = f"{raw.name or 'the mesh'}: there is no triangle in it, so nothing is repaired."
+        message = f"{raw.name or 'the mesh'}: the mesh has no triangles, so it cannot be repaired."
         raise InvalidMeshError(message, "empty_mesh")
     ordered = [step for step in STEPS if step in steps]
     settings = {"steps": ordered, "weld": weld, "max_hole": min(max_hole, _MAX_HOLE_EDGES)}
@@ -142,7 +142,7 @@ def losses_of(raw: RawMesh) -> tuple[Finding, ...]:
                 if len(names) > _MAX_NAMES_SHOWN
                 else ""
             )
-            message = f"repairing keeps no {kind}: {told}{more} were left out."
+            message = f"the repair cannot keep {kind}, so {told}{more} were left out."
             found.append(Finding(code, "warning", message, (), len(names)))
     return tuple(found)
 
@@ -154,14 +154,17 @@ def _asked(folder: Path, timeout: float | None) -> dict[str, Any]:
     try:
         done = run_program(command, timeout)
     except subprocess.TimeoutExpired as error:
-        message = f"the repair took longer than {timeout:g} s and was stopped."
+        message = (
+            f"the repair took longer than the time limit of {timeout:g} s and was stopped; raise"
+            " the limit, or leave out steps."
+        )
         raise BspcsgError(message, "timed_out") from error
     path = folder / "said.json"
     said: dict[str, Any] = json.loads(path.read_text("utf-8")) if path.exists() else {}
     if done.returncode == _MISSING and "missing" in said:
         raise missing_part("pymeshlab", f"for repairs ({said['missing']})", remedy(said["missing"]))
     if done.returncode != 0:
-        last = done.stderr.strip().splitlines()[-1:] or ["no word"]
+        last = done.stderr.strip().splitlines()[-1:] or ["no message"]
         message = f"pymeshlab failed with exit code {done.returncode}: {last[0]}"
         raise BspcsgError(message, "repair_failed")
     return said

@@ -119,7 +119,14 @@ def cards_of(cases: Iterable[CaseRecord], results: Results, budget: PageBudget) 
     for number, case in enumerate(cases):
         address = f"case-{number + 1}"
         if case["meshes"] is None:
-            yield Card(address, case, tone(case["verdict"]), [], None, "No meshes were kept.")
+            yield Card(
+                address,
+                case,
+                tone(case["verdict"]),
+                [],
+                None,
+                "The meshes of this case were not stored.",
+            )
             continue
         try:
             stored = stored_meshes(results.folders[case["key"]], case["meshes"])
@@ -189,7 +196,7 @@ def model_within(
         As for `packed`.
     """
     if not layers:
-        return None, "The result is empty; there is nothing to turn."
+        return None, "The result is empty, so there is no 3D view."
     model = packed(layers, quantised=True, **told)
     if len(model["data"]) <= allowance:
         return model, ""
@@ -200,8 +207,11 @@ def model_within(
                 sum(layer["triangles"] for layer in m["layers"]) for m in (model, simple)
             )
             return simple, (
-                f"The 3D view shows {whole(after)} triangles instead of {whole(before)}, to fit on"
-                f" this page; numbers are of all of them."
+                f"The 3D view is simplified to {whole(after)} of {whole(before)} triangles to"
+                " fit on this page; the numbers refer to the full meshes."
             )
     size = f"{len(model['data']) / 1000:.0f} kB"
-    return None, f"The 3D view would take {size}; fewer cards leave more room for each."
+    return None, (
+        f"The 3D view is left out because it would add {size} to the page; a smaller number of"
+        " cards leaves more space for each."
+    )

@@ -31,7 +31,7 @@ def departure(value: Any, kind: Any, place: str = "") -> str:
 
 def _departure_in_dict(value: Any, kind: Any, place: str) -> str:
     if not isinstance(value, dict):
-        return f"{place} is no object"
+        return f"{place} is not a JSON object"
     lacking = sorted(kind.__required_keys__ - value.keys())
     if lacking:
         return f"{place} has no {lacking[0]!r}".strip()
@@ -42,7 +42,7 @@ def _departure_in_dict(value: Any, kind: Any, place: str) -> str:
 
 def _departure_in_items(value: Any, container: type, kind: Any, place: str) -> str:
     if not isinstance(value, container):
-        return f"{place} is no {container.__name__}"
+        return f"{place} is not of type {container.__name__}"
     given: Any = value
     items = given.items() if container is dict else enumerate(given)
     found = (departure(item, kind, f"{place}[{key!r}]") for key, item in items)
@@ -54,5 +54,5 @@ def _departure_of_scalar(value: Any, kind: Any, place: str) -> str:
         return ""
     if kind is float:
         is_number = isinstance(value, (int, float)) and math.isfinite(value)
-        return "" if is_number else f"{place} is no finite number"
-    return "" if isinstance(value, kind) else f"{place} is no {kind.__name__}"
+        return "" if is_number else f"{place} is not a finite number"
+    return "" if isinstance(value, kind) else f"{place} is not of type {kind.__name__}"

@@ -34,7 +34,10 @@ def merged(paths: Sequence[str | os.PathLike[str]]) -> Results:
         everything.folders.update(results.folders)
     if not everything.cases:
         names = ", ".join(str(path) for path in paths)
-        raise FormatError(f"{names}: there is no case in these results.", "empty_results")
+        raise FormatError(
+            f"{names}: the results contain no case; run bspcsg crosscheck --results first.",
+            "empty_results",
+        )
     return everything
 
 
@@ -45,7 +48,10 @@ def _read(path: str | os.PathLike[str]) -> Results:
     for line, kind in lines:
         fault = departure(line, kind, line["type"])
         if fault:
-            message = f"{os.fspath(path)}: {fault}. bspcsg crosscheck --results writes such files."
+            message = (
+                f"{os.fspath(path)}: the results file is not valid: {fault}. Give a file that"
+                " bspcsg crosscheck --results wrote."
+            )
             raise FormatError(message, "malformed")
     return results
 

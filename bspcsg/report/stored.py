@@ -57,7 +57,11 @@ def stored_meshes(folder: Path, name: str) -> Stored:
     path = folder / name
     # Links are followed, but the path in the results must not lead out of the folder.
     if os.path.isabs(name) or os.path.normpath(name).startswith(".."):
-        raise FormatError(f"{name}: meshes lie in the folder of the results only.", "unreadable")
+        raise FormatError(
+            f"{name}: the stored meshes are not read, because this path leads out of the folder of"
+            " the results file.",
+            "unreadable",
+        )
     try:
         meshes = unpacked(path)
         operands = [
@@ -73,9 +77,11 @@ def stored_meshes(folder: Path, name: str) -> Stored:
 def _layer(mesh: Mesh, name: str, colour: str) -> Layer:
     for array in (mesh.vertices, mesh.faces):
         if array.ndim != 2 or array.shape[1] != 3:
-            raise ValueError(f"an array of {name} has the shape {array.shape}")
+            raise ValueError(
+                f"an array of the mesh {name} has shape {array.shape} instead of (n, 3)"
+            )
     if not np.isfinite(mesh.vertices).all():
-        raise ValueError(f"{name} has a coordinate that is not a finite number")
+        raise ValueError(f"the mesh {name} has a coordinate that is not a finite number")
     if len(mesh.faces) and not (mesh.faces.min() >= 0 and mesh.faces.max() < len(mesh.vertices)):
-        raise ValueError(f"{name} has a face that names a vertex which does not exist")
+        raise ValueError(f"the mesh {name} has a face with a vertex index out of range")
     return Layer(name, mesh.vertices, mesh.faces, colour)

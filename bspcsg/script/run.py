@@ -133,7 +133,10 @@ def run_script(
         answer = Path(folder, "answer")
         code = _run_child(_pickled((name, words, values, str(answer))), name, limit)
         if not answer.is_file():
-            message = f"{name}: the script ended its process with code {code}."
+            message = (
+                f"{name}: the script ended its process with exit code {code} before it gave a"
+                " result."
+            )
             raise FormatError(message, "script_died")
         answered = pickle.loads(answer.read_bytes())
     if isinstance(answered, BspcsgError):
@@ -145,7 +148,10 @@ def _pickled(task: tuple[str, list[str], dict[str, Any], str]) -> bytes:
     try:
         return pickle.dumps(task)
     except Exception as error:  # whatever the values do when they are asked
-        message = f"defines must hold values that another process can be sent: {words_of(error)}."
+        message = (
+            "The values of defines cannot be sent to the process of the script, because they"
+            f" cannot be pickled: {words_of(error)}."
+        )
         raise invalid_parameter(message) from error
 
 
@@ -172,7 +178,10 @@ def _run_child(task: bytes, name: str, timeout: float | None) -> int:
                 child.communicate(task, timeout)
             except subprocess.TimeoutExpired as error:
                 child.kill()
-                message = f"{name}: the script took longer than {timeout:g} seconds."
+                message = (
+                    f"{name}: the script took longer than the time limit of {timeout:g} seconds"
+                    " and was stopped; raise the limit, or simplify the script."
+                )
                 raise FormatError(message, "timeout") from error
             except BaseException:
                 child.kill()
@@ -233,7 +242,7 @@ def _run(program: ModuleType, name: str, defines: dict[str, Any]) -> None:
     except SystemExit as end:
         if end.code not in (None, 0):
             told = f"code {end.code}" if isinstance(end.code, int) else words_of(end)
-            message = f"the script ended with {told}."
+            message = f"the script exited with {told} before it gave a result."
             raise FormatError(message, "script_failed").with_traceback(end.__traceback__) from end
 
 
@@ -244,7 +253,10 @@ def _result(name: str, variables: dict[str, Any]) -> Solid | BspcsgError:
     if result is not None:
         return Solid.from_mesh(result)
     if not _shown:
-        message = f"{name}: the script left no variable “result” and called no bspcsg.show(solid)."
+        message = (
+            f"{name}: the script gave no result; assign a solid to the variable “result”, or call"
+            " bspcsg.show(solid)."
+        )
         return FormatError(message, "no_result")
     return union(_shown)
 

@@ -51,9 +51,9 @@ def compiled(source: bytes, name: str, given: Iterable[str] = ()) -> CodeType:
 
 
 def _advice(unknown: str, known: list[str]) -> str:
-    message = f"the script assigns no variable {unknown} at its top level"
+    message = f"the script does not assign the variable {unknown} at its top level"
     if not known:
-        return f"{message}, nor any other."
+        return f"{message}; it assigns no variable there."
     return f"{message}.{question(unknown, known)} It assigns {', '.join(known)}."
 
 

@@ -64,7 +64,7 @@ def edge_lengths(size: Any, y: Any = None, z: Any = None) -> FloatArray:
     """
     alone = y is None and z is None
     if not alone and (y is None or z is None):
-        raise invalid_parameter("A box has one edge length, or three: (1, 2, 3).")
+        raise invalid_parameter("A box needs one edge length or three edge lengths, not two.")
     lengths = vector3(size if alone else (size, y, z), "size", spread=alone)
     for length in lengths:
         positive(length, "size")
@@ -183,7 +183,7 @@ def cylinder(
     both = None if r is None and d is None else radius(r, d, "A cylinder")
     low, high = (_end_radius(*end, both) for end in ((r1, d1), (r2, d2)))
     if low == high == 0:
-        raise invalid_parameter("A cylinder needs a radius above 0.")
+        raise invalid_parameter("A cylinder needs a radius above 0 at one end at least.")
     height, around = positive(h, "h"), sides_around(3, segments, "segments")
     base = -height / 2 if truth_value(center, "center") else 0.0
     ends = np.array([[low, base], [high, base + height]])
@@ -238,7 +238,10 @@ def torus(
     major = positive(radius(r, d, "The ring of a torus"), "r")
     minor = positive(radius(tube, tube_d, "The tube of a torus"), "tube")
     if minor >= major:
-        raise invalid_parameter("The tube of a torus must be thinner than its ring's radius.")
+        raise invalid_parameter(
+            f"The tube radius of a torus must be smaller than its ring radius {major:g}, but is"
+            f" {minor:g}."
+        )
     along = sides_around(3, segments, "segments")
     across = sides_around(3, tube_segments, "tube_segments")
     refuse_many_corners(along * across, "This torus")
@@ -318,7 +321,7 @@ def half_space(normal: str | Vector, offset: Scalar = 0.0) -> Solid:
     try:
         x, y, z = along(normal)
     except (TypeError, ValueError) as error:
-        message = "A normal has three numbers, or is 'x', 'y' or 'z'."
+        message = "normal must be 'x', 'y', 'z' or a vector of three numbers."
         raise InvalidMeshError(message, "bad_normal") from error
     number(offset, "offset")
     return from_leaf(PlaneLeaf(Hyperplane.from_numbers((x, y, z), offset)))

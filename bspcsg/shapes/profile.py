@@ -153,7 +153,7 @@ def revolve(polygon: Any, *, angle: Scalar = 360.0, segments: int = SEGMENTS) ->
     """
     turn = positive(angle, "angle")
     if turn > 360:
-        raise invalid_parameter(f"angle must not exceed 360, not {turn:g}.")
+        raise invalid_parameter(f"angle must be at most 360 degrees, not {turn:g}.")
     full = turn == 360
     columns = sides_around(least_segments(turn), segments, "segments") + (not full)
     contours = [_with_ends_on_axis(contour) for contour in contours_of(polygon)]
@@ -162,7 +162,10 @@ def revolve(polygon: Any, *, angle: Scalar = 360.0, segments: int = SEGMENTS) ->
     points = np.concatenate(contours)
     refuse_many_corners(columns * len(points), "This body")
     if points[:, 0].min() < 0:
-        raise invalid_parameter("A revolved polygon must not cross the axis: x below 0.")
+        raise invalid_parameter(
+            "The polygon must not have points with x below 0, because it is revolved around the"
+            " axis x = 0; move it to the right."
+        )
     directions = np.array([cos_sin(turn * k / int(segments)) for k in range(columns)])
     rings = RingLayout(points, columns)
     faces = [_swept(rings, start, end, full) for start, end in directed_edges(contours)]

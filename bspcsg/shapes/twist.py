@@ -91,7 +91,7 @@ def risen(contours: Sequence[FloatArray], rise: Rise) -> Solid:
 
         return leaning(contours, rise.height, rise.inset).translate(0, 0, rise.base)
     if lost is not None:
-        raise _no_room(*lost, "the edge that begins there vanishes")
+        raise _no_room(*lost, "the edge that starts there would vanish")
     points = np.concatenate(contours)
     holes = np.concatenate([np.full(len(c), runs_clockwise(c)) for c in contours])
     levels = [rise.section(points, lean, k) for k in range(rise.slices + 1)]
@@ -136,7 +136,7 @@ def _corner_moves(contour: FloatArray, inset: float) -> tuple[FloatArray, IndexA
     before = np.roll(inward, 1, axis=0)
     opening = 1 + (inward * before).sum(axis=1)
     for corner in np.flatnonzero(opening < _SHARPEST).tolist():
-        raise _no_room(contour, corner, "there the outline turns back on itself")
+        raise _no_room(contour, corner, "the outline turns back on itself there")
     moves = inset * (inward + before) / opening[:, None]
     shrunk = along + np.roll(moves, -1, axis=0) - moves
     return moves, np.flatnonzero((shrunk * along).sum(axis=1) <= 0)
@@ -144,7 +144,9 @@ def _corner_moves(contour: FloatArray, inset: float) -> tuple[FloatArray, IndexA
 
 def _no_room(contour: FloatArray, corner: int, reason: str) -> InvalidParameterError:
     x, y = contour[corner].tolist()
-    message = f"The taper has no room at ({x:g}, {y:g}): {reason}. Choose a smaller one."
+    message = (
+        f"The taper is too large at the corner ({x:g}, {y:g}): {reason}. Choose a smaller taper."
+    )
     return invalid_parameter(message, [corner])
 
 

@@ -1,4 +1,4 @@
-"""The connected parts of a solid, compatible with their former type, a number."""
+"""`Components`: a solid's connected parts as a tuple that can be compared with a number."""
 
 from typing import TYPE_CHECKING
 
@@ -9,35 +9,36 @@ if TYPE_CHECKING:
 
 
 class Components(tuple["Solid", ...]):
-    """The connected parts; a comparison with an integer warns and uses the number of surfaces.
+    """A tuple of the connected parts of a solid.
 
-    Otherwise programs that compare with a number would silently get wrong answers.
+    Formerly `Solid.components` was the number of connected surfaces. So a comparison with an
+    integer still compares that number, with a `DeprecationWarning`.
     """
 
     _whole: "Solid"
 
     @classmethod
     def of(cls, whole: "Solid") -> "Components":
-        """Return the parts of a solid."""
+        """Return the connected parts of a solid, the largest volume first."""
         parts = cls(whole.decompose())
         parts._whole = whole
         return parts
 
     def __eq__(self, other: object) -> bool:
-        """Say whether both are the same parts."""
+        """Return true for a tuple of equal parts, or for an integer equal to the surface count."""
         if isinstance(other, int):
             deprecated("Solid.components as a number", "Solid.surface_count, or len() for parts")
             return self._whole.surface_count == other
         return super().__eq__(other)
 
     def __ne__(self, other: object) -> bool:
-        """Say whether they are not the same parts."""
+        """Return the negation of ``==``."""
         return not self == other
 
     def __hash__(self) -> int:
-        """Return the hash of a tuple."""
+        """Return the hash of the tuple of parts."""
         return super().__hash__()
 
     def __reduce__(self) -> "tuple[type[tuple[Solid, ...]], tuple[list[Solid]]]":
-        """Pickle the parts alone."""
+        """Pickle the parts as an ordinary tuple."""
         return tuple, (list(self),)

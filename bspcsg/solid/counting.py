@@ -1,8 +1,9 @@
-"""The record of the solids that count in an open block, separate from the solids themselves.
+"""Ledgers: the solids that an open block, a ``with`` statement, combines at its end.
 
-A function that makes a solid for its caller is `counted`: solids that it makes internally do not
-count, and its result replaces its operands. A query is `uncounted`: none of the solids that it
-makes count. Outside blocks both cost one lookup of a context variable.
+A solid counts if the block combines it. A function that makes a solid for its caller is `counted`:
+its result counts instead of its operands, and solids made inside the function do not count. A query
+is `uncounted`: no solid made inside it counts. Outside blocks, both decorators cost one lookup of a
+context variable.
 """
 
 import itertools
@@ -21,12 +22,12 @@ _Result = TypeVar("_Result")
 
 
 class Ledger:
-    """The solids that count in one block, in order, until it is closed.
+    """The solids that one block combines at its end, in order.
 
     Parameters
     ----------
     outer : Ledger or None
-        The ledger of the enclosing block.
+        The ledger of the enclosing block, if there is one.
     """
 
     def __init__(self, outer: "Ledger | None") -> None:
@@ -40,19 +41,19 @@ class Ledger:
 
     @property
     def solids(self) -> tuple["Solid", ...]:
-        """The solids that count, each at the position of its first operand."""
+        """The solids in order; a result stands where the first of its operands stood."""
         with self._lock:
             ranked = sorted(self._kept.values(), key=lambda entry: entry[0])
         return tuple(solid for _, solid in ranked)
 
     def discard(self, solids: Iterable["Solid"]) -> int | None:
-        """Remove solids; return the lowest position that became free."""
+        """Remove solids; return the lowest of their positions, or None if none was there."""
         with self._lock:
             gone = [self._kept.pop(id(solid), None) for solid in solids]
         return min((entry[0] for entry in gone if entry is not None), default=None)
 
     def put(self, solid: "Solid", rank: int | None = None) -> None:
-        """Add a solid once, at a position or at the end."""
+        """Add a solid at a position or at the end, unless the ledger contains it already."""
         with self._lock:
             place = next(self._ranks) if rank is None else rank
             self._kept.setdefault(id(solid), (place, solid))
@@ -62,7 +63,7 @@ _current: ContextVar[Ledger | None] = ContextVar("bspcsg_block", default=None)
 
 
 def current() -> Ledger | None:
-    """Return the ledger of the innermost open block of this thread or task."""
+    """Return the ledger of the innermost open block of this thread or task, None without one."""
     ledger = _current.get()
     # A task may outlive the block in which it was started.
     while ledger is not None and not ledger.is_open:
@@ -71,14 +72,14 @@ def current() -> Ledger | None:
 
 
 def opened() -> Ledger:
-    """Open a ledger inside the current one, and make it current."""
+    """Open a ledger for a block inside the current block, make it current and return it."""
     ledger = Ledger(current())
     _current.set(ledger)
     return ledger
 
 
 def close(ledger: Ledger) -> None:
-    """Close a ledger, and make the enclosing one current again."""
+    """Close the ledger of a block, and make that of the enclosing block current again."""
     ledger.is_open = False
     _current.set(ledger.outer)
 
@@ -93,7 +94,7 @@ def _apart() -> Iterator[None]:
 
 
 def count(made: "Solid", operands: Iterable["Solid"] = ()) -> None:
-    """Count a solid in the current block, instead of its operands."""
+    """Add a solid to the current block, and remove its operands from all open blocks."""
     ledger = current()
     if ledger is None:
         return
@@ -107,7 +108,7 @@ def count(made: "Solid", operands: Iterable["Solid"] = ()) -> None:
 
 
 def counted(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _Result]:
-    """Decorate a function so that its result, if a solid, counts instead of its operands."""
+    """Decorate a function so that the solid it returns replaces its arguments in a block."""
 
     @wraps(function)
     def counting(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
@@ -118,7 +119,8 @@ def counted(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _
         if not isinstance(result, _solid_type()):
             return result
         given = _solids_in((*args, *kwargs.values()))
-        # If the operand is used again, the result of this call must still count.
+        # If the function returns an argument, count a copy: a later use of the argument removes
+        # only the argument itself.
         made = result._alias() if any(result is solid for solid in given) else result
         count(made, given)
         return cast("_Result", made)
@@ -127,7 +129,7 @@ def counted(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _
 
 
 def uncounted(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _Result]:
-    """Decorate a function so that no solid that it makes counts."""
+    """Decorate a function so that solids made inside it do not enter a block."""
 
     @wraps(function)
     def silent(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
@@ -140,7 +142,7 @@ def uncounted(function: Callable[_Parameters, _Result]) -> Callable[_Parameters,
 
 
 def _solids_in(arguments: Iterable[Any]) -> list["Solid"]:
-    """Return the solids among arguments, also inside lists."""
+    """Return the solids among arguments, including those in lists and tuples."""
     solid_type = _solid_type()
     found: list[Solid] = []
     for argument in arguments:
@@ -150,7 +152,7 @@ def _solids_in(arguments: Iterable[Any]) -> list["Solid"]:
 
 
 def _solid_type() -> type["Solid"]:
-    """Return the class `Solid`, whose module imports this one."""
+    """Return the class `Solid`, imported late because its module imports this module."""
     from .solid import Solid
 
     return Solid

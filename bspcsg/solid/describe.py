@@ -13,7 +13,7 @@ from .leaf import ConstantLeaf, MeshLeaf, PlaneLeaf
 
 
 def describe(node: ExpressionNode, factors: FactorChain, mesh: Mesh | None) -> str:
-    """Return a short description of a transformed expression, without evaluating it."""
+    """Return the text of the `repr` of an expression under a transform, with its mesh if known."""
     content = node.content
     moved = ", transformed" if factors else ""
     if mesh is not None:

@@ -20,7 +20,7 @@ from .program import Operator
 
 
 class Placed(NamedTuple):
-    """A node under a transform."""
+    """A node of the expression graph, with the transform that is applied to its result."""
 
     node: "ExpressionNode"
     factors: FactorChain
@@ -28,7 +28,7 @@ class Placed(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Pending:
-    """An operation that has not been evaluated."""
+    """A set operation that has not been evaluated, with its operands."""
 
     operator: Operator
     operands: tuple[Placed, ...]
@@ -36,10 +36,10 @@ class Pending:
 
 
 class ExpressionNode:
-    """A vertex of the graph; only its identity counts.
+    """A node of the expression graph, compared by identity.
 
-    `content` changes once, from `Pending` to the leaf that it evaluates to. It is one attribute,
-    so other threads see either the whole operation or the whole result.
+    `content` changes once, from a `Pending` operation to the leaf that is its result. It is one
+    attribute, so other threads see either the whole operation or the whole result.
     """
 
     __slots__ = ("__weakref__", "_moved", "content")
@@ -49,9 +49,9 @@ class ExpressionNode:
         self._moved: Once[WeakKeyDictionary[FactorChain, ExpressionLeaf]] = Once()
 
     def placed(self, factors: FactorChain) -> ExpressionLeaf:
-        """Return the evaluated leaf under a transform; return the same object while it is in use.
+        """Return the node's evaluated leaf after a transform, cached for each transform in use.
 
-        So all operations on a moved solid share one mesh.
+        So all operations on a transformed solid share one mesh.
         """
         leaf = _evaluated(self.content)
         if not factors:
@@ -62,7 +62,7 @@ class ExpressionNode:
 
 
 def complement(placed: Placed) -> Placed:
-    """Return the complement; the complement of a complement is the original."""
+    """Return the complement of a node under a transform; twice gives the original node."""
     content = placed.node.content
     if isinstance(content, Pending) and content.operator == "not":
         inner = content.operands[0]
@@ -72,12 +72,15 @@ def complement(placed: Placed) -> Placed:
 
 
 def operation(operator: Operator, operands: Sequence[Placed]) -> ExpressionNode:
-    """Return the node that combines the operands."""
+    """Return a new node, not evaluated, that combines the operands by a set operation."""
     return ExpressionNode(Pending(operator, tuple(_settled(operand) for operand in operands)))
 
 
 def _settled(placed: Placed) -> Placed:
-    """Move a transform inside a complement, so that it acts on a bounded solid."""
+    """Return an operand; a transformed complement becomes the complement of a transformed solid.
+
+    The solid inside the complement is usually bounded, so it has a mesh to transform.
+    """
     content = placed.node.content
     if not placed.factors or not isinstance(content, Pending) or content.operator != "not":
         return placed
@@ -87,12 +90,12 @@ def _settled(placed: Placed) -> Placed:
 
 
 def evaluate(root: ExpressionNode) -> ExpressionLeaf:
-    """Return the leaf of a node, and evaluate the graph below it as needed.
+    """Evaluate a node, with the graph below it, and return the leaf that is its result.
 
     Raises
     ------
     BspcsgError
-        Any error of the core or of placing a leaf; the expression then stays unchanged.
+        Any error of the core or of transforming a leaf; the node then stays unevaluated.
     """
     waiting: list[tuple[ExpressionNode, Plan | None]] = [(root, None)]
     while waiting:
@@ -111,13 +114,13 @@ def evaluate(root: ExpressionNode) -> ExpressionLeaf:
 
 @dataclass
 class Plan:
-    """A program for the core, and the operands that its leaf lines name."""
+    """A program for the core, and the operands to which its lines ``("leaf", [k])`` refer."""
 
     program: list[ProgramLine] = field(default_factory=list)
     operands: list[Placed] = field(default_factory=list)
 
     def execute(self) -> ExpressionLeaf:
-        """Execute the program; the operands must be evaluated."""
+        """Execute the program and return its result; all operands must have been evaluated."""
         leaves = [_operand_leaf(operand) for operand in self.operands]
         return run(Record(self.program, tuple(leaves)))
 
@@ -160,15 +163,16 @@ def _operand_leaf(placed: Placed) -> ExpressionLeaf:
 
 
 def _open_operation(placed: Placed) -> Pending | None:
-    """Return the operation that the program can include, or None if the node is an operand."""
+    """Return a node's operation, or None if the node is evaluated or under a transform."""
     content = placed.node.content
     return content if isinstance(content, Pending) and not placed.factors else None
 
 
 def _arguments(pending: Pending, uses: dict[ExpressionNode, int]) -> list[Placed]:
-    """Return the operands, with nested operations of the same associative operator flattened.
+    """Return an operation's operands, those of nested unions or intersections included.
 
-    Shared nodes are not flattened: they keep a line of their own.
+    A union in a union or an intersection in an intersection is replaced by its operands, unless the
+    program uses it several times: then it keeps its own line.
     """
     arguments: list[Placed] = []
     waiting = list(reversed(pending.operands))

@@ -1,4 +1,4 @@
-"""The boundedness of solids and of results of operations, found without the core."""
+"""Whether solids and the results of set operations are bounded, found without the core."""
 
 from collections.abc import Sequence
 from typing import TypeAlias
@@ -10,7 +10,7 @@ Extent: TypeAlias = bool | None
 
 
 def _either(operands: Sequence[Extent]) -> Extent:
-    # One operand with a bounded complement suffices; otherwise all operands must be bounded.
+    # A union has a bounded complement if one operand has; it is bounded if all operands are.
     return False if False in operands else all(operands) or None
 
 
@@ -26,5 +26,5 @@ def _other(operand: Extent) -> Extent:
     return None if operand is None else not operand
 
 
-#: The rules for the extent of a result.
+#: The extent of the result of each set operation, given the extents of its operands.
 EXTENTS: Algebra[Extent] = Algebra(_either, _both, _odd, _other)

@@ -1,8 +1,9 @@
 """Leaves of expressions: operands that are partition trees, or can become one directly.
 
-A leaf returns its tree at a pitch, and can be placed by a transform. Placing follows one rule
-(`_place`): the outermost factors that are lattice motions move the tree exactly; the other factors
-act on the leaf's coordinates with one rounding, before they are snapped to the lattice again.
+A leaf returns its tree on the lattice of a pitch, and its image under a transform, which is a chain
+of affine maps (factors). Images follow one rule (`_place`): the outermost factors that are lattice
+motions move the tree exactly; the other factors transform the coordinates of the leaf's mesh, which
+are rounded once and snapped to the lattice again.
 """
 
 from collections.abc import Callable, Generator, Mapping, Sequence
@@ -44,12 +45,12 @@ def _crosses_there(tree: Tree, motion: transform.LatticeMotion) -> bool:
 
 
 class Pitches(Last[int, Tree]):
-    """A cache of a tree on the last finer lattice, so that all users there share one mesh."""
+    """A cache of one tree on a finer lattice, the last one used, so that its users share it."""
 
     __slots__ = ()
 
     def of(self, tree: Tree, pitch: int) -> Tree:
-        """Return the same solid on the lattice of this pitch, which must not be coarser."""
+        """Return the tree of the same solid on the lattice of a pitch that is not coarser."""
         if tree.pitch == pitch:
             return tree
         known = self.get(pitch)
@@ -59,26 +60,26 @@ class Pitches(Last[int, Tree]):
             return self.keep(pitch, tree.refined(pitch))
 
 
-#: The smallest number of lattice steps across a mesh whose corners may be rounded to the lattice of
-#: other operands. Import uses no fewer either.
+#: The smallest extent, in lattice steps, of a mesh whose corners may be rounded to the coarser
+#: lattice of another operand. Import chooses no lattice with fewer steps across a mesh either.
 _MIN_STEPS_ACROSS = 10**6
 
 
 class MeshLeaf:
-    """A leaf of a given mesh.
+    """A leaf of an expression that is a mesh; its partition tree is made on first use.
 
     Parameters
     ----------
     vertices : (n, 3) float64, in model units
     faces : (m, 3) int64, indices of `vertices`
-        Both may belong to the caller until `let_go` is called.
+        Both arrays may belong to the caller until `let_go` is called.
     pitch : int or None
         Exponent of the lattice step; by default the core chooses it from the size.
     trusted : bool
         True if the caller guarantees that the mesh is closed and its faces meet only in edges and
         vertices.
     winding : str
-        The winding numbers that are inside.
+        The rule that says which winding numbers are inside.
     attributes : Attributes, optional
         The attributes of the mesh.
     """
@@ -99,7 +100,7 @@ class MeshLeaf:
         self._tree: Once[Tree] = Once()
         self._rounded: str | None = None
         self._is_moved = False
-        #: The pitch that transforms keep, as far as its lattice reaches; None for one that suits.
+        #: The pitch that transforms keep if its lattice has the range; None to choose by size.
         self.given_pitch = pitch
         self._pitches = Pitches()
         self.last_moved: Last[FactorChain, ExpressionLeaf] = Last()
@@ -111,43 +112,44 @@ class MeshLeaf:
 
     @property
     def extent(self) -> Extent:
-        """A closed mesh is bounded."""
+        """True, since a closed mesh is bounded."""
         return True
 
     @property
     def source_attributes(self) -> SourceAttributes:
-        """The attributes of the mesh."""
+        """The attributes of the mesh, as those of its only source; empty if it has none."""
         said = self._settled().attributes
         return () if said is None else (said,)
 
     def arrays(self) -> tuple[FloatArray, IndexArray]:
-        """Return vertices and faces as given or as moved."""
+        """Return the mesh's vertices and faces, after the transform that made the leaf, if any."""
         arrays = self._settled().arrays
         return self.grown().given_arrays() if arrays is None else arrays
 
     def let_go(self) -> None:
-        """Release the given arrays: the tree holds their data, or they are copied."""
+        """Release the caller's arrays: their data are read from the tree, or else copied."""
         vertices, faces = self.arrays()
         held = self.grown().holds_given
         arrays = None if held else (vertices.copy(), faces.copy())
         self._content = replace(self._settled(), arrays=arrays)
 
     def grown(self) -> Tree:
-        """Return the tree on the leaf's own lattice, made on first use."""
+        """Return the mesh's partition tree on its own lattice; the first call makes the tree."""
         return self._tree.of(self._grow)
 
     def tree(self, pitch: int) -> Tree:
-        """Return the tree on the lattice of this pitch."""
+        """Return the leaf's partition tree on the lattice of step ``10**pitch``."""
         return self._pitches.of(self.grown(), pitch)
 
     def placed(self, factors: FactorChain) -> "ExpressionLeaf":
-        """Return the leaf moved by the factors, outermost first."""
+        """Return the leaf's image under a chain of affine maps, the outermost map first."""
         return _place(self, factors)
 
     def coarsened(self, pitch: int) -> "MeshLeaf | None":
-        """Return the leaf on a coarser lattice, with a note if that moves its corners.
+        """Return the leaf on a coarser lattice, with a finding if its corners must be rounded.
 
-        Return None if they would move, and the mesh has few steps there.
+        Return None if corners must be rounded and the mesh measures less than `_MIN_STEPS_ACROSS`
+        steps of the coarser lattice.
         """
         vertices, faces = self.arrays()
         is_exact = np.array_equal(np.round(vertices, -pitch), vertices)
@@ -157,21 +159,21 @@ class MeshLeaf:
         leaf._content = replace(self._settled(), arrays=(vertices, faces))
         if not is_exact:
             leaf._rounded = (
-                f"an operand was rounded to steps of 10^{pitch}, as another reaches beyond the"
-                f" lattice of its own pitch 10^{self.pitch}"
+                f"an operand was rounded to a coarser lattice of step 10^{pitch}, because"
+                f" another operand is too large for its own lattice of step 10^{self.pitch}"
             )
         return leaf
 
     def transformed(self, factors: FactorChain) -> "MeshLeaf":
-        """Return the leaf of the mesh with vertices moved by the factors."""
-        # Rounding moves vertices, so the caller's guarantee no longer holds.
+        """Return the leaf of the mesh whose vertices a chain of affine maps has transformed."""
+        # Rounding moves vertices, so the image of a trusted mesh is not trusted.
         said = AttributedMesh(*self.arrays(), self._settled().attributes)
         found = None if self._trusted else sewn(said, self.grown())
         mesh = said if found is None else found.mesh
         return MeshLeaf.moved(mesh, factors, self.given_pitch, self._winding)
 
     def touches_itself(self, motion: transform.LatticeMotion) -> bool:
-        """Return whether rounding made the mesh cross itself, or would after this motion.
+        """Return true if rounding made the mesh cross itself, or would after a lattice motion.
 
         If so, its coordinates must be moved and mended instead of its tree.
         """
@@ -185,9 +187,9 @@ class MeshLeaf:
         pitch: int | None = None,
         winding: WindingRule = "positive",
     ) -> "MeshLeaf":
-        """Return the leaf of a moved mesh; crossings from moving are mended before its first use.
+        """Return the leaf of a transformed mesh; crossings due to rounding are mended on first use.
 
-        The leaf is on the lattice of the given pitch, unless the mesh reaches beyond that.
+        The leaf is on the lattice of `pitch`, unless that is None or the mesh exceeds its range.
         """
         moved = mesh.moved(factors)
         held = moved.held_pitch(pitch)
@@ -200,11 +202,11 @@ class MeshLeaf:
 
     @cached_property
     def shown(self) -> Tree:
-        """The tree as it is made into a mesh."""
+        """The tree from which the mesh is made: faces with different attributes are not joined."""
         return patched(self.grown(), self.source_attributes)
 
     def _settled(self) -> "_Settled":
-        """Return the content; crossings from moving the vertices are mended on first use."""
+        """Return the mesh's arrays and attributes, after mending crossings due to a transform."""
         content = self._content
         if isinstance(content, _Moved):
             content = self._content = content.mended()
@@ -214,7 +216,7 @@ class MeshLeaf:
         try:
             return self._imported()
         except InvalidMeshError as error:
-            # A transform may make a mesh so thin that rounding leaves nothing.
+            # A transform may make a mesh so thin that rounding leaves no triangle with area.
             if not self._is_moved or error.code != "empty_mesh":
                 raise
             pitch = DEFAULT_PITCH if self._chosen_pitch is None else self._chosen_pitch
@@ -223,7 +225,7 @@ class MeshLeaf:
     def _imported(self) -> Tree:
         with core_errors():
             tree = Tree.from_mesh(*self.arrays(), self._chosen_pitch, self._trusted, self._rounded)
-            # A mended mesh touches itself, and may cross on the lattice.
+            # A mended mesh touches itself, and may cross itself once it is snapped to the lattice.
             if self._settled().is_mended or self._winding != "positive":
                 tree = tree.normalized(self._winding)
         return tree
@@ -231,12 +233,12 @@ class MeshLeaf:
 
 @dataclass(frozen=True, eq=False)
 class _Settled:
-    """The content of a leaf that needs no more mending.
+    """The arrays and attributes of a mesh, after mending if a transform made it cross itself.
 
     Parameters
     ----------
     arrays : (n, 3) float64 and (m, 3) int64, or None
-        None if the tree holds them.
+        None if they are read from the tree instead.
     attributes : Attributes or None
     is_mended : bool
         True if moving the vertices made the mesh cross itself.
@@ -249,7 +251,7 @@ class _Settled:
 
 @dataclass(frozen=True, eq=False)
 class _Moved:
-    """A moved mesh, whose crossings are mended on demand.
+    """A transformed mesh whose crossings due to rounding have not been mended.
 
     Parameters
     ----------
@@ -257,6 +259,7 @@ class _Moved:
     before : (n, 3) float64
         The vertices before they were moved.
     pitch : int
+        Exponent of the lattice step.
     """
 
     mesh: AttributedMesh
@@ -265,7 +268,7 @@ class _Moved:
     _result: Once[_Settled] = field(default_factory=Once, init=False, repr=False)
 
     def mended(self) -> _Settled:
-        """Return the mended mesh."""
+        """Return the mesh without the crossings that rounding caused; computed once."""
         return self._result.of(self._mend)
 
     def _mend(self) -> _Settled:
@@ -276,7 +279,7 @@ class _Moved:
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """The evaluation of a tree: a program and its leaves, which have no records themselves."""
+    """The program that made a tree, and its operands, which have no records themselves."""
 
     program: list[ProgramLine]
     leaves: tuple["ExpressionLeaf", ...]
@@ -284,20 +287,21 @@ class Record:
 
 @dataclass(frozen=True, eq=False)
 class TreeLeaf:
-    """A leaf of a tree that was evaluated, loaded or moved.
+    """A leaf of an expression that is a partition tree: evaluated, loaded or moved.
 
     Parameters
     ----------
     result : Tree
     record : Record or None
-        The record of its evaluation, if it is kept.
+        The program and the operands that made the tree, if they are stored.
     extent : Extent
+        Whether the solid, or its complement, is bounded.
     source_attributes : tuple of Attributes or None
         The attributes of each source of the tree; empty if there are none.
     given_pitch : int or None
         As for `MeshLeaf`.
     tags : mapping of str to object
-        The attributes that `tagged` set on all faces, in case the record is run again.
+        The attributes that `tagged` set on all faces, in case the program is run again.
     """
 
     result: Tree
@@ -317,26 +321,33 @@ class TreeLeaf:
         return self.result.pitch
 
     def tree(self, pitch: int) -> Tree:
-        """Return the tree on the lattice of this pitch."""
+        """Return the leaf's partition tree on the lattice of step ``10**pitch``."""
         return self._pitches.of(self.result, pitch)
 
     def placed(self, factors: FactorChain) -> "ExpressionLeaf":
-        """Return the leaf moved by the factors, outermost first."""
+        """Return the leaf's image under a chain of affine maps, the outermost map first."""
         return self if self.is_constant else _place(self, factors)
 
     def transformed(self, factors: FactorChain) -> "ExpressionLeaf | None":
-        """Return the leaf of the moved output mesh; shared vertices stay shared.
+        """Return the leaf of the solid's mesh after a transform; shared vertices stay shared.
 
-        None if neither the solid nor its complement has an output mesh.
+        If the solid is unbounded, transform its complement. None if both are unbounded.
         """
         return self._made_anew(lambda leaf: _moved_output(leaf, factors))
 
     def coarsened(self, pitch: int) -> "ExpressionLeaf | None":
-        """Return the leaf of the output mesh on a coarser lattice; None as for `transformed`."""
+        """Return the leaf of the solid's output mesh on a coarser lattice.
+
+        None if the solid and its complement are unbounded, or if the mesh measures too few steps.
+        """
         return self._made_anew(lambda leaf: _moved_output(leaf, FactorChain()).coarsened(pitch))
 
     def _made_anew(self, make: "Callable[[TreeLeaf], MeshLeaf | None]") -> "ExpressionLeaf | None":
-        """Apply a function to the solid's mesh, or to its complement's mesh and complement that."""
+        """Return the result of a function of a bounded leaf, or None if there is none.
+
+        Apply it to this leaf, or if the solid is unbounded, to its complement, and complement the
+        result.
+        """
         if self._is_bounded():
             return make(self)
         outside = run(Record(COMPLEMENT, (self,)))
@@ -347,14 +358,14 @@ class TreeLeaf:
         return replace(made, record=None, extent=False)
 
     def touches_itself(self, motion: transform.LatticeMotion) -> bool:
-        """Return whether a mesh of the tree would cross itself after this motion."""
+        """Return true if a mesh of the tree would cross itself after a lattice motion."""
         return _crosses_there(self.result, motion)
 
     def forgetful(self) -> "TreeLeaf":
         """Return the leaf without its record, unless a later transform would need the record.
 
-        A solid that is unbounded with an unbounded complement has no mesh to transform. Expressions
-        with half-spaces may give such solids.
+        If a solid and its complement are both unbounded, as results of half-spaces may be, there is
+        no mesh to transform.
         """
         if self.extent is None:
             return self
@@ -362,7 +373,7 @@ class TreeLeaf:
 
     @cached_property
     def shown(self) -> Tree:
-        """The tree as it is made into a mesh."""
+        """The tree from which the mesh is made: faces with different attributes are not joined."""
         return patched(self.result, self.source_attributes)
 
     @property
@@ -394,7 +405,7 @@ class PlaneLeaf:
     _trees: Last[int, Tree] = field(default_factory=Last, init=False, repr=False)
 
     def tree(self, pitch: int) -> Tree:
-        """Return the tree on the lattice of this pitch."""
+        """Return the leaf's partition tree on the lattice of step ``10**pitch``."""
         known = self._trees.get(pitch)
         if known is not None:
             return known
@@ -403,17 +414,17 @@ class PlaneLeaf:
             return self._trees.keep(pitch, Tree.half_space(plane.row, pitch, plane.note))
 
     def beyond(self, pitch: int) -> "ConstantLeaf | None":
-        """Return the empty set or all of space if the plane lies beyond the lattice, else None."""
+        """Return the empty set or all of space for a plane beyond the lattice, else None."""
         above = self.plane.is_above_lattice(pitch)
         return None if above is None else ConstantLeaf(above)
 
     def placed(self, factors: FactorChain) -> "ExpressionLeaf":
-        """Return the half-space moved by the factors, outermost first, in exact numbers."""
+        """Return the half-space's exact image under a chain of affine maps, outermost first."""
         return PlaneLeaf(factors.fold(self.plane, _moved_plane, self._images))
 
 
 def _moved_plane(plane: Hyperplane, factor: transform.Factor) -> Hyperplane:
-    """Return the image of a plane; cofactors map its normal without inverting the matrix."""
+    """Return the exact image of a plane under an affine map, by the map's cofactors."""
     cofactors, determinant, shift = _exact_parts(factor)
     old = [entry if determinant > 0 else -entry for entry in map(Fraction, plane.normal)]
     normal = [transform.exact_dot(row, old) for row in cofactors]
@@ -425,14 +436,17 @@ def _moved_plane(plane: Hyperplane, factor: transform.Factor) -> Hyperplane:
 def _exact_parts(
     factor: transform.Factor,
 ) -> tuple[list[list[Fraction]], Fraction, list[Fraction]]:
-    """Return the cofactors and the determinant of the linear part, and the shift."""
+    """Return an affine map's cofactors and determinant (of its linear part), and its shift."""
     linear = _linear_part(factor)
     shift = [exact_number(entry) for entry in factor.matrix[:3, 3].tolist()]
     return transform.cofactors(linear), transform.determinant(linear), shift
 
 
 def _linear_part(factor: transform.Factor) -> list[list[Fraction]]:
-    """Return the rows as their decimals, if these have the same orientation as the doubles."""
+    """Return the rows of an affine map's linear part as fractions.
+
+    Doubles are read as their shortest decimals, or exactly if that would change the orientation.
+    """
     rows = [[exact_number(entry) for entry in row] for row in factor.matrix[:3, :3].tolist()]
     sign = transform.determinant_sign(factor.matrix)
     return rows if sign * transform.determinant(rows) > 0 else transform.exact_linear(factor.matrix)
@@ -449,16 +463,16 @@ class ConstantLeaf:
 
     @property
     def extent(self) -> Extent:
-        """The empty set is bounded; all of space has a bounded complement."""
+        """True for the empty set, which is bounded; False for all of space."""
         return not self.full
 
     def tree(self, pitch: int) -> Tree:
-        """Return the tree on the lattice of this pitch."""
+        """Return the leaf's partition tree on the lattice of step ``10**pitch``."""
         with core_errors():
             return Tree.full(pitch) if self.full else Tree.empty(pitch)
 
     def placed(self, factors: FactorChain) -> "ExpressionLeaf":
-        """Return the same set."""
+        """Return the leaf itself: no transform changes the empty set or all of space."""
         del factors
         return self
 
@@ -467,21 +481,22 @@ ExpressionLeaf: TypeAlias = MeshLeaf | TreeLeaf | PlaneLeaf | ConstantLeaf
 
 
 def tree_of(leaf: ExpressionLeaf) -> Tree:
-    """Return the leaf's tree on its own lattice, or on the default one if it has none."""
+    """Return a leaf's tree on its own lattice, or on the default lattice if it has none."""
     return leaf.tree(_common_pitch([leaf]))
 
 
 def shown_tree(leaf: ExpressionLeaf) -> Tree:
-    """Return the tree for the leaf's mesh: faces with different attributes are not joined."""
+    """Return the tree for a leaf's mesh, in which faces of different attributes are not joined."""
     if leaf.source_attributes and isinstance(leaf, (MeshLeaf, TreeLeaf)):
         return leaf.shown
     return tree_of(leaf)
 
 
 def tagged(leaf: ExpressionLeaf, values: Mapping[str, object]) -> ExpressionLeaf:
-    """Return a leaf with attribute values on every face; half-spaces have no faces.
+    """Return a leaf of the same set with one value of each given attribute on all faces.
 
-    Its sources get new identities, since other copies of the leaf may have other values.
+    A half-space, the empty set and all of space are returned unchanged, having no faces. The
+    sources get new identities, since the faces of the original leaf have other values.
     """
     if COLOR in values:
         values = {**values, COLOR: one_color(values[COLOR])}
@@ -505,13 +520,13 @@ def _common_pitch(leaves: Sequence[ExpressionLeaf]) -> int:
 
 
 def _given_pitch_of(leaves: Sequence[ExpressionLeaf], result: Tree) -> int | None:
-    """Return the pitch of a result if it was given for all leaves of that pitch."""
+    """Return a result's pitch if the user gave it for every leaf of that pitch, else None."""
     given = {leaf.given_pitch for leaf in leaves if leaf.pitch == result.pitch}
     return result.pitch if given == {result.pitch} else None
 
 
 def run(record: Record) -> TreeLeaf:
-    """Evaluate a program on its leaves, all on one lattice (see `_on_one_lattice`)."""
+    """Evaluate a program on its operands, brought to one lattice, and return the result's leaf."""
     extents = [leaf.extent for leaf in record.leaves]
     extent = EXTENTS.evaluate(record.program, extents)
     leaves, trees = _on_one_lattice(record.leaves, extent)
@@ -523,21 +538,21 @@ def run(record: Record) -> TreeLeaf:
 
 
 def bounded_on_one_lattice(leaves: Sequence[ExpressionLeaf]) -> list[Tree]:
-    """Return the trees of bounded solids on a common lattice (see `_on_one_lattice`)."""
+    """Return the trees of bounded solids on the finest of their lattices with range for all."""
     return _on_one_lattice(leaves, True)[1]
 
 
 def _on_one_lattice(
     leaves: Sequence[ExpressionLeaf], extent: Extent
 ) -> tuple[Sequence[ExpressionLeaf], list[Tree]]:
-    """Return leaves and their trees on the finest of their lattices that holds all of them.
+    """Return leaves and their trees on the finest of their lattices with range for all of them.
 
     Parameters
     ----------
     leaves : sequence of leaves
     extent : Extent
-        The extent of the result. If it is known, planes beyond the lattice do not affect the
-        result.
+        Whether the result, or its complement, is bounded. If that is known, planes outside the
+        lattice's range do not affect the result.
     """
     pitch = _common_pitch(leaves)
     try:
@@ -552,7 +567,7 @@ def _on_one_lattice(
 
 
 def _finest_for_all(leaves: Sequence[ExpressionLeaf], extent: Extent) -> int:
-    """Return the finest pitch whose lattice holds every leaf of a coarser pitch."""
+    """Return the finest pitch whose lattice has the range for every leaf of a coarser pitch."""
     finest = _common_pitch(leaves)
     coarser = range(finest, MAX_PITCH)
     fitting = (
@@ -574,7 +589,7 @@ def _fits_lattice(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> bool:
 
 
 def _fitted(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> ExpressionLeaf | None:
-    """Return a leaf for a lattice that may be coarser than its own, or None if it has none."""
+    """Return a leaf for the lattice of `pitch`, coarsened if need be; None if that fails."""
     if isinstance(leaf, PlaneLeaf):
         return leaf if extent is None else leaf.beyond(pitch) or leaf
     if isinstance(leaf, ConstantLeaf) or leaf.pitch is None or leaf.pitch >= pitch:
@@ -590,12 +605,13 @@ def _moved_output(leaf: TreeLeaf, factors: FactorChain) -> MeshLeaf:
     return MeshLeaf.moved(AttributedMesh(vertices, faces, said), factors, leaf.given_pitch)
 
 
-#: Something that is being moved: it asks for leaves under factors, and is sent them where they go.
+#: A generator that transforms a leaf: it yields operands to transform, each with its factors, is
+#: sent their images, and returns the image of the leaf.
 _Moving: TypeAlias = Generator[tuple["ExpressionLeaf", FactorChain], "ExpressionLeaf", Any]
 
 
 def _place(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> ExpressionLeaf:
-    """Move a leaf, or its operands instead, without recursion."""
+    """Return a leaf's image under a transform, by a stack of generators, not by recursion."""
     waiting = [_placing(leaf, factors)]
     answer: Any = None
     while waiting:
@@ -615,7 +631,10 @@ def _place(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> ExpressionLeaf:
 
 
 def _placing(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
-    """Move a leaf exactly by the outer factors that allow it, and by coordinates for the rest."""
+    """Transform a leaf: its mesh by the inner factors, then its tree by the outer lattice motion.
+
+    Transform the mesh by all factors if the outer ones are no exact motion of the tree.
+    """
     inner = factors.inner
     if len(inner) == len(factors):
         return (yield from _transforming(leaf, factors)) if factors else leaf
@@ -637,7 +656,7 @@ def _placing(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
 
 
 def _base(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
-    """Move the mesh of a leaf, once for all placements that differ by lattice motions."""
+    """Transform a leaf by the inner factors, and cache the result for other outer motions."""
     known = leaf.last_moved.get(factors)
     if known is not None:
         return known
@@ -645,14 +664,14 @@ def _base(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
 
 
 def _transforming(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
-    """Move the mesh of a leaf, or its operands if it has none."""
+    """Transform the mesh of a leaf; if it has none, transform its operands and combine them."""
     moved = leaf.transformed(factors)
     if moved is not None:
         return moved
     if not isinstance(leaf, TreeLeaf) or leaf.record is None:
         raise UnboundedError(
-            "This solid and its complement both reach to infinity, so there is no mesh that"
-            " the transform could act on; transform its operands instead.",
+            "This solid and its complement both reach to infinity, so it has no mesh that"
+            " could be transformed; transform the operands of the operation instead.",
             "unbounded",
         )
     leaves = []

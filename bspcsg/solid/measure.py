@@ -18,17 +18,17 @@ if TYPE_CHECKING:
 #: The moduli of `volume_residues`.
 _PRIMES = (2**61 - 1, 2**61 - 31)
 
-#: Fractions of more digits take more than about a second to bring to lowest terms.
+#: The default limit of digits of exact volumes: reducing a longer fraction takes over a second.
 LONGEST_VOLUME = 200_000
 
-#: The largest bound on decimal digits that the core gets, which counts bits in 64-bit integers. No
-#: machine holds a number with more digits.
+#: The largest limit of decimal digits that is passed to the core, which counts bits in 64-bit
+#: integers. No memory has room for a number with more digits.
 _MAX_DIGITS = 10**15
 
-#: Volumes below this part of what they are summed from may be rounding.
+#: A volume below this fraction of the sum of its absolute terms may be a rounding error.
 _ROUNDING = 1e-9
 
-#: The largest number of places that a finding names.
+#: The largest number of faces that a finding lists.
 _MAX_PLACES_NAMED = 8
 
 
@@ -59,7 +59,8 @@ def rounded_volume(solid: "Solid") -> float:
 def volume_near(solid: "Solid") -> Fraction:
     """Return the volume in cubic model units to within 2**-100 cubic lattice steps.
 
-    Far finer than a double and, unlike the exact volume, cheap for any number of cut faces.
+    This is far more precise than a double and, unlike the exact volume, cheap for any number of cut
+    faces.
     """
     with core_errors():
         return Fraction(*solid.normalized().tree.volume_near())
@@ -68,8 +69,9 @@ def volume_near(solid: "Solid") -> Fraction:
 def volume_residues(solid: "Solid") -> tuple[int, int] | None:
     """Return six times the exact volume in cubic lattice steps, modulo 2**61 - 1 and 2**61 - 31.
 
-    If these agree, sums of exact volumes of solids of one pitch agree, up to a probability of
-    2**-122; comparing takes one pass. None in the rare case that a prime divides the denominator.
+    Two sums of exact volumes of solids of one pitch can be compared by their residues in one pass
+    each: different sums agree with a probability of 2**-122. None in the rare case that a prime
+    divides the denominator.
     """
     with core_errors():
         return solid.normalized().tree.volume_residues()
@@ -78,8 +80,8 @@ def volume_residues(solid: "Solid") -> tuple[int, int] | None:
 def residues_of_volume(solid: "Solid") -> tuple[int | None, ...]:
     """Return six times the exact volume in cubic units, modulo two primes.
 
-    Unlike `volume_residues` they depend only on the set, not on its lattice or triangles; None if
-    the prime divides the reduced denominator.
+    Unlike those of `volume_residues`, the residues depend only on the set of points, not on its
+    lattice or triangles. An entry is None if its prime divides the reduced denominator.
     """
     steps = volume_residues(solid)
     if steps is not None:
@@ -96,9 +98,10 @@ def residues_of_volume(solid: "Solid") -> tuple[int | None, ...]:
 
 
 def overlaps_of(solid: "Solid") -> tuple[Finding, ...]:
-    """Return the findings about a solid whose mesh is not its boundary.
+    """Return findings if the mesh of a solid is not the solid's boundary, else an empty tuple.
 
-    For this, inputs that are not trusted are united with themselves, once.
+    Such a mesh has faces that cross, overlap or lie inside the solid, or shells that are inside
+    out. The check normalizes the solid.
     """
     reduced = solid.normalized()
     if solid.tree.simple is not False:
@@ -109,8 +112,9 @@ def overlaps_of(solid: "Solid") -> tuple[Finding, ...]:
     if turned and not crossing:
         return turned
     message = (
-        f"faces cross, overlap, touch or lie inside: {len(mesh.faces)} triangles, where the"
-        f" boundary of the solid has {len(reduced.to_mesh().faces)}"
+        "the mesh has faces that cross, overlap, touch or lie inside the solid: it has"
+        f" {len(mesh.faces)} triangles, but the boundary of the solid has"
+        f" {len(reduced.to_mesh().faces)}"
     )
     if crossing:
         message += (
@@ -122,9 +126,10 @@ def overlaps_of(solid: "Solid") -> tuple[Finding, ...]:
 
 
 def _turned_shells(mesh: Mesh, reduced: "Solid") -> tuple[Finding, ...]:
-    """Return the findings about inside-out shells, which the solid therefore excludes.
+    """Return a finding about connected surfaces that are inside out, so that the solid omits them.
 
-    The walls of cavities are inside out, too, but lie on the boundary of the solid.
+    The walls of cavities are inside out, too, but lie on the boundary of the solid, so they do not
+    count.
     """
     owner = surfaces_of(mesh.faces, len(mesh.vertices))
     corners = mesh.vertices[mesh.faces]
@@ -142,14 +147,14 @@ def _turned_shells(mesh: Mesh, reduced: "Solid") -> tuple[Finding, ...]:
     if not found:
         return ()
     many = "1 body is" if len(found) == 1 else f"{len(found)} bodies are"
-    message = f"{many} inside out, and left out of the solid; the first near {_near(mesh, found)}"
+    message = f"{many} inside out, so left out of the solid; the first is near {_near(mesh, found)}"
     return (
         Finding("inside_out", "warning", message, tuple(found[:_MAX_PLACES_NAMED]), len(found)),
     )
 
 
 def _faults_of(solid: "Solid", told: tuple[Finding, ...]) -> tuple[Finding, ...]:
-    """Return the other findings about faults in the certificate of a solid's mesh."""
+    """Return findings about faults of a solid's mesh that the given findings do not cover."""
     codes = {one.code for one in told}
     more: tuple[Finding, ...] = ()
     # An inside-out mesh may give the empty set; comparing it with the boundary is then useless.
@@ -164,23 +169,27 @@ def _faults_of(solid: "Solid", told: tuple[Finding, ...]) -> tuple[Finding, ...]
 
 
 def _crossings_of(solid: "Solid", *, is_on_lattice: bool) -> tuple[Finding, ...]:
-    """Return the finding about a mesh that crosses itself, on the lattice or only off it."""
+    """Return a finding if the mesh of a solid crosses itself, else an empty tuple.
+
+    Its code is "self_overlap" if faces cross on the lattice, too, and "crossing" if they cross only
+    in the given coordinates, by less than a lattice step.
+    """
     mesh = solid.to_mesh()
     crossing = _crossing_faces(mesh)
     if not crossing:
         return ()
-    code, much = "crossing", " of inputs cross or overlap others by less than a step of the lattice"
+    code, much = "crossing", " of the inputs cross or overlap others by less than a lattice step"
     if is_on_lattice:
         code, much = "self_overlap", " cross or overlap others"
-    message = f"these triangles{much}; the first near {_near(mesh, crossing)}"
+    message = f"these triangles{much}; the first is near {_near(mesh, crossing)}"
     return (Finding(code, "warning", message, tuple(crossing[:_MAX_PLACES_NAMED]), len(crossing)),)
 
 
 def _flat(mesh: Mesh, faces: list[int]) -> Finding:
-    """Return the finding about triangles without area in the given coordinates."""
+    """Return the finding about triangles that have area on the lattice, but none in doubles."""
     message = (
-        "these triangles of inputs have no area in doubles, though their corners have on the"
-        f" lattice; the first near {_near(mesh, faces)}"
+        "these triangles of the inputs have no area in doubles, although they have on the"
+        f" lattice; the first is near {_near(mesh, faces)}"
     )
     return Finding("flat", "note", message, tuple(faces[:_MAX_PLACES_NAMED]), len(faces))
 

@@ -1,4 +1,4 @@
-"""Transforms as methods, for solids and objects that contain solids."""
+"""`Movable`: the methods for affine transforms of solids and of objects that contain solids."""
 
 from abc import ABC, abstractmethod
 from typing import Any, Self
@@ -13,13 +13,13 @@ from ..parameters import number
 
 
 class Movable(ABC):
-    """An object that transforms can move in space."""
+    """An object in space, such as a solid or an assembly, that affine maps can transform."""
 
     __slots__ = ()
 
     @abstractmethod
     def _moved(self, factors: Factors) -> Self:
-        """Return the object moved by the factors, outermost first."""
+        """Return the object's image under a sequence of affine maps; the last map acts first."""
 
     def translate(
         self,
@@ -30,7 +30,7 @@ class Movable(ABC):
     ) -> Self:
         """Return the object translated by three numbers, one vector, or along named axes.
 
-        This is exact if the numbers are whole lattice steps, as short decimals are.
+        The result is exact if the numbers are multiples of the lattice step, as short decimals are.
 
         Parameters
         ----------
@@ -67,10 +67,11 @@ class Movable(ABC):
             In degrees, counter-clockwise when the axis points at the viewer. Three angles turn
             about x, then y, then z, and `axis` is ignored.
         axis : {"x", "y", "z"} or (3,) float
+            The direction of the axis of rotation.
         x, y, z : float
             In degrees, instead of `angle`: about x, then y, then z.
         about : (3,) float
-            A point of the axes.
+            A point through which the axis passes, or each of the three axes.
 
         Examples
         --------
@@ -80,7 +81,10 @@ class Movable(ABC):
         """
         turns = number(x, "x"), number(y, "y"), number(z, "z")
         if angle is not None and any(turns):
-            raise invalid_parameter("A rotation is by an angle and an axis, or by x, y and z.")
+            raise invalid_parameter(
+                "Both an angle and rotations about x, y or z are given; give either angle and"
+                " axis, or x, y and z."
+            )
         turn: Any = turns if angle is None else angle
         is_one = axes_of(turn) == 0
         factors = (transform.rotation(turn, axis),) if is_one else transform.euler_rotation(turn)
@@ -95,17 +99,17 @@ class Movable(ABC):
         z: Scalar | None = None,
         about: Vector = (0, 0, 0),
     ) -> Self:
-        """Return the object scaled by one factor, by three, or along named axes.
+        """Return the object scaled by one factor, by three factors, or along named axes.
 
         Parameters
         ----------
         factor : float or (3,) float
         *others : float
-            The factors along y and z, if `factor` is that along x.
+            The factors along y and z, if `factor` is the factor along x.
         x, y, z : float, optional
             Instead of `factor`; 1 along an axis that is not named.
         about : (3,) float
-            The point that stays.
+            The point that does not move.
 
         Examples
         --------
@@ -126,14 +130,14 @@ class Movable(ABC):
         z: Scalar | None = None,
         about: Vector = (0, 0, 0),
     ) -> Self:
-        """Return the mirror image in a plane.
+        """Return the object's mirror image across a plane.
 
         Parameters
         ----------
         normal : {"x", "y", "z"} or (3,) float
-            Of the plane; need not have unit length.
+            The normal of the plane; need not have unit length.
         *others : float
-            The y and z of the normal, if `normal` is its x.
+            The y and z coordinates of the normal, if `normal` is its x coordinate.
         x, y, z : float, optional
             Instead of `normal`; 0 along an axis that is not named.
         about : (3,) float
@@ -152,11 +156,11 @@ class Movable(ABC):
     def transform(self, matrix: Any) -> Self:
         """Return the image under an affine map, a (4, 4) or (3, 4) matrix for column vectors.
 
-        Solids moved by bitwise equal matrices are combined first and moved afterwards.
+        Solids transformed by bitwise equal matrices are combined first and transformed afterwards.
 
         Raises
         ------
         InvalidMeshError
-            If the matrix is no invertible affine map.
+            If the matrix is not an invertible affine map.
         """
         return self._moved((transform.matrix_factor(matrix),))

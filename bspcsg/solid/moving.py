@@ -1,4 +1,4 @@
-"""Meshes moved by a transform, with one rounding per coordinate and with crossings mended."""
+"""Meshes under transforms: each coordinate is rounded once, and crossings are mended."""
 
 from dataclasses import dataclass
 
@@ -28,7 +28,7 @@ class AttributedMesh:
     attributes: Attributes | None = None
 
     def moved(self, factors: FactorChain) -> "AttributedMesh":
-        """Return the mesh moved by the product of the factors; its orientation is kept."""
+        """Return the mesh after a transform; faces are reversed if it mirrors, to face outwards."""
         said = self.attributes and self.attributes.turned(factors.product[:3, :3])
         faces = self.faces
         if factors.mirrors:
@@ -37,18 +37,19 @@ class AttributedMesh:
         return AttributedMesh(transform.apply(factors.product, self.vertices), faces, said)
 
     def mended(self, before: FloatArray, pitch: int) -> "Mended | None":
-        """Return the mesh without the crossings that moving its vertices made, or None.
+        """Return the mesh without the crossings that moving its vertices caused; None if unchanged.
 
         Rounding moves each vertex separately, so surfaces that touched may cross. Such crossings
-        are mended by changes as small as the rounding. The mesh must be closed by index, or after
-        its vertices are welded as in import, and must not have crossed itself there before.
+        are mended by changes as small as the rounding. The mesh must be closed (each edge shared by
+        index, or once its vertices are welded as in import), and must not have crossed itself
+        before it was moved.
 
         Parameters
         ----------
         before : (n, 3) float64
             The vertices before they were moved.
         pitch : int
-            Exponent of the lattice step: corners move to the lattice where crossings would remain.
+            Exponent of the lattice step. Where crossings would remain, corners move to the lattice.
         """
         with core_errors():
             found = mesh_moved(before, self.vertices, self.faces, pitch)
@@ -60,14 +61,14 @@ class AttributedMesh:
         return Mended(AttributedMesh(found["vertices"], faces, said), kept, np.flatnonzero(left))
 
     def held_pitch(self, given: int | None) -> int | None:
-        """Return the given pitch if its lattice holds all vertices, else None."""
+        """Return the given pitch if all vertices lie in the range of its lattice, else None."""
         if given is None or not np.isfinite(self.vertices).all():
             return given
         largest = float(np.abs(self.vertices).max(initial=0))
         return given if largest < (transform.LATTICE_REACH - 1) * 10.0**given else None
 
     def suited_pitch(self) -> int | None:
-        """Return the pitch that suits the size; None if there is none."""
+        """Return the pitch that suits the mesh's coordinates and extent, or None without one."""
         if len(self.vertices) == 0 or not np.isfinite(self.vertices).all():
             return None
         largest = float(np.abs(self.vertices).max())
@@ -77,7 +78,7 @@ class AttributedMesh:
 
 @dataclass(frozen=True, eq=False)
 class Mended:
-    """A moved mesh with mended crossings.
+    """A moved mesh after its crossings were mended.
 
     Parameters
     ----------
@@ -85,7 +86,7 @@ class Mended:
     kept : (m,) int64
         For each triangle, the triangle of the moved mesh that it comes from.
     left : (k,) int64
-        The triangles that still cross others.
+        The indices of triangles that still cross other triangles.
     """
 
     mesh: AttributedMesh

@@ -1,11 +1,12 @@
-"""The profile of the evaluation of a solid, stage by stage."""
+"""`Profile`: the time and the counts of each stage of the evaluation of a solid."""
 
 from dataclasses import dataclass
 
 from .._core import Tree
 
-#: The stages, and what each counts: faces that may meet, segments in which they do, whole and cut
-#: faces of the result, cells visited, faces of an operand that overlaps itself.
+#: What each stage of an evaluation counts. "candidates": faces that may meet; "contacts": segments
+#: in which faces meet; "faces": whole and cut faces of the result; "descent": cells visited;
+#: "uniting": faces of an operand that overlaps itself.
 COUNTED = {
     "candidates": "faces",
     "contacts": "segments",
@@ -22,10 +23,10 @@ class Stage:
     Parameters
     ----------
     name : str
-        A key of `COUNTED`, which has the meaning of `count`.
+        A key of `COUNTED`, whose value there says what `count` counts.
     seconds : float
     count : int
-        The number of things that the stage found, made or visited.
+        The number of faces, segments or cells that the stage found, made or visited.
     """
 
     name: str
@@ -35,13 +36,13 @@ class Stage:
 
 @dataclass(frozen=True)
 class Profile:
-    """The stages of an evaluation, in order.
+    """The stages of the evaluation of a solid, in order.
 
     Parameters
     ----------
     stages : tuple of Stage
     handed_on : str or None
-        The reason why the fast path handed the work to the descent, if it did.
+        The reason why the fast path left the evaluation to the descent through space, if it did.
     """
 
     stages: tuple[Stage, ...] = ()
@@ -54,12 +55,12 @@ class Profile:
         return cls(tuple(Stage(*stage) for stage in stages), handed_on)
 
     def lines(self) -> list[str]:
-        """Return a line for each stage, and one for the reason if there is one."""
+        """Return a line of text for each stage, and one for the reason `handed_on`, if any."""
         lines = [f"{s.name}: {s.seconds:.4f} s, {s.count} {COUNTED[s.name]}" for s in self.stages]
         if self.handed_on is None:
             return lines
         return [*lines, f"left to the descent: {self.handed_on}"]
 
     def __str__(self) -> str:
-        """Return the lines as one text."""
+        """Return the lines of `lines` as one text."""
         return "\n".join(self.lines())

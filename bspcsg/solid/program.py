@@ -18,13 +18,13 @@ Operator: TypeAlias = Literal["or", "and", "xor", "not"]
 
 _Value = TypeVar("_Value")
 
-#: The complement of the only operand.
+#: The program that returns the complement of its only operand.
 COMPLEMENT: list[ProgramLine] = [("leaf", [0]), ("not", [0])]
 
 
 @dataclass(frozen=True)
 class Algebra(Generic[_Value]):
-    """The meaning of the operators for one kind of value."""
+    """The functions that carry out the set operations on one kind of value."""
 
     union: Callable[[Sequence[_Value]], _Value]
     intersection: Callable[[Sequence[_Value]], _Value]
@@ -32,7 +32,7 @@ class Algebra(Generic[_Value]):
     complement: Callable[[_Value], _Value]
 
     def evaluate(self, program: Sequence[ProgramLine], operands: Sequence[_Value]) -> _Value:
-        """Evaluate a program, given the values of its operands."""
+        """Return the result of a program, given the values of its operands."""
         values: list[_Value] = []
         for operator, arguments in program:
             if operator == "leaf":
@@ -48,7 +48,7 @@ class Algebra(Generic[_Value]):
         return many[operator](found)
 
 
-#: The algebra of truth values, which tells points inside from points outside.
+#: The algebra of truth values: whether a point is in a result, given whether it is in each operand.
 TRUTH: Algebra[bool] = Algebra(
     union=any,
     intersection=all,
@@ -66,10 +66,12 @@ def program_of(op: str, count: int) -> list[ProgramLine]:
         If there is no such operation, or no operand.
     """
     if not isinstance(op, str) or op not in _NAMED:
-        message = f"Unknown operation {shown(op)}; one of {', '.join(_NAMED)}."
+        message = f"Unknown operation {shown(op)}; known are {', '.join(_NAMED)}."
         raise invalid_parameter(message + question(op, _NAMED))
     if count == 0:
-        raise invalid_parameter(f"The {op} of no operands cannot be compared.")
+        raise invalid_parameter(
+            f"There are no operands, so the {op} cannot be compared; give at least one operand."
+        )
     lines: list[ProgramLine] = [("leaf", [number]) for number in range(count)]
     return lines + _NAMED[op](count)
 
@@ -103,7 +105,7 @@ _NAMED: dict[str, Callable[[int], list[ProgramLine]]] = {
 
 
 def name_of(program: Sequence[ProgramLine]) -> str:
-    """Return a name for a program."""
+    """Return the name of the set operation of a program, or "expression" for a longer program."""
     operators = [operator for operator, _ in program if operator != "leaf"]
     names = {"or": "union", "and": "intersection", "xor": "xor", "not": "complement"}
     if len(operators) == 1:

@@ -1,8 +1,9 @@
-"""Closing by index of meshes that are closed only on the lattice, before they are moved.
+"""Sewing: making a mesh that is closed only on the lattice closed by vertex index.
 
-On the lattice, a T-junction has a corner of one triangle inside an edge of another, corners that
-differ by less than a step coincide, and triangles without area vanish. Moving a mesh rounds each
-corner separately, which opens it at such places, and gives such triangles an area.
+On the lattice, a corner of one triangle may lie inside an edge of another (a T-junction), corners
+that differ by less than a step coincide, and triangles without area vanish. A transform rounds each
+corner separately, which would open the mesh at T-junctions and coinciding corners, and give
+vanished triangles an area. So meshes are sewn first.
 """
 
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ from .moving import AttributedMesh
 
 @dataclass(frozen=True, eq=False)
 class Sewn:
-    """A mesh that was closed by index.
+    """A mesh after sewing: neighbouring triangles share the vertices of each edge by index.
 
     Parameters
     ----------
@@ -34,7 +35,7 @@ class Sewn:
 def sewn(mesh: AttributedMesh, tree: Tree) -> Sewn | None:
     """Return a mesh closed by index, with T-junctions split and corners welded.
 
-    Return None if the mesh stays closed wherever its corners move.
+    Return None if the mesh stays closed however its corners move.
 
     Parameters
     ----------

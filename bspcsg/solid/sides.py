@@ -1,4 +1,4 @@
-"""Classification of points that may lie beyond the lattice."""
+"""Classification of points that may lie outside the range of the lattice."""
 
 from typing import Protocol
 
@@ -10,7 +10,7 @@ from ..geometry.transform import LATTICE_REACH
 
 
 class Classifying(Protocol):
-    """A tree of the core that classifies points."""
+    """The interface of a tree of the core that classifies points."""
 
     @property
     def pitch(self) -> int:
@@ -21,11 +21,14 @@ class Classifying(Protocol):
         """True if the set is bounded."""
 
     def classify(self, points: FloatArray, /) -> SideArray:
-        """Classify points of the lattice."""
+        """Return +1 (inside), 0 (boundary) or -1 (outside) for points in the lattice's range."""
 
 
 def sides_of(points: FloatArray, tree: Classifying) -> SideArray:
-    """Classify points; a point beyond the lattice is outside a bounded set."""
+    """Return +1 for each point inside the tree's set, 0 on the boundary, -1 outside.
+
+    Points outside the range of the lattice are outside a bounded set.
+    """
     largest = np.abs(points).max(axis=1, initial=0.0)
     is_far = np.isfinite(largest) & (largest >= LATTICE_REACH * 10.0**tree.pitch)
     with core_errors():

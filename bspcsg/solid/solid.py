@@ -1,11 +1,11 @@
 """`Solid`: a set of points with a polyhedral boundary, as an immutable value.
 
-A solid is a lazy expression under a transform. The first query evaluates it once; the result is
-kept and the expression released. There are two guarantees, used by two kinds of queries:
+A solid is a lazy expression under a transform. The first query evaluates the expression once; the
+result is cached and the expression released. Queries rely on one of two guarantees:
 
-* the set is always right: `to_mesh`, `vertices` and `faces` need no more than this;
+* the set of points is always right: `to_mesh`, `vertices` and `faces` need no more than this;
 * the mesh is the reduced boundary, every wall between inside and outside exactly once: `volume`,
-  `equals`, `save` and the like take `normalized`, which checks inputs that nobody has vouched for.
+  `equals`, `save` and the like use `normalized`, which checks inputs that are not `trusted`.
 """
 
 import os
@@ -100,19 +100,19 @@ class Solid(Movable, PointSet):
         Indices of `vertices`, counter-clockwise seen from outside. Polygons are triangulated.
     pitch : int, optional
         The lattice step is ``10**pitch`` units. By default -9, or another if the size requires it.
-        Transforms keep a given pitch, as far as its lattice reaches.
+        Transforms keep a given pitch, unless the result exceeds the range of its lattice.
     trusted : bool
-        True if you guarantee that faces meet only in common edges and vertices, which saves a
-        check.
+        True if you guarantee that faces meet only in common edges and vertices; a check is then
+        omitted.
     winding : {"positive", "nonzero", "even-odd"}
-        The rule for the winding numbers that are inside.
+        The rule that says which winding numbers are inside.
     vertex_attributes : dict of str to (n, …) array_like, optional
-        Colours, texture coordinates, weights: one value for each of `vertices`, by names.
+        Named arrays with one value for each vertex: colours, texture coordinates, weights.
     corner_attributes : dict of str to (m, 3, …) array_like, optional
-        One value for each corner of each triangle, for values that differ between the faces at a
-        vertex.
+        Named arrays with one value for each corner of each triangle, for values that differ between
+        the faces at a vertex.
     face_attributes : dict of str to (m, …) array_like, optional
-        One value for each triangle.
+        Named arrays with one value for each triangle.
     materials : dict of str to Material, optional
         The materials that the face attribute ``"material"`` names.
 
@@ -131,11 +131,11 @@ class Solid(Movable, PointSet):
     Values of vertices and corners are copied at corners of the source, and interpolated in the
     source's triangle elsewhere: integers are rounded; truth values and text come from the nearest
     corner. ``"color"`` takes any form of colour (texts, integers from 0 to 255, floats from 0 to
-    1), one for each element or one for all. Coplanar faces with different values are not joined. If
-    an operand lacks a name, its values are NaN, 0, False or empty text; a ``"color"`` of integers
-    is opaque white there, and a colour that is NaN is shown as white. Attributes called
-    ``"normal"`` or ``"normals"``, of three floats, turn with the solid, keep their length, and are
-    reversed where the solid was subtracted. `simplify` drops attributes.
+    1), one for each element or one for all elements. Coplanar faces with different values are
+    not joined. If an operand lacks an attribute, its values are NaN, 0, False or empty text; a
+    ``"color"`` of integers is opaque white there, and a colour that is NaN is shown as white.
+    Attributes called ``"normal"`` or ``"normals"``, of three floats, turn with the solid, keep
+    their length, and are reversed where the solid was subtracted. `simplify` drops attributes.
 
     Examples
     --------
@@ -204,7 +204,7 @@ class Solid(Movable, PointSet):
         tolerance: float = interop.TESSELLATION_TOLERANCE,
         **options: Any,
     ) -> "Solid":
-        """Return the solid of any object that holds a mesh.
+        """Return the solid that an object with a mesh describes.
 
         Parameters
         ----------
@@ -215,16 +215,16 @@ class Solid(Movable, PointSet):
             `Solid` is returned as it is and takes no options, nor does an `Assembly`. A mesh
             without vertices and faces is the empty set.
         format : str, optional
-            The suffix of the format, such as ``"stl"``, for bytes and open files.
+            For bytes and open files: the suffix of the format, such as ``"stl"``.
         tolerance : float
             The largest deviation of triangles from the true surface of a CAD shape, in model units.
         **options
-            As for `Solid`.
+            Keyword arguments of `Solid`, such as `pitch`.
 
         Raises
         ------
         InvalidMeshError
-            If the object holds no mesh, or as for `Solid`.
+            If the object has no mesh, or its mesh is invalid as described for `Solid`.
         InvalidParameterError
             If options are given with a solid.
         FormatError
@@ -279,23 +279,23 @@ class Solid(Movable, PointSet):
 
     @counted
     def __or__(self, other: object) -> "Solid":
-        """Union."""
+        """Union of this solid and the other one."""
         return combine("or", (self, other)) if isinstance(other, Solid) else NotImplemented
 
     __add__ = __or__
 
     def __radd__(self, other: object) -> "Solid":
-        """Make ``sum(solids)`` work, which starts from 0."""
+        """Return the solid itself for ``0 + solid``, with which ``sum(solids)`` starts."""
         return self if isinstance(other, int) and other == 0 else NotImplemented
 
     @counted
     def __and__(self, other: object) -> "Solid":
-        """Intersection."""
+        """Intersection of this solid and the other one."""
         return combine("and", (self, other)) if isinstance(other, Solid) else NotImplemented
 
     @counted
     def __sub__(self, other: object) -> "Solid":
-        """Difference."""
+        """Difference: this solid without the other one."""
         return combine("and", (self, ~other)) if isinstance(other, Solid) else NotImplemented
 
     @counted
@@ -305,18 +305,18 @@ class Solid(Movable, PointSet):
 
     @counted
     def __invert__(self) -> "Solid":
-        """Complement: everything outside."""
+        """Complement: all of space outside this solid."""
         return from_node(*complement(Placed(self._node, self._factors)))
 
     # Results
 
     @property
     def tree(self) -> Tree:
-        """The partition tree (of the compiled core), after evaluating the solid."""
+        """The solid's partition tree, an object of the compiled core; this evaluates the solid."""
         return shown_tree(self._leaf())
 
     def _leaf(self) -> ExpressionLeaf:
-        """Return the evaluated leaf of the solid, under its transform."""
+        """Evaluate the solid and return its leaf, to which the transform has been applied."""
         if self._placed is None:
             evaluate(self._node)
             self._placed = self._node.placed(self._factors)
@@ -324,14 +324,14 @@ class Solid(Movable, PointSet):
 
     @property
     def _source_attributes(self) -> SourceAttributes:
-        """The attributes of each source of the tree."""
+        """The attributes of each source (input mesh) of the tree; empty if no source has any."""
         return self._leaf().source_attributes
 
     def to_mesh(self) -> Mesh:
-        """Return the boundary as a closed mesh; its arrays are read-only and kept.
+        """Return the boundary as a closed mesh, with read-only arrays; the mesh is cached.
 
-        Faces that were not cut are unchanged. If an input overlaps itself, its inner walls remain
-        where no operation met them; `normalized` removes them.
+        Faces of inputs that were not cut are unchanged. If an input overlaps itself, its walls
+        inside the solid remain where no operation met them; `normalized` removes them.
 
         Raises
         ------
@@ -355,10 +355,10 @@ class Solid(Movable, PointSet):
         )
 
     def normalized(self) -> "Solid":
-        """Return the same set with the reduced boundary as its mesh.
+        """Return the same set of points, with every wall between inside and outside once as mesh.
 
         Inputs that are not trusted are checked once, and united with themselves if their faces
-        overlap. Measures, comparisons, checks and file output use this form.
+        overlap. Measures, comparisons, checks and file output use the normalized solid.
         """
         tree = self.tree
         if self._reduced is None and not _is_reduced(tree):
@@ -375,12 +375,12 @@ class Solid(Movable, PointSet):
 
     @property
     def vertices(self) -> FloatArray:
-        """Vertices of the mesh, (n, 3) float64, in model units, read-only."""
+        """Vertices of the solid's mesh, (n, 3) float64, in model units, read-only."""
         return self.to_mesh().vertices
 
     @property
     def faces(self) -> Triangles:
-        """Triangles of the mesh, (m, 3) int64, indices of `vertices`, read-only.
+        """Triangles of the solid's mesh, (m, 3) int64, indices of `vertices`, read-only.
 
         Call it, as ``solid.faces()``, to select faces: flat ones, and round ones such as the wall
         of a bore (see `FaceSelection`). Neighbouring facets belong to one round face if they bend
@@ -400,18 +400,18 @@ class Solid(Movable, PointSet):
 
     @property
     def sources(self) -> tuple[int, ...]:
-        """Identities of the input meshes, in the order of their numbers in `Mesh.source`."""
+        """Identities of the input meshes, to which `Mesh.source` refers by index in this tuple."""
         return tuple(self.tree.sources)
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """The findings about the inputs and the mesh, which is made and checked for this.
+        """The findings about the input meshes and the solid's mesh, which is made and checked.
 
         "self_overlap" means that the mesh is not the boundary of the solid, and names triangles
         that cross or overlap others; `normalized` returns the solid with its boundary as mesh.
         "crossing" means that an input crosses itself by less than a step of the lattice. "flat"
-        names triangles with area on the lattice, but none in the doubles of the mesh. The mesh's
-        `certificate` has no other faults.
+        names triangles with area on the lattice, but none in the doubles of the mesh. The
+        certificate of the mesh has no other faults.
         """
         return findings_of(self)
 
@@ -424,11 +424,11 @@ class Solid(Movable, PointSet):
 
     @property
     def last_operation(self) -> "LastOperation | None":
-        """The operation that made this solid; None for a mesh, a loaded or a copied solid.
+        """The operation that made this solid; None for a mesh, a loaded or an unpickled solid.
 
-        Only the last evaluation is kept, with its program and operands. If each result of a chain
-        is queried, one operation is kept, however long the chain. If only the last result is
-        queried, the whole chain was one operation, and that is kept.
+        This is the program of the last evaluation, with its operands. If each result of a chain of
+        operations is queried, it has one operation; if only the last result is queried, the chain
+        is evaluated as a whole, and the program has all of its operations.
         """
         content = evaluate(self._node)
         if not isinstance(content, TreeLeaf) or content.record is None:
@@ -439,10 +439,10 @@ class Solid(Movable, PointSet):
         return LastOperation(program, operands, from_node(self._node))
 
     def profile(self) -> Profile:
-        """Return the profile of the solid's evaluation, stage by stage; empty for a mesh.
+        """Return the times and counts of the stages of the solid's evaluation; empty for a mesh.
 
-        Operations on two different unchanged meshes take the fast path; `Profile.handed_on` has the
-        reason why an evaluation could not.
+        Operations on two different unchanged meshes take a fast path, which looks only at faces
+        that may meet; `Profile.handed_on` has the reason why an evaluation could not take it.
 
         Examples
         --------
@@ -463,28 +463,28 @@ class Solid(Movable, PointSet):
 
     @property
     def is_bounded(self) -> bool:
-        """True if the solid fits into some box."""
+        """True if the solid fits into some box: it does not reach to infinity."""
         return self.tree.is_bounded
 
     @uncounted
     def equals(self, other: "Solid") -> bool:
-        """Say whether both are the same set of points, exactly; so says ``==``, too."""
+        """Return true if both solids are exactly the same set of points, as ``==`` does."""
         return (self ^ of_kind(Solid, other, "other")).is_empty
 
     @uncounted
     def isdisjoint(self, other: "Solid") -> bool:
-        """Say whether the two have no volume in common; contact is allowed."""
+        """Return true if the two solids have no volume in common; they may touch."""
         return (self & of_kind(Solid, other, "other")).is_empty
 
     def intersects(self, other: "Solid") -> bool:
-        """Say whether the solids have a point in common; touching surfaces suffice.
+        """Return true if the solids have a point in common; it suffices that their surfaces touch.
 
         To test for common volume, negate `isdisjoint`.
 
         Raises
         ------
         UnboundedError
-            If one of them reaches to infinity.
+            If one of the solids reaches to infinity.
 
         Examples
         --------
@@ -532,17 +532,17 @@ class Solid(Movable, PointSet):
     def min_gap(self, other: "Solid") -> float:
         """Return the least distance between points of the two solids, in model units.
 
-        It is 0 if they touch or overlap, and infinite if one is empty.
+        It is 0 if the solids touch or overlap, and infinite if one of them is empty.
 
         Raises
         ------
         UnboundedError
-            If one of them reaches to infinity, and they do not overlap.
+            If one of the solids reaches to infinity, and they do not overlap.
 
         Notes
         -----
         Overlap is decided exactly. Otherwise boxes around triangles exclude distant pairs, and the
-        nearest triangles are compared in fractions; the answer is rounded.
+        nearest triangles are compared in fractions; the distance is rounded.
 
         Examples
         --------
@@ -555,17 +555,17 @@ class Solid(Movable, PointSet):
         return min_gap(self, other)
 
     def closest_points(self, other: "Solid") -> tuple[FloatArray, FloatArray]:
-        """Return a point of this solid and one of the other that are nearest, (3,) float64 each.
+        """Return the point of this solid and the point of the other that are nearest to each other.
 
-        If there are several such pairs, the choice is reproducible. If the solids overlap, both
-        points are one common point.
+        Both are (3,) float64, in model units. If several pairs are nearest, the choice is
+        reproducible. If the solids overlap, both points are the same common point.
 
         Raises
         ------
         InvalidParameterError
-            If one of them is empty.
+            If one of the solids is empty.
         UnboundedError
-            If one of them reaches to infinity, and they do not overlap.
+            If one of the solids reaches to infinity, and they do not overlap.
 
         Examples
         --------
@@ -583,17 +583,17 @@ class Solid(Movable, PointSet):
     @overload
     def ray_cast(self, origin: FloatArray, direction: Any) -> "Hits | HitLists": ...
     def ray_cast(self, origin: Any, direction: Any) -> "Hits | HitLists":
-        """Return where rays meet the surface, nearest first, each point once.
+        """Return the points where rays meet the surface, nearest first, each point once.
 
         Parameters
         ----------
         origin, direction : (3,) or (n, 3) array_like of float
-            The ray holds the points ``origin + t * direction`` with t ≥ 0.
+            A ray consists of the points ``origin + t * direction`` with t ≥ 0.
 
         Returns
         -------
         Hits or HitLists
-            The hits of one ray (see `bspcsg.bsp.Hits`), or for arrays a list of them.
+            The hits of one ray (see `bspcsg.bsp.Hits`), or for arrays of rays, those of each ray.
 
         Raises
         ------
@@ -620,27 +620,28 @@ class Solid(Movable, PointSet):
 
     @property
     def volume(self) -> float:
-        """Volume of the set in cubic model units, rounded once."""
+        """Volume in cubic model units, computed exactly and then rounded once."""
         return rounded_volume(self)
 
     @property
     def volume_exact(self) -> Fraction:
-        """Volume of the set in cubic model units, exactly.
+        """Volume in cubic model units, as an exact fraction.
 
         Raises
         ------
         UnboundedError
             If the solid reaches to infinity; so for all measures.
         LimitError
-            If it might be a fraction of more than 200 000 digits; see `exact_volume`.
+            If the fraction might have more than 200 000 digits; see `exact_volume`.
         """
         return self.exact_volume()
 
     def exact_volume(self, most_digits: int = LONGEST_VOLUME) -> Fraction:
-        """Return the volume of the set in cubic model units, exactly.
+        """Return the volume in cubic model units, as an exact fraction.
 
-        The denominator grows by that of about one constructed corner for each corner. Reducing the
-        fraction takes time quadratic in the number of digits, and cannot be interrupted.
+        Its denominator has about as many digits as those of all constructed corners together.
+        Reducing the fraction takes time quadratic in the number of digits, and cannot be
+        interrupted.
 
         Parameters
         ----------
@@ -652,7 +653,7 @@ class Solid(Movable, PointSet):
         UnboundedError
             If the solid reaches to infinity.
         LimitError
-            If they might have more digits; the message has the number.
+            If numerator or denominator might have more digits; the message has their number.
         """
         return exact_volume(self, most_digits)
 
@@ -670,7 +671,7 @@ class Solid(Movable, PointSet):
 
     @property
     def area(self) -> float:
-        """Surface area in square model units, the same as that of the complement.
+        """Surface area in square model units; the complement has the same area.
 
         Raises
         ------
@@ -687,35 +688,35 @@ class Solid(Movable, PointSet):
 
     @property
     def inertia(self) -> FloatArray:
-        """Moments of inertia about the centroid at density 1, (3, 3) float64; NaN if empty.
+        """Moments of inertia about the centroid at density 1, (3, 3) float64.
 
-        In model units to the fifth power.
+        In model units to the fifth power; NaN for the empty set.
         """
         return self.normalized().to_mesh().inertia
 
     @property
     def bounds(self) -> FloatArray | None:
-        """Lowest and highest coordinates, (2, 3) float64, or None for the empty set."""
+        """The bounding box: lowest, then highest x, y and z, (2, 3) float64; None if empty."""
         return self.normalized().to_mesh().bounds
 
     @property
     def euler_number(self) -> int:
-        """Vertices - edges + faces of the mesh."""
+        """The number of vertices minus edges plus triangles of the normalized mesh."""
         return self.normalized().to_mesh().euler_number
 
     @property
     def surface_count(self) -> int:
-        """Number of connected surfaces; the wall of a closed cavity is one of its own.
+        """Number of connected surfaces of the boundary; the wall of a cavity counts separately.
 
-        This number was formerly `components`, which now has the parts, each with its cavities.
-        Surfaces that touch only in a point or an edge count separately, even if the edge lies
-        inside a face that belongs to both and that the mesh does not divide there.
+        Formerly `components` was this number; now it is the tuple of connected parts. Surfaces that
+        touch only in a point or an edge count separately, even if the edge lies inside a face that
+        belongs to both surfaces and that the mesh does not divide there.
         """
         return self._divided_mesh().surface_count
 
     @property
     def genus(self) -> int:
-        """Number of handles, summed over all connected surfaces."""
+        """Number of handles, as a torus has one, summed over all connected surfaces."""
         return self._divided_mesh().genus
 
     def normals(self, sharp_angle: Scalar = 30.0) -> FloatArray:
@@ -750,8 +751,8 @@ class Solid(Movable, PointSet):
     def curvature(self) -> tuple[FloatArray, FloatArray]:
         """Return the Gaussian and the mean curvature at each vertex, (n,) float64 each.
 
-        The curvatures of the polyhedron, divided by a third of the area of the triangles around the
-        vertex: the angle defect, in 1 / unit², and half of the bend of the edges, in 1 / unit. Both
+        Gaussian: the angle defect at the vertex, in 1 / unit². Mean: half of the bend of its edges,
+        in 1 / unit. Both are divided by a third of the area of the triangles around the vertex, and
         are positive where the solid is convex.
 
         Raises
@@ -785,21 +786,23 @@ class Solid(Movable, PointSet):
         z: "Anchor | None" = None,
         to: "Vector | Solid" = (0, 0, 0),
     ) -> "Solid":
-        """Return the solid moved so that its box meets a point or the box of another solid.
+        """Return the solid translated so that its box meets a point or another solid's box.
 
         Parameters
         ----------
         x, y, z : {"min", "center", "max"} or a pair of these, optional
-            For each axis, the place of this solid's box and the place of the other box to which it
-            moves; one name stands for both. Without it the solid does not move along the axis.
+            For each axis, a position in this solid's box and the position in the target's box to
+            which it moves; a single name means both. If omitted, the solid does not move along that
+            axis.
         to : (3,) float or Solid
+            The target: a point, or a solid whose box is meant.
 
         Raises
         ------
         InvalidParameterError
-            If a place has another name, or a solid is empty.
+            If a position has another name, or one of the solids is empty.
         UnboundedError
-            If a solid reaches to infinity.
+            If one of the solids reaches to infinity.
 
         Examples
         --------
@@ -826,7 +829,7 @@ class Solid(Movable, PointSet):
         normal : "x", "y", "z", (3,) float, or Solid
             The normal of the plane, of any length; or the solid to cut with.
         offset : float
-            The plane holds the points x with ``normal . x == offset``.
+            The plane consists of the points x with ``normal . x == offset``.
 
         Returns
         -------
@@ -841,8 +844,8 @@ class Solid(Movable, PointSet):
 
         Notes
         -----
-        The plane is that of `bspcsg.half_space`: the given one if it contains lattice points, else
-        the nearest parallel one that does. In a block (see `bspcsg.block`) neither part counts.
+        As in `bspcsg.half_space`, the given plane is used if it contains lattice points, else the
+        nearest parallel plane that does. In a block (see `bspcsg.block`) neither part is added.
 
         Examples
         --------
@@ -859,7 +862,7 @@ class Solid(Movable, PointSet):
         return split(self, normal, offset)
 
     def trim(self, normal: str | Vector, offset: Scalar = 0.0) -> "Solid":
-        """Return the part on the side to which a plane's normal points: the second part of `split`.
+        """Return the part of the solid on the side of a plane to which the plane's normal points.
 
         Parameters
         ----------
@@ -884,7 +887,7 @@ class Solid(Movable, PointSet):
         return trim(self, normal, offset)
 
     def decompose(self) -> "list[Solid]":
-        """Return the connected parts, the largest volume first; none for the empty set.
+        """Return the connected parts, the largest volume first; an empty list for the empty set.
 
         The wall of a cavity belongs to the part around it. Parts that touch only in a point or an
         edge are separate.
@@ -898,7 +901,7 @@ class Solid(Movable, PointSet):
         -----
         If there are several parts, each is the solid of its mesh: corners off the lattice are
         rounded to it, or to a finer lattice if nothing would be left. A part that is too thin for
-        doubles is left out. In a block (see `bspcsg.block`) no part counts.
+        doubles is left out. In a block (see `bspcsg.block`) no part is added.
 
         Examples
         --------
@@ -916,8 +919,8 @@ class Solid(Movable, PointSet):
         """The connected parts, each with its cavities, the largest volume first (see `decompose`).
 
         Formerly this was the number of connected surfaces, now `surface_count`. The number of parts
-        is ``len(solid.components)``. A comparison with a number still uses the number of surfaces,
-        with a `DeprecationWarning`.
+        is ``len(solid.components)``. A comparison with an integer still uses the number of
+        surfaces, with a `DeprecationWarning`.
 
         Examples
         --------
@@ -938,9 +941,9 @@ class Solid(Movable, PointSet):
         Parameters
         ----------
         all : bool
-            True for all edges between plane faces, also between facets.
+            True for all edges between plane faces, also between facets of a round surface.
         angle : float
-            Degrees; the normals of the faces at an edge differ by more than this.
+            In degrees: the normals of the two faces at a sharp edge differ by more than this.
 
         Raises
         ------
@@ -972,15 +975,16 @@ class Solid(Movable, PointSet):
         Parameters
         ----------
         edges : EdgeSelection
-            Some of the solid's own.
+            A selection of edges of this solid.
         size : float
             Distance from the edge to the new surface, on both faces, in model units.
 
         Raises
         ------
         InvalidParameterError
-            If the faces have no room, if convex and concave edges meet in another way, or if a
-            corner of more than three faces is not convex; the message names the place.
+            If the faces have no room for a chamfer, if convex and concave edges meet in any other
+            way, or if a corner of more than three faces is not convex; the message has the
+            coordinates.
         LimitError
             If more than 10 000 edges are chosen.
 
@@ -1007,11 +1011,12 @@ class Solid(Movable, PointSet):
         Parameters
         ----------
         edges : EdgeSelection
-            Some of the solid's own.
+            A selection of edges of this solid.
         radius : float
             In model units.
         segments : int
-            Sides of a full circle, at least 4; all edges get as many sides as the sharpest needs.
+            Sides of a full circle, at least 4. All fillets have the same number of sides, the one
+            that the sharpest edge needs.
 
         Raises
         ------
@@ -1164,7 +1169,7 @@ class Solid(Movable, PointSet):
         head_d, head_r : float
             Diameter of the cone in the face, or radius instead.
         angle : float
-            Degrees from side to side of the cone: 90 for metric screws, 82 for those in inches.
+            The full opening angle of the cone in degrees: 90 for metric screws, 82 for inch screws.
 
         Raises
         ------
@@ -1215,7 +1220,7 @@ class Solid(Movable, PointSet):
         InvalidParameterError
             If a parameter is out of its range.
         LimitError
-            If more than 10 million faces bound what the ball touches (see `bspcsg.minkowski`).
+            If the ball sweeps a volume with more than 10 million faces (see `bspcsg.minkowski`).
         UnboundedError
             If the solid and its complement both reach to infinity.
 
@@ -1239,7 +1244,7 @@ class Solid(Movable, PointSet):
         r : float
             Radius of the ball, in model units; parts thinner than the ball vanish.
         segments : int
-            As for `offset`, as are the errors.
+            Sides of the ball's equator, as for `offset`; the errors are also those of `offset`.
         inside : bool
             True to fill concave edges instead, where a ball outside cannot reach.
 
@@ -1322,7 +1327,7 @@ class Solid(Movable, PointSet):
         return warp(self, f, winding)
 
     def smooth(self, n: int, *, sharp_angle: Scalar = 60.0) -> "Solid":
-        """Return the solid with faces bent smoothly through its corners, each in n² triangles.
+        """Return the solid with a smooth surface through its corners, n² triangles for each one.
 
         Parameters
         ----------
@@ -1342,9 +1347,9 @@ class Solid(Movable, PointSet):
 
         Notes
         -----
-        Cubic patches over the triangles, after Vlachos, Peters, Boyd, Mitchell 2001, "Curved PN
-        triangles". The border of a patch follows from the normals at both ends of an edge, on both
-        sides.
+        The surface consists of cubic patches over the triangles, after Vlachos, Peters, Boyd,
+        Mitchell 2001, "Curved PN triangles". The border between two patches follows from the
+        normals of both patches at both ends of their common edge.
 
         Examples
         --------
@@ -1368,7 +1373,7 @@ class Solid(Movable, PointSet):
 
         Every point of the old surface lies within `tolerance` of the new one, and vice versa.
         Changed triangles cross nothing, which is tested exactly. The new surface has as many parts,
-        handles and cavities as the old one.
+        handles and cavities as the old surface.
 
         Parameters
         ----------
@@ -1415,7 +1420,7 @@ class Solid(Movable, PointSet):
 
     @counted
     def tagged(self, **values: Any) -> "Solid":
-        """Return the solid with face attributes that have one value on all faces.
+        """Return the solid with named face attributes, each with the same value on all faces.
 
         Parameters
         ----------
@@ -1455,7 +1460,7 @@ class Solid(Movable, PointSet):
     def slice(
         self, offset: Any = 0.0, normal: str | Vector = (0, 0, 1), *, origin: Vector | None = None
     ) -> "Region | list[Region]":
-        """Return the section by a plane as a region of the plane (`bspcsg.Region`).
+        """Return the section of the solid by a plane as a region of the plane (`bspcsg.Region`).
 
         The boundary is cut exactly, by the plane that `half_space` uses for these numbers: the
         given plane if it contains lattice points, else the nearest parallel one that does. Each
@@ -1469,8 +1474,9 @@ class Solid(Movable, PointSet):
             Several offsets give a list of sections.
         normal : "x", "y", "z" or (3,) float
             Need not have unit length. The region is seen from where it points: z gives coordinates
-            (x, y), x gives (y, z), y gives (z, x), negative axes exchange the two; for others see
-            `bspcsg.bsp.plane_frame`, whose coordinates are rounded once more.
+            (x, y), x gives (y, z), y gives (z, x), negative axes exchange the two coordinates; for
+            other normals see
+            `bspcsg.bsp.plane_frame`, whose coordinates are rounded a second time.
         origin : (3,) float, optional
             A point of the plane, instead of `offset`.
 
@@ -1483,8 +1489,8 @@ class Solid(Movable, PointSet):
 
         Notes
         -----
-        A face in the plane counts as above it: the section is the limit from the minus side. For a
-        box standing on z = 0 it is empty at z = 0 and full at the top.
+        A face in the plane counts as above it: the section is the limit of sections from the minus
+        side. So the section of a box standing on z = 0 is empty at z = 0 and full at the top.
         """
         from ..bsp.sets.slicing import slice_solid
 
@@ -1532,9 +1538,9 @@ class Solid(Movable, PointSet):
         return leaving.trimesh_of(self.normalized().to_mesh())
 
     def to_manifold(self) -> "manifold3d.Manifold":
-        """Return a `manifold3d.Manifold`; ask its ``status()`` whether it was accepted.
+        """Return the mesh as a `manifold3d.Manifold`; its ``status()`` says if it was accepted.
 
-        Numeric attributes become vertex properties: ``"properties"`` first, then the others in
+        Numeric attributes become vertex properties: ``"properties"`` first, then the other ones in
         order, colours as four numbers from 0 to 1. `Solid.from_mesh` restores their names, also
         after Manifold's operations, if all operands had the same attributes.
 
@@ -1546,7 +1552,7 @@ class Solid(Movable, PointSet):
         return leaving.manifold_of(self.normalized().to_mesh())
 
     def to_csg(self, *, flat: bool = False) -> str:
-        """Return the expression that made the solid as a `.csg` script (see `bspcsg.csg.dumps`)."""
+        """Return the solid's expression as an OpenSCAD `.csg` script (see `bspcsg.csg.dumps`)."""
         from ..csg.loading import dumps
 
         return dumps(self, flat=flat)
@@ -1571,7 +1577,7 @@ class Solid(Movable, PointSet):
         return check_result(self, **options)
 
     def check(self, **options: Any) -> "CheckReport":
-        """Call `validate`; deprecated."""
+        """Return the result of `validate`; deprecated name."""
         deprecated("Solid.check", "validate")
         return self.validate(**options)
 
@@ -1596,7 +1602,7 @@ class Solid(Movable, PointSet):
     # As a value
 
     def __repr__(self) -> str:
-        """Show facts that are known or quickly found; nothing is evaluated."""
+        """Return a text of facts that are known or quickly found; nothing is evaluated."""
         mesh = self._mesh_at_hand()
         if self._placed is None:
             return f"Solid({describe(self._node, self._factors, mesh)})"
@@ -1617,7 +1623,7 @@ class Solid(Movable, PointSet):
             return None
 
     def _alias(self) -> "Solid":
-        """Return a copy as another object, with all cached results."""
+        """Return the same solid as another object, with all cached results."""
         other = from_node(self._node, self._factors)
         other._placed, other._mesh, other._reduced = self._placed, self._mesh, self._reduced
         return other
@@ -1633,8 +1639,8 @@ class Solid(Movable, PointSet):
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
         """Pickle the evaluated tree exactly, with the transform separate.
 
-        A solid that may have no mesh is moved first: later moves would need its operands, which are
-        not pickled.
+        A solid that may have no mesh (it and its complement are unbounded) is transformed first:
+        later transforms would need its operands, which are not pickled.
         """
         leaf, factors = evaluate(self._node), self._factors
         if leaf.extent is None:
@@ -1647,7 +1653,7 @@ class Solid(Movable, PointSet):
 
 @dataclass(frozen=True, eq=False)
 class LastOperation:
-    """The evaluation that made a solid.
+    """The set operation that made a solid: its program, its operands and its result.
 
     Parameters
     ----------
@@ -1696,12 +1702,12 @@ def solid_with(vertices: Any, faces: Any, attributes: Attributes | None, **optio
 
 
 def given_pitch(solid: Solid) -> int | None:
-    """Return the given pitch of a solid, which transforms keep, or None."""
+    """Return the pitch that the user gave for a solid and that transforms keep, or None."""
     return solid._leaf().given_pitch
 
 
 def keeping_pitch(solid: Solid, given: int | None) -> Solid:
-    """Return the solid of a mesh; transforms keep its pitch only if it equals the given one."""
+    """Return a solid made of a mesh; transforms will keep its pitch only if that equals `given`."""
     leaf = solid._node.content
     if isinstance(leaf, MeshLeaf):
         leaf.given_pitch = given if leaf.pitch == given else None
@@ -1709,17 +1715,17 @@ def keeping_pitch(solid: Solid, given: int | None) -> Solid:
 
 
 def from_leaf(leaf: ExpressionLeaf) -> Solid:
-    """Return the solid of a leaf."""
+    """Return the solid of a leaf of an expression."""
     return Solid._of(ExpressionNode(leaf))
 
 
 def expression_of(solid: Solid) -> Placed:
-    """Return the node of a solid's expression and the transform on it."""
+    """Return the node of a solid's expression, and the transform that is applied to it."""
     return Placed(solid._node, solid._factors)
 
 
 def surfaces_meet(first: Solid, second: Solid) -> bool:
-    """Say whether the surfaces of two bounded solids have a point in common, exactly."""
+    """Return true if the surfaces of two bounded solids have a point in common, exactly."""
     leaves = [solid.normalized()._leaf() for solid in (first, second)]
     tree, other = bounded_on_one_lattice(leaves)
     with core_errors():
@@ -1727,9 +1733,9 @@ def surfaces_meet(first: Solid, second: Solid) -> bool:
 
 
 def with_record(last: LastOperation, factors: FactorChain) -> Solid:
-    """Return the solid of an operation under a transform.
+    """Return the result of an operation after a transform.
 
-    The solid knows the operation; pickling drops it.
+    The operation is its `last_operation`, which pickling drops.
     """
     leaves = tuple(evaluate(operand._node) for operand in last.operands)
     record = Record(last.program, leaves)
@@ -1742,7 +1748,7 @@ def with_record(last: LastOperation, factors: FactorChain) -> Solid:
 
 
 def combine(operator: Operator, solids: Sequence[Solid]) -> Solid:
-    """Return the lazy combination of solids; a common transform is applied to the result."""
+    """Combine solids by an operator, lazily; a transform common to all applies to the result."""
     prefix = common_prefix([solid._factors for solid in solids])
     operands = [Placed(solid._node, solid._factors.without(len(prefix))) for solid in solids]
     return from_node(operation(operator, operands), prefix)
@@ -1759,7 +1765,7 @@ def _is_reduced(tree: Tree) -> bool:
 
 
 def _kept(tree: Tree, source_attributes: SourceAttributes) -> SourceAttributes:
-    """Return the attributes of the sources whose faces may bound a solid, if there are any."""
+    """Return the attributes of a tree's sources, None for sources whose faces cannot bound it."""
     if not source_attributes:
         return ()
     kept = zip(tree.named, source_attributes, strict=True)

@@ -1,4 +1,4 @@
-"""Attributes of the sources of a tree, which stay with them through operations and motions."""
+"""Attributes of a tree's sources (input meshes), carried through operations and motions."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -29,15 +29,15 @@ def attributes_of(tree: Tree, source_attributes: SourceAttributes) -> Attributes
 
 
 def later_attributes(tree: Tree, source_attributes: SourceAttributes) -> Later | None:
-    """Return the attributes of a tree's mesh for when they are asked for, if there are any."""
+    """Return an object that computes a tree's mesh attributes on demand; None if it has none."""
     return Later(lambda: attributes_of(tree, source_attributes)) if source_attributes else None
 
 
 def inherited(result: Tree, operands: Sequence[tuple[Tree, SourceAttributes]]) -> SourceAttributes:
-    """Return the attributes of the sources of a tree that was made of others."""
+    """Return the attributes of a result's sources, found among its operands' sources."""
     if not any(source_attributes for _, source_attributes in operands):
         return ()
-    # Nothing and all of space have left their sources behind on other lattices.
+    # An empty or full operand may have lost its sources when its lattice was changed.
     known = {
         identity: said
         for tree, source_attributes in operands
@@ -51,7 +51,7 @@ def inherited(result: Tree, operands: Sequence[tuple[Tree, SourceAttributes]]) -
 def all_tagged(
     tree: Tree, source_attributes: SourceAttributes, values: Mapping[str, object]
 ) -> SourceAttributes:
-    """Return the attributes of the sources of a tree once all of their faces have the values."""
+    """Return the attributes of a tree's sources after all faces are given the same values."""
     return tuple(
         None if (arrays := tree.source_arrays(slot)) is None else _tagged(old, arrays, values)
         for slot, old in enumerate(source_attributes or (None,) * len(tree.sources))
@@ -61,7 +61,7 @@ def all_tagged(
 def _tagged(
     old: Attributes | None, arrays: SourceArrays, values: Mapping[str, object]
 ) -> Attributes:
-    """Return the attributes of a source with one more value for each name on all faces."""
+    """Return a source's attributes after all its faces are given the same values, by name."""
     count = int(arrays[3].max(initial=-1)) + 1
     faces = np.zeros((count, 3), dtype=np.int64) if old is None else old.faces
     said = Attributes(faces) if old is None else old.without(values)
@@ -76,7 +76,7 @@ def _tagged(
 def after_motion(
     motion: transform.LatticeMotion, source_attributes: SourceAttributes
 ) -> SourceAttributes:
-    """Return the attributes of sources after a motion, by which the core moved them."""
+    """Return the attributes of sources after a lattice motion, which turns normals."""
     if not source_attributes:
         return ()
     linear = motion.linear

@@ -16,19 +16,19 @@ else:
 
 
 class Triangles(_Array):
-    """Triangles of a solid's mesh, (m, 3) int64; call it to get a selection of faces.
+    """The triangles of a solid's mesh, (m, 3) int64; a call returns a selection of faces.
 
-    Results of array operations are ordinary arrays.
+    Arrays derived from it, such as slices, cannot be called.
     """
 
     _solid: Any
 
     def __array_finalize__(self, whole: object) -> None:
-        """Drop the solid in arrays derived from this one."""
+        """Forget the solid in an array derived from this one, which so cannot select faces."""
         self._solid = None
 
     def __call__(self, *, all: bool = False, angle: Scalar = 30.0) -> "FaceSelection":  # noqa: A002
-        """Return the faces as a selection (see `FaceSelection`).
+        """Return the solid's faces as a selection (see `FaceSelection`).
 
         The facets of a round surface are one face: neighbours that bend by at most `angle`, with
         neither more than twice as wide as the other. So a plane face is separate from a round edge
@@ -37,9 +37,9 @@ class Triangles(_Array):
         Parameters
         ----------
         all : bool
-            True for all plane faces, also facets.
+            True to select all plane faces, each facet of a round surface included.
         angle : float
-            Degrees.
+            The largest bend, in degrees, between neighbouring facets of one round face.
 
         Raises
         ------
@@ -49,14 +49,17 @@ class Triangles(_Array):
             If the solid reaches to infinity.
         """
         if self._solid is None:
-            raise invalid_parameter("This array is no solid's any more; ask solid.faces().")
+            raise invalid_parameter(
+                "This copy of the array does not know its solid any more; call faces() of the"
+                " solid instead."
+            )
         from ..modelling.making.faces import faces_of
 
         return faces_of(self._solid, all=all, angle=angle)
 
 
 def triangles_of(solid: Any, triangles: IndexArray) -> Triangles:
-    """Return the triangles of a solid's mesh."""
+    """Return the triangles of a solid's mesh as an array that selects faces when called."""
     array = triangles.view(Triangles)
     array._solid = solid
     return array

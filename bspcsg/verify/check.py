@@ -161,8 +161,8 @@ def examine(
     last = result.last_operation
     if last is None or op is not None or operands is not None:
         raise invalid_parameter(
-            "There is nothing to compare: this solid is no result of an operation. Name the"
-            " operation and give its operands."
+            "There is nothing to compare, because this solid is not the result of an"
+            " operation. Pass the operation and its operands."
         )
     name, operands = name_of(last.program), list(last.operands)
     return _Check(name, last.program, operands, last.result, depth).run()
@@ -235,10 +235,13 @@ class _Check:
             return f"the result has {ours.open_edges} open edges"
         status = oracle.status_of(mesh) if self.depth == "full" else "NoError"
         if status != "NoError":
-            return f"manifold3d does not take the result: {status}"
+            return f"manifold3d does not accept the result: its status is {status}"
         gap = abs(ours.volume - self.set_volume)
         if gap > self._film(mesh) * ours.area + SUMMING * abs(ours.volume):
-            return f"the mesh's volume differs from the set's by {gap:.3g}"
+            return (
+                "the volume of the resulting mesh differs from the exact volume of the set by"
+                f" {gap:.3g}"
+            )
         return ""
 
     def _film(self, *meshes: Mesh) -> float:
@@ -263,7 +266,8 @@ class _Check:
         if box is None or solid.is_bounded:
             return solid
         self.notes.append(
-            f"operand {number} is unbounded; results were compared inside a box around the rest"
+            f"operand {number} is unbounded, so the results were compared inside a box around"
+            " the other operands"
         )
         return solid & box
 
@@ -274,8 +278,8 @@ class _Check:
             faces = passing_mesh(solid).faces
             if not np.array_equal(faces, reduced.faces):
                 self.notes.append(
-                    f"operand {number} overlaps itself; manifold3d got its reduced boundary,"
-                    f" {len(reduced.faces)} triangles instead of {len(faces)}"
+                    f"operand {number} overlaps itself, so manifold3d was given its reduced"
+                    f" boundary of {len(reduced.faces)} triangles instead of {len(faces)}"
                 )
         return reduced
 
@@ -293,7 +297,9 @@ class _Check:
         try:
             found, pieces = difference_of(mesh, answer.mesh, self.result.pitch, same)
         except InternalError as error:
-            reason = f"the symmetric difference from manifold3d's mesh failed: {error.message}"
+            reason = (
+                f"computing the symmetric difference with manifold3d's mesh failed: {error.message}"
+            )
             return self._report(Verdict.SUBJECT_FAILED, reason, ours, theirs)
         except BspcsgError as error:
             reason = f"the meshes could not be compared: {error.message}"
@@ -366,21 +372,24 @@ def _judged(
         x, y, z = found.place or (0.0, 0.0, 0.0)
         return Verdict.DISAGREE, (
             f"the sets differ by volume {found.volume:.6g}, {found.thickness:.3g} thick near"
-            f" ({x:.6g}, {y:.6g}, {z:.6g}); rounding explains {rounding:.2g}"
+            f" ({x:.6g}, {y:.6g}, {z:.6g}); rounding explains a thickness of {rounding:.2g}"
+            " only"
         )
     if gap > found.volume + forgiven:
         return Verdict.DISAGREE, (
-            f"volumes differ by {gap:.6g}, but the sets by {found.volume:.6g} only"
+            f"the volumes of the two results differ by {gap:.6g}, but the volume of their"
+            f" symmetric difference is only {found.volume:.6g}"
         )
     if found.thickness > same:
         reason = f"the sets differ by {found.thickness:.2g}, within manifold3d's tolerance"
         return Verdict.WITHIN_ROUNDING, reason
     if ours.euler_number != theirs.euler_number:
         return Verdict.OTHER_TOPOLOGY, (
-            f"the Euler number is {ours.euler_number}, manifold3d's {theirs.euler_number}"
+            f"the Euler number of the result is {ours.euler_number}, of manifold3d's result"
+            f" {theirs.euler_number}"
         )
     if areas_differ(ours, theirs, mesh, rounding):
         return Verdict.OTHER_TOPOLOGY, (
-            f"the area is {ours.area:.9g}, manifold3d's {theirs.area:.9g}"
+            f"the area of the result is {ours.area:.9g}, of manifold3d's result {theirs.area:.9g}"
         )
     return Verdict.AGREE, ""

@@ -109,7 +109,9 @@ def _result_of(
     except (RuntimeError, MemoryError, ValueError) as error:
         raise OracleFailedError(f"manifold3d raised {type(error).__name__}: {error}") from error
     if outside:
-        raise OracleRefusedError("the result is unbounded, and manifold3d has no such solids")
+        raise OracleRefusedError(
+            "the result is unbounded, and manifold3d cannot represent unbounded solids"
+        )
     if status != "NoError":
         raise OracleFailedError(f"manifold3d's result has the status {status}")
     return result, max(tolerance, result.get_tolerance())

@@ -73,14 +73,14 @@ class Losses:
         elif self.shift:
             relative = self.shift / self.size if self.size else self.shift
             found.append(
-                f"coordinates moved by up to {self.shift:.2g} ({relative:.1g} of the size)"
+                f"coordinates changed by up to {self.shift:.2g} ({relative:.1g} of the size)"
             )
         if self.solid == (True, False):
             found.append("no longer a solid")
         if self.names:
             told = ", ".join(f"“{name}”" for name in self.names[:_MAX_NAMES_SHOWN])
             more = len(self.names) - _MAX_NAMES_SHOWN
-            found.append(f"names gone: {told}" + (f" and {more} more" if more > 0 else ""))
+            found.append(f"names of objects: {told}" + (f" and {more} more" if more > 0 else ""))
         if self.attributes:
             told = ", ".join(f"“{name}”" for name in self.attributes[:_MAX_NAMES_SHOWN])
             more = len(self.attributes) - _MAX_NAMES_SHOWN

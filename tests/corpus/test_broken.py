@@ -54,7 +54,7 @@ def hints(line: str, arguments: tuple[str, ...]) -> list[str]:
     if "the mesh is not closed" not in line:
         return []
     assert re.search(r"\d edges have no .* belongs to face \d+ and runs from \(.*\) to \(", line)
-    advice = "  --on-invalid repair fills it; --on-invalid warn goes on without it."
+    advice = "  --on-invalid repair closes the mesh; --on-invalid warn leaves it out."
     if arguments[0] == "run":
         return [advice]
     name = Path(next(word for word in arguments if f" {word}: " in line))
@@ -105,7 +105,7 @@ def test_drawings(capsys: Capture, case: Broken) -> None:
     Path(f"in{case.suffix}").write_bytes(case.data)
     Path("in.csg").write_text(f'linear_extrude(height = 2) import(file = "in{case.suffix}");')
     line = refused(capsys, case.code, "run", "in.csg", "-o", "x.ply")
-    assert "in.csg:1:" in line or "x.ply: nothing is left" in line
+    assert "in.csg:1:" in line or "x.ply: the result is empty" in line
 
 
 # What looks odd and is right

@@ -46,7 +46,7 @@ FORMATS += [".csg", ".json", ".svg", ".dxf", ".snapshot"]
 NUMBERS = [b"0", b"-1", b"1e999", b"nan", b"-inf", b"1e308", b"4294967295", b"9" * 25, b"", b"0.5"]
 NUMBERS += [b"1_0", b"0x10", b"1e-320", b"-0", b"2147483648", b"1,5", b"\xd9\xa3"]
 
-#: The bytes that overwrite others.
+#: The bytes with which parts of a file are overwritten.
 BYTES = [b"\0\0\0\0", b"\xff\xff\xff\xff", b"\x7f\xff\xff\xff", b"\xff\xff\xff\x7f", b"\x80", b"\0"]
 BYTES += [
     b"\x00\x00\xc0\x7f",

@@ -28,15 +28,15 @@ from .places import (
 )
 from .scenes import CALLS, PITCH, UNIT, Body, Scene, asked_for, text_of
 
-#: Points nearer to a face than this many units are not looked for in the rounded mesh: far more
-#: than rounding moves its vertices by, at coordinates below 1000.
+#: Points nearer to a face than this many units are not compared with the rounded mesh. Rounding
+#: moves its vertices by far less, at coordinates below 1000.
 CLEAR = 1e-6
 
-#: Steps in a unit in which meshes are looked at: what that moves vertices by is far below a step.
+#: The steps per unit to which meshes are rounded for checks, far finer than those of the lattice.
 FINE = 2**40
 
-#: How thin a set is of which rounding to doubles leaves no triangle: at coordinates below 1024 two
-#: sides move by less than √3 · 2⁻⁴⁴ each, and mending moves them by no more.
+#: The largest thickness of a set that may vanish when it is rounded to doubles: at coordinates
+#: below 1024 two sides move by less than √3 · 2⁻⁴⁴ each, and mending moves them by no more.
 THINNEST = Fraction(1, 2**41)
 
 #: The volume, of each unit of area, that manifold3d may gain or lose where it merges what is near.

@@ -13,7 +13,8 @@ Points: TypeAlias = npt.NDArray[np.float64]
 Flags: TypeAlias = npt.NDArray[np.bool_]
 Inside: TypeAlias = Callable[[Points], Flags]
 
-#: Depth of a script; sizes of cubes, and how far each of its moves goes: all stays within REACH.
+#: The depth of a script, the largest size of cubes, and the largest translation of a level; all
+#: coordinates stay within REACH.
 DEPTH, SIZE, MOVE = 3, 4, 3
 REACH = SIZE + DEPTH * MOVE + 1
 

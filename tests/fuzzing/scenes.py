@@ -21,10 +21,10 @@ Rng: TypeAlias = np.random.Generator
 #: Steps in a unit, and their exponent.
 UNIT, PITCH = 10**9, -9
 
-#: Coordinates are multiples of one of these: whole units, tenths, steps.
+#: The numbers of lattice steps of which coordinates are multiples: a unit, a tenth, one step.
 GRIDS = (UNIT, UNIT // 10, 1)
 
-#: Parts of an operand, operands of a scene, operations of an expression, at most.
+#: The largest numbers of parts of an operand, operands of a scene, operations of an expression.
 PARTS, OPERANDS, OPERATIONS = 3, 4, 6
 
 Expression: TypeAlias = int | tuple[Any, ...]

@@ -111,11 +111,11 @@ def far_and_wide(scene: Scene, kernel: Kernel) -> Iterator[str]:
     finally:
         b.set_threads(0)
     if len(found) > 1:
-        yield f"threads: {len(found)} different meshes"
+        yield f"threads: {len(found)} unchanged input meshes"
     yield from _untouched(scene, mesh)
 
 
-# What no other operand comes near
+# Faces far from other operands
 
 
 def _untouched(scene: Scene, mesh: "b.Mesh") -> Iterator[str]:

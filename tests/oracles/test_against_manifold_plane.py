@@ -65,8 +65,8 @@ class Verb(NamedTuple):
 
     ours: Callable[[Region], Any]
     theirs: Callable[[m.CrossSection], Any]
-    #: Relative difference of areas and volumes: that of manifold3d's coordinates, 1e-8, but for
-    #: arcs, which the two begin at different angles.
+    #: The allowed relative difference of areas and volumes: manifold3d's coordinates are precise to
+    #: 1e-8, but the two engines begin arcs at different angles.
     tolerance: float = 1e-6
 
 

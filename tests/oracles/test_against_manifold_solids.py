@@ -97,7 +97,7 @@ FIELDS: list[Verb] = [
     lambda p: 0.2 + 0 * p[:, 0],
 ]
 
-#: Heights at which bodies are cut; of the special ones none in a face, for there the two differ.
+#: Heights at which bodies are cut, none of them in a face, where the two engines differ.
 HEIGHTS = [0.5, 0.1, 0.3, 0.2, 1.5, 0.5, 0.25, 1.5, 0.5, 5e-4]
 
 SIZES: list[tuple[float, float, float]] = [
@@ -284,8 +284,8 @@ ROWS: dict[str, tuple[Verb, Verb, list[tuple[Any, ...]]]] = {
     ),
 }
 
-#: Methods without a row: what `measures` is made of, what other tests here and of its neighbours
-#: compare, and what has no counterpart, which docs/compare.md says.
+#: Methods of manifold3d without a row: those that `measures` uses, those that other tests of this
+#: folder compare, and those without a counterpart here (see docs/compare.md).
 TOLD_OTHERWISE = {
     *["volume", "surface_area", "genus", "is_empty", "bounding_box", "num_vert", "num_tri"],
     *["num_edge", "to_mesh", "to_mesh64", "status", "min_gap", "ray_cast", "project", "sphere"],

@@ -88,7 +88,7 @@ def chain(rng: random.Random, operands: list[Operand]) -> b.Solid:
     return result
 
 
-# Found: colours and coordinates of textures ended at a boolean.
+# Found: set operations dropped colours and texture coordinates.
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(20))
 def test_values_at_every_corner_are_those_of_the_source_there(seed: int) -> None:

@@ -8,8 +8,8 @@ import pytest
 import bspcsg as b
 from support import drawn
 
-#: How many widths a blend may be from its edge: where both kinds meet, one begins a width from the
-#: edge, at the end of the other, and ends at its corner, the diagonal of a square farther on.
+#: The largest distance of a blend from its edge, in widths of the blend: where blends of a convex
+#: and a concave edge meet, one begins a width from the edge and ends a square's diagonal farther.
 FARTHEST = 1.01 * (1 + 2**0.5)
 
 #: Bodies whose edges were forgotten, cut far from where they end, or met in a bend of no angle.
@@ -114,8 +114,8 @@ def cut(case: Case) -> tuple[np.ndarray, np.ndarray]:
     return at[clear], beyond[clear]
 
 
-# Found: fillets and chamfers of edges of both kinds forgot some in silence, cut far beyond where
-# edges end, or ended in a `ValueError`.
+# Found: fillets and chamfers of convex and concave edges together left edges out without an error,
+# cut far beyond the ends of edges, or ended in a `ValueError`.
 @pytest.mark.parametrize("seed", [*drawn(range(60), 3), *BROKEN])
 def test_blends_are_where_their_edges_are(seed: int) -> None:
     case = case_of(seed)

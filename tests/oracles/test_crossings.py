@@ -27,49 +27,50 @@ from support.shapes import exact_volume, icosphere
 
 SCENES = drawn(range(10_000 if DEEP else 250), 3)
 
-#: Scenes beyond these that failed once: all of it thinner than single precision, slivers by volume,
-#: crossings at vertices that were welded, and faces that cross once they are united in single
-#: precision.
+#: Further scenes that failed once: a scene thinner than single precision, slivers of little volume,
+#: crossings at welded vertices, and faces that cross after they are united in single precision.
 FOUND = (490, 2354, 4777, 5732, 5925)
 
-#: Scenes in which rounding puts vertices in one place, and nothing else touches.
+#: Scenes in which rounding makes vertices coincide, and nothing else touches.
 MET = (5675, 6915)
 
-#: Scenes in which mending copies a vertex and leaves both in one place, and one in which a motion
-#: takes along vertices that a contact has split; with what is said of them.
+#: Scenes, with the code of the finding about them: in two of them mending copies a vertex and
+#: leaves both copies at one point; in the last one, a motion moves vertices that a contact split.
 IN_ONE_PLACE = [
     (10647, "rounded_contact"),
     (15968, "rounded_contact"),
     (17227, "given_contact"),
 ]
 
-#: Scenes of which single precision leaves nothing: parts that touch along an edge, one of a volume
+#: Scenes that are empty in single precision: parts that touch along an edge, one of a volume
 #: of 1e-34, needles and sheets.
 THIN = (369, 599, 477, 1102, 1501)
 
-#: The codes of findings that name vertices in one place.
+#: The codes of findings about vertices that coincide.
 CONTACTS = frozenset({"edge_contact", "vertex_contact", "rounded_contact", "given_contact"})
 
-#: Those of them that count all vertices in one place, not what was split there.
+#: The codes in CONTACTS whose findings count all coinciding vertices, not only split ones.
 IN_PLACE = frozenset({"rounded_contact", "given_contact"})
 
-#: So many of the scenes are rounded once, and no more.
+#: The number of scenes whose meshes are rounded to single precision in one test.
 ROUNDED = 100
 
-#: Meshes of so many faces are looked through in fractions, pair by pair.
+#: Meshes of at most this many faces are checked in fractions, pair by pair.
 FRACTIONS = 40 if DEEP else 24
 
-#: A step far below the spacing of the doubles here: 10 to this power.
+#: The exponent of a lattice step far below the spacing of the doubles used here.
 FINER = -40
 
-#: Of the coarsest operand: given doubles lie up to half of it off the lattice, on each axis.
+#: The lattice step of the coarsest operand: given doubles are up to half a step off the lattice, on
+#: each axis.
 STEP = 1e-9
 
 #: The largest distance by which single precision moves a corner, in spacings of its numbers: half
 #: of one by rounding, four by mending.
 MAX_SPACINGS_MOVED = 5
 
-#: The same for what is thickened first: by one on each axis, and uniting rounds and mends again.
+#: The largest such distance for solids that are thickened first: by one spacing on each axis, and
+#: uniting rounds and mends a second time.
 MAX_SPACINGS_THICKENED = 2 + 2 * MAX_SPACINGS_MOVED
 
 
@@ -175,7 +176,7 @@ def test_what_crosses_by_itself_is_not_taken_for_rounding() -> None:
     assert not solid.normalized().to_mesh().certificate.crossings
 
 
-# Found: a connected mesh that crosses itself was delivered as it came, and no finding said so.
+# Found: a connected mesh that crosses itself was returned unchanged, without a finding.
 @pytest.mark.parametrize("shift", [(0, 0, 0), (0.1, 20, 3)])
 @pytest.mark.parametrize("what", ["folded", "nested", "twice", "beside"])
 def test_findings_tell_of_meshes_that_are_no_boundary(
@@ -232,7 +233,7 @@ def delivered() -> dict[int, tuple["b.Solid", "b.Mesh"]]:
     return found
 
 
-# Found: rounded meshes crossed themselves, and nothing was said.
+# Found: meshes crossed themselves after rounding, without a finding.
 def test_delivered_meshes_do_not_cross(
     delivered: dict[int, tuple["b.Solid", "b.Mesh"]],
 ) -> None:
@@ -265,8 +266,8 @@ def turned_grid(seed: int) -> FloatArray:
     return apply(turn, rng.integers(0, 5, (60, 3)).astype(float))
 
 
-# Found: hulls of turned points, and what is made of hulls (sums, offsets, rounded solids),
-# crossed themselves in silence.
+# Found: hulls of rotated points, and solids made of such hulls (sums, offsets, rounded solids),
+# crossed themselves without a finding.
 def test_hulls_do_not_cross() -> None:
     for seed in drawn(range(60), 3):
         points = turned_grid(seed)
@@ -299,8 +300,8 @@ def sums(first: FloatArray, second: FloatArray) -> FloatArray:
 DISC = b.cylinder(h=10, r=3.5, segments=32, center=True).vertices
 BALL = b.sphere(2, segments=32).vertices
 
-#: Points of which many lie in one plane or on one line, and the triangles of their hull, if that is
-#: known. They are turned, so that each lies beside it by rounding.
+#: Points of which many lie in one plane or on one line, and the number of triangles of their hull,
+#: if known. The points are rotated, so that by rounding each lies beside that plane or line.
 CLOUDS: dict[str, tuple[FloatArray, int | None]] = {
     "a grid": (grid(9, 9, 2), 12),
     "a grid in full": (grid(5, 6, 7), 12),
@@ -377,8 +378,8 @@ def dented(points: FloatArray) -> FloatArray:
 
 DENTED = b.cube(1).refine(2).warp(dented)
 
-#: What makes a solid of arrays of its own: of input that makes triangles cross, overlap or vanish,
-#: or leaves them no area, and of ordinary input. Hulls have no such input.
+#: Functions that make a solid from new arrays: of input that makes triangles cross, overlap, vanish
+#: or have no area, and of ordinary input. For hulls there is no input of the former kind.
 MAKERS: dict[str, tuple[Callable[[], "b.Solid"], Callable[[], "b.Solid"]]] = {
     "extrude": (lambda: b.extrude(BOW, 1), lambda: b.extrude(SQUARE, 1)),
     "extrude, twisted": (
@@ -408,8 +409,8 @@ MAKERS: dict[str, tuple[Callable[[], "b.Solid"], Callable[[], "b.Solid"]]] = {
 }
 
 
-# Found: triangles without area were not told, and what crosses itself and is inside out by volume
-# was told to be inside out only.
+# Found: triangles without area were not reported, and a mesh that crosses itself and has negative
+# volume was reported as inside out only.
 @pytest.mark.parametrize(("faulty", "ordinary"), MAKERS.values(), ids=MAKERS)
 def test_what_is_made_of_arrays_tells_its_faults(
     faulty: Callable[[], "b.Solid"], ordinary: Callable[[], "b.Solid"]
@@ -425,8 +426,8 @@ def test_what_is_made_of_arrays_tells_its_faults(
         assert make is faulty or proof.ok
 
 
-# Found: a mesh that crosses itself in doubles by less than a step of the lattice was delivered as
-# it came, and no finding said so.
+# Found: a mesh that crosses itself in doubles by less than a step of the lattice was returned
+# unchanged, without a finding.
 def test_what_crosses_by_less_than_a_step_is_told() -> None:
     told = 0
     seeds = drawn(range(40), 3)
@@ -572,8 +573,8 @@ def test_no_crossing_in_single_precision_is_silent(
         assert crossings_are_told(mesh), seed
 
 
-#: Scenes in which single precision puts surfaces that cross into the same edges, or edges of two
-#: that touch into one.
+#: Scenes in which single precision gives surfaces that cross the same edges, or joins the edges of
+#: two surfaces that touch.
 IN_EDGES = [3953, 7910, 8279, 9895]
 
 
@@ -626,7 +627,8 @@ TOUCHING = {
 }
 
 
-# Found: a solid that touches itself crossed once it was turned or scaled, and no finding said so.
+# Found: a solid that touches itself crossed itself after it was rotated or scaled, without a
+# finding.
 @pytest.mark.parametrize("is_asked", [False, True])
 @pytest.mark.parametrize("solid", TOUCHING.values(), ids=TOUCHING)
 def test_what_touches_itself_does_not_cross_once_it_is_moved(
@@ -730,7 +732,8 @@ def uses_all_vertices(mesh: "b.Mesh") -> bool:
     return len(np.unique(mesh.faces)) == len(mesh.vertices)
 
 
-# Found: mended meshes kept vertices that no triangle uses; findings named old numbers.
+# Found: mended meshes kept vertices that no triangle uses, and findings named vertices by their old
+# indices.
 def test_what_single_precision_leaves_is_numbered_anew(
     delivered: dict[int, tuple["b.Solid", "b.Mesh"]],
 ) -> None:

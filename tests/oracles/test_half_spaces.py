@@ -74,7 +74,7 @@ def moved_by(solid: b.Solid) -> float:
     return float(words[words.index("most") + 1]) if told else 0.0
 
 
-# Found: `half_space` was another plane than its decimals say.
+# Found: `half_space` was a plane other than that of its decimal numbers.
 def test_the_unit_simplex() -> None:
     wanted = solid_of([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
     plane = b.half_space((1, 1, 1), 1)
@@ -301,7 +301,8 @@ def test_first_cuts_of_sets() -> None:
     assert tree.split_case((-2, -3), -7) == "opposite"
 
 
-# Found: so were `split`, `slice` and cuts of trees.
+# Found: `split`, `slice` and cuts of trees used a plane other than that of the given decimal
+# numbers.
 def test_sections() -> None:
     # The plane holds three corners of the box, and the section has no others.
     region = b.box(1).slice(1, (1, 1, 1))

@@ -12,8 +12,8 @@ from support import DEEP, drawn
 
 PROGRAMS = drawn(range(5_000 if DEEP else 400), 3)
 
-#: Programs beyond these that failed once: a crossing that only the lattice takes out, and faces
-#: kept as they came, but for a corner to which another vertex at its place gave other doubles.
+#: Further programs that failed once: a crossing that only the lattice removes, and unchanged faces
+#: of which one corner took other doubles from another vertex at the same lattice point.
 FOUND = (286, 5707, 6767, 7067, 15362, 20775)
 
 TETRAHEDRON = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
@@ -200,7 +200,8 @@ def test_t_junctions_stay_closed_wherever_they_are_moved(seed: int) -> None:
     assert turned.volume == pytest.approx(boxes.volume, rel=1e-7)
 
 
-# Found: so was one whose corners differ by less than a step.
+# Found: a mesh whose corners differ by less than a lattice step was refused as open after a
+# rotation.
 @pytest.mark.parametrize("seed", range(100 if DEEP else 20))
 def test_corners_that_are_welded_stay_so_wherever_they_are_moved(seed: int) -> None:
     rng = np.random.default_rng(seed)

@@ -21,7 +21,7 @@ Exact: TypeAlias = list[Fraction]
 
 SIZE = (240, 180)
 
-#: So many pixels of a picture are judged.
+#: The number of pixels of each picture that are judged.
 PIXELS = 400 if DEEP else 130
 
 #: Pixels from an edge or from a line where facets cross within which a pixel is not judged: Pillow

@@ -15,7 +15,7 @@ from support.degenerate import scene
 
 SCENES = drawn(range(1_000, 3_000 if DEEP else 1_080), 3)
 
-#: The most that distances of samples may be off by, for coordinates of size 1.
+#: The largest allowed error of distances of samples, for coordinates up to about 1.
 EPSILON = 1e-12
 
 

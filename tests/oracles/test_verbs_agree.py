@@ -12,12 +12,12 @@ import bspcsg as b
 from support.shapes import Arrays
 from support.small import random_set, random_shapes
 
-#: The finest that holds coordinates up to 9 units, two others and the default.
+#: The finest pitch whose lattice has room for coordinates up to 9 units, two others, the default.
 PITCHES = (-15, -13, -11, None)
 
 AXIS = (1, 2, 3)
 
-#: Of a solid, the size of its unit, and where its origin lies.
+#: What a verb returns; it takes a solid, the length of the solid's unit, and its origin.
 Made: TypeAlias = b.Solid | b.Region | list[b.Solid]
 Verb: TypeAlias = Callable[[b.Solid, float, np.ndarray], Made]
 
@@ -55,7 +55,7 @@ VERBS: dict[str, Verb] = {
     "extruded slice": lambda solid, unit, at: slice_of(solid, unit, at).extrude(1.5 * unit),
 }
 
-#: The same of few faces only.
+#: Slow verbs, which are tried on solids of few faces only.
 SLOW_VERBS: dict[str, Verb] = {
     "grown": lambda solid, unit, at: solid.offset(0.25 * unit, segments=4),
     "shrunk": lambda solid, unit, at: solid.offset(-0.1 * unit, segments=4),
@@ -64,7 +64,7 @@ SLOW_VERBS: dict[str, Verb] = {
     "sum": lambda solid, unit, at: b.minkowski(solid, b.cube(0.5 * unit)),
 }
 
-#: The same set from another mesh or tree.
+#: Functions that return the same set of points with another mesh or tree.
 FORMS: dict[str, Callable[[b.Solid], b.Solid]] = {
     "read from a pickle": lambda solid: pickle.loads(pickle.dumps(solid)),
     "united with itself": lambda solid: solid | solid,

@@ -105,8 +105,8 @@ def test_expressions_of_four_operands() -> None:
         assert_matches(~(~a | ~c) - d | e & a, ((p & q) & ~r) | (s & p))
 
 
-# Found: shells of one mesh that cross in edges of both, whose vertices share places and not
-# numbers, were taken for apart: twice the volume where they overlap.
+# Found: shells of one mesh that cross in edges of both, with vertices at equal coordinates but of
+# different indices, were counted as separate: twice the volume where they overlap.
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(500 if DEEP else 40))
 def test_boxes_of_one_mesh_that_meet_in_edges_of_both(seed: int) -> None:

@@ -39,7 +39,7 @@ def test_the_list_names_all_cases(capsys: Capture) -> None:
     assert document["schema"] == 1 and [one["case"] for one in document["cases"]] == list(CASES)
 
 
-# Found: `bench --json` wanted a file.
+# Found: `bench --json` required a file.
 @pytest.mark.timeout(300)
 def test_cases_are_measured_recorded_and_shown_again(capsys: Capture, tmp_path: Path) -> None:
     record_path, plot_path = tmp_path / "r.json", tmp_path / "sizes.svg"
@@ -123,7 +123,7 @@ def test_records_of_other_places_are_not_continued(
     for changed in ("machine", "versions"):
         path.write_text(json.dumps({**record, changed: {}}))
         code, _, err = ran(capsys, *asked)
-        assert code == 3 and "measure it again without --continue" in err
+        assert code == 3 and "measure again without --continue" in err
     assert ran(capsys, "bench", "cubes", "--continue")[0] == 2
 
 
@@ -177,14 +177,30 @@ def test_cases_without_their_data_are_left_out(capsys: Capture, tmp_path: Path) 
 @pytest.mark.parametrize(
     ("arguments", "code", "said"),
     [
-        (["cubs"], 2, "'cubs' is no case; see --list."),
-        (["cubes", "--against", "blender"], 2, "'blender' is no engine; known are manifold3d,"),
-        (["--from", "pyproject.toml"], 3, "pyproject.toml: this is no record; bspcsg bench -o"),
+        (["cubs"], 2, "'cubs' is not a known case; --list shows all cases."),
+        (
+            ["cubes", "--against", "blender"],
+            2,
+            "'blender' is not a known engine; known are manifold3d,",
+        ),
+        (
+            ["--from", "pyproject.toml"],
+            3,
+            "pyproject.toml: the file is not a record of measurements",
+        ),
         (["--from", "missing.json"], 3, "missing.json: cannot read this file: No such file or"),
-        (["cubes", "-o", "no/such/x.json"], 5, "no/such/x.json: there is no folder no/such"),
-        (["cubes", "-o", "-"], 2, "-o and --plot take names of files, not streams; --json prints."),
-        (["cubes", "--plot", "no/such/x.svg"], 5, "no/such/x.svg: there is no folder no/such"),
-        (["cubes", "--core", "none.so"], 3, "none.so: there is no such build of the core."),
+        (["cubes", "-o", "no/such/x.json"], 5, "no/such/x.json: the folder no/such"),
+        (
+            ["cubes", "-o", "-"],
+            2,
+            "-o and --plot need the name of a file, not “-”; --json prints the record.",
+        ),
+        (["cubes", "--plot", "no/such/x.svg"], 5, "no/such/x.svg: the folder no/such"),
+        (
+            ["cubes", "--core", "none.so"],
+            3,
+            "none.so: the compiled core for --core does not exist.",
+        ),
     ],
 )
 def test_wrong_use_is_said(capsys: Capture, arguments: list[str], code: int, said: str) -> None:
@@ -201,14 +217,17 @@ def test_damaged_records_are_refused(capsys: Capture, tmp_path: Path, left: str)
     assert (code, out) == (
         3,
         "",
-    ) and err == f"bspcsg: error: {path}: this record is damaged; measure it again.\n"
+    ) and err == f"bspcsg: error: {path}: this record of measurements is damaged; measure again.\n"
 
 
 def test_records_of_another_schema_are_refused(capsys: Capture, tmp_path: Path) -> None:
     path = tmp_path / "old.json"
     path.write_text('{"type": "bench", "schema": 0}')
     code, _, err = ran(capsys, "bench", "--from", str(path))
-    assert code == 3 and "schema 0, and this version reads 1; measure it again." in err
+    assert (
+        code == 3
+        and "the record has schema 0, but this version reads 1 only; measure it again." in err
+    )
 
 
 def _record_of_growth(cpu: float) -> dict[str, Any]:
@@ -252,7 +271,7 @@ def test_dense_places_are_a_suite_of_their_own(capsys: Capture) -> None:
     names = [line.split()[0] for line in out.splitlines()[2:]]
     assert code == 0 and names and all(name.startswith("dense-") for name in names)
     code, _, err = ran(capsys, "bench", "--cliffs", "cubes")
-    assert code == 2 and "leaves none" in err
+    assert code == 2 and "none of these cases" in err
 
 
 @pytest.mark.deep

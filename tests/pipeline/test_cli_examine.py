@@ -161,16 +161,16 @@ def test_another_solid(folder: Path, capsys: Capture) -> None:
     ("arguments", "code", "words"),
     [
         (["a.off", "-o", "-"], 2, "standard output"),
-        (["a.off", "-o", "x.off", "--plane", "1,2,3"], 2, "is no plane"),
+        (["a.off", "-o", "x.off", "--plane", "1,2,3"], 2, "is not a plane"),
         (["a.off", "-o", "x.off", "--plane", "z:1"], 2, "x, y and z are axes"),
-        (["a.off", "-o", "x.off", "--plane", "0,0,0,1"], 2, "is no plane"),
-        (["a.off", "-o", "x.off", "--plane", "nan,0,1,1"], 2, "is no plane"),
-        (["a.off", "-o", "x.off", "--plane", "0,0,1,1", "--by", "c.stl"], 2, "exclude"),
+        (["a.off", "-o", "x.off", "--plane", "0,0,0,1"], 2, "is not a plane"),
+        (["a.off", "-o", "x.off", "--plane", "nan,0,1,1"], 2, "is not a plane"),
+        (["a.off", "-o", "x.off", "--plane", "0,0,1,1", "--by", "c.stl"], 2, "cannot be combined"),
         (["a.off", "-o", "x.step"], 3, "STEP"),
         (["none.off", "-o", "x.off"], 3, "none.off"),
         (["a.off", "-o", "x.off", "--plane", "0,0,1,9"], 4, "on one side"),
-        (["inverted.off", "-o", "x.off"], 4, "nothing in it"),
-        (["a.off", "-o", "no/x.off"], 5, "no folder"),
+        (["inverted.off", "-o", "x.off"], 4, "the solid is empty"),
+        (["a.off", "-o", "no/x.off"], 5, "does not exist or is not writable"),
     ],
 )
 def test_split_refusals(
@@ -198,7 +198,7 @@ def test_nothing_is_not_repaired(folder: Path, capsys: Capture) -> None:
     Path("none.off").write_text("OFF\n0 0 0\n")
     code, out, err = ran(capsys, "repair", "none.off", "-o", "x.off")
     assert (code, out) == (4, "") and not Path("x.off").exists()
-    assert err == "bspcsg: error: none.off: there is nothing in it, so nothing was written.\n"
+    assert err == "bspcsg: error: none.off: no triangles are left, so nothing was written.\n"
 
 
 # Found: `repair` and `--on-invalid repair` lost all attributes in silence.
@@ -217,7 +217,7 @@ def test_repair_tells_what_it_loses(folder: Path, capsys: Capture) -> None:
     assert (code, err) == (0, "") and b.io.read("x.3mf").objects == (("lid", 12),)
 
 
-# Found: where a lid rested on a body, `repair` joined them, and triangles lay over each other.
+# Found: where a lid rests on a body, `repair` joined them, and their triangles overlapped.
 def test_objects_are_repaired_by_themselves(folder: Path, capsys: Capture) -> None:
     lid, body = moved(cube(), (0, 0, 1)), (cube()[0], cube()[1][1:])
     objects = (("lid", 12), ("body", 11))
@@ -241,7 +241,7 @@ def test_a_folder_is_repaired(folder: Path, capsys: Capture) -> None:
     assert code == 3 and "error: in/bad.ply" in err and "skipped 1 file" in err
     assert out.splitlines() == [
         "new/out/open.off: a solid; 11 triangles became 12",
-        "new/out/stray.ply: a solid; 13 triangles became 12, 1 stray ones dropped",
+        "new/out/stray.ply: a solid; 13 triangles became 12, 1 stray ones removed",
     ]
     assert [b.load(f"new/out/{name}").volume for name in ("open.off", "stray.ply")] == [8, 8]
     code, out, _ = ran(capsys, "repair", "in", "--outdir", "new", "--to", "stl", "--json")
@@ -259,9 +259,9 @@ def test_two_inputs_of_one_output_are_refused_first(
         put(f"{place}/a.off", cube(2))
     code, out, err = ran(capsys, verb, "in", "--outdir", "new", "--to", "off")
     assert (code, out) == (2, "") and not Path("new").exists()
-    assert "in/a.off and in/deep/a.off would both be written to new/a.off." in err
+    assert "in/a.off and in/deep/a.off would both be written to new/a.off;" in err
     code, _, err = ran(capsys, verb, "in", "--outdir", "in", "--to", "off")
-    assert code == 2 and "in/deep/a.off would be written to in/a.off, which is an input" in err
+    assert code == 2 and "in/deep/a.off would overwrite in/a.off, which is also an input" in err
 
 
 def test_repairs_of_inputs_tell_what_they_lose(folder: Path, capsys: Capture) -> None:
@@ -292,13 +292,13 @@ def test_what_cannot_be_repaired_is_code_1(folder: Path, capsys: Capture) -> Non
     ("arguments", "code", "words"),
     [
         (["a.off"], 2, "either -o FILE or --outdir DIR"),
-        (["a.off", "c.stl", "-o", "x.off"], 2, "or say --outdir"),
-        (["a.off", "-o", "x.off", "--steps", "weld,polish"], 2, "'polish' is no step"),
+        (["a.off", "c.stl", "-o", "x.off"], 2, "or give --outdir"),
+        (["a.off", "-o", "x.off", "--steps", "weld,polish"], 2, "'polish' is not a repair step"),
         (["a.off", "-o", "x.off", "--steps", ","], 2, "at least one"),
         (["a.off", "-o", "x.off", "--max-hole", "2"], 2, "--max-hole"),
         (["none.off", "-o", "x.off"], 3, "none.off"),
-        (["a.off", "-o", "no/x.off"], 5, "no folder"),
-        (["a.off", "-o", "x.off", "--timeout", "0.001"], 124, "longer than 0.001 s"),
+        (["a.off", "-o", "no/x.off"], 5, "does not exist or is not writable"),
+        (["a.off", "-o", "x.off", "--timeout", "0.001"], 124, "time limit of 0.001 s"),
     ],
 )
 def test_repair_refusals(
@@ -338,7 +338,7 @@ def test_doctor_names_what_is_missing(
     code, out, _ = ran(capsys, "doctor")
     assert code == 0 and "49 of 58 plug-ins" in out and "libgl1 libopengl0" in out
     # What is missing has the line to type below the sentence.
-    said = "meshio is missing, needed for VTK and VTU files. Try:\n  pip install"
+    said = "meshio is missing; it is needed for VTK and VTU files. Try:\n  pip install"
     assert f'{said} "bspcsg[vtk]"\n' in out
     assert "openscad is missing" in out and out.endswith("\n  apt-get install openscad\n")
 
@@ -368,7 +368,7 @@ def test_check_and_clash_agree(
     assert ("volume in common" in ran(capsys, "info", name)[1]) == bool(code)
 
 
-# Found: `check` told of no file behind a script with a bad mesh.
+# Found: `check` did not report the files that follow a script with a bad mesh.
 def test_check_of_a_bad_script_tells_of_the_others(folder: Path, capsys: Capture) -> None:
     Path("bad.csg").write_text('import("open.stl");')
     b.save(b.cube(1), "good.stl")

@@ -19,7 +19,7 @@ from support.shapes import cube
 
 TURNED = b.box((1, 2, 3))
 
-#: A command of every verb that writes a file, without its target.
+#: For each verb that writes a file, a command line without the output file.
 WRITERS = {
     "union": ["union", "a.off", "c.stl"],
     "eval": ["eval", "a.off - c.stl"],
@@ -47,7 +47,7 @@ def test_invalid_files_are_refused_with_what_to_type(opened: Path, capsys: Captu
     code, _, err = ran(capsys, "union", "a.off", "open.off", "-o", "x.off")
     assert code == 4 and "open.off: the mesh is not closed: 3 edges" in err
     assert "\n  Try: bspcsg repair open.off -o open-fixed.off\n" in err
-    assert "\n  --on-invalid repair fills it; --on-invalid warn goes on without it.\n" in err
+    assert "\n  --on-invalid repair closes the mesh; --on-invalid warn leaves it out.\n" in err
 
 
 # Found: `convert --simplify`, `render --section` and others advised `--on-invalid`, which they do
@@ -86,7 +86,7 @@ def test_invalid_files_left_out(
 def test_nothing_but_invalid_files_is_an_empty_result(opened: Path, capsys: Capture) -> None:
     command = ["difference", "open.off", "a.off", "-o", "x.off", "--on-invalid", "warn"]
     code, _, err = ran(capsys, *command)
-    assert code == 4 and "nothing is left" in err and not Path("x.off").exists()
+    assert code == 4 and "the result is empty" in err and not Path("x.off").exists()
 
 
 @pytest.mark.parametrize(
@@ -102,7 +102,7 @@ def test_invalid_files_repaired(
 ) -> None:
     pytest.importorskip("pymeshlab")
     code, _, err = ran(capsys, *arguments, "-o", target, "--on-invalid", "repair")
-    assert code == 0 and "warning: open.off was not closed and is repaired: 11 triangles" in err
+    assert code == 0 and "warning: open.off was not closed and was repaired: 11 triangles" in err
     if arguments[0] == "difference":
         assert b.load("x.off").volume == 7
 
@@ -122,7 +122,11 @@ def test_repairs_that_close_nothing(
     monkeypatch.setattr("bspcsg.assembly.mending.repair", lambda raw: Repair(raw, {}, 0))
     code, _, err = ran(capsys, "union", "a.off", "open.off", "-o", "x", "--to", "off",
                        "--on-invalid", "repair")  # fmt: skip
-    assert code == 4 and "A repair did not close it" in err and not Path("x").exists()
+    assert (
+        code == 4
+        and "The automatic repair could not close the mesh" in err
+        and not Path("x").exists()
+    )
 
 
 def test_invalid_meshes_in_scripts(opened: Path, capsys: Capture) -> None:
@@ -131,7 +135,7 @@ def test_invalid_meshes_in_scripts(opened: Path, capsys: Capture) -> None:
     command = ["run", "m.csg", "-o", "x.off"]
     assert ran(capsys, *command)[0] == 4
     code, _, err = ran(capsys, *command, "--on-invalid", "repair")
-    assert code == 0 and "m.csg:1:10: import(): " in err and "It is repaired" in err
+    assert code == 0 and "m.csg:1:10: import(): " in err and "This mesh is repaired" in err
     assert b.load("x.off").volume == 1
 
 
@@ -142,7 +146,10 @@ def test_digits(folder: Path, capsys: Capture) -> None:
     third = b.cube(1).scale(1 / 3)
     third.save("third.off")
     code, _, err = ran(capsys, "union", "third.off", "third.off", "-o", "x.obj", "--digits", "4")
-    assert code == 0 and "rounding to 4 digits moved coordinates by up to 3.33e-05" in err
+    assert (
+        code == 0
+        and "rounding to 4 significant digits changed coordinates by up to 3.33e-05" in err
+    )
     assert set(read("x.obj").vertices.ravel().tolist()) == {0, 0.3333}
     code, out, _ = ran(capsys, "convert", "third.off", "-o", "x.ply", "--digits", "2")
     assert code == 0 and "lost: " in out and read("x.ply").vertices.max() == 0.33
@@ -174,7 +181,7 @@ def test_files_are_kept_if_asked_to(folder: Path, capsys: Capture, verb: str) ->
     Path(written).write_text("mine")
     code, out, err = ran(capsys, *command)
     assert (code, out) == (5, "") and Path(written).read_text("utf-8") == "mine"
-    assert f"{written}: this file is there already; --overwrite replaces it." in err
+    assert f"{written}: this file exists already; --overwrite replaces it." in err
     assert (
         ran(capsys, *command, "--overwrite")[0] == 0 and Path(written).read_text("utf-8") != "mine"
     )
@@ -195,7 +202,7 @@ def test_files_beside_are_kept_as_well(folder: Path, capsys: Capture, words: lis
     Path("new.mtl").write_text("mine")
     command = [*words, "-o", "new.obj", "--no-overwrite"]
     code, _, err = ran(capsys, *command)
-    assert code == 5 and "new.mtl: this file is there already; --overwrite replaces it." in err
+    assert code == 5 and "new.mtl: this file exists already; --overwrite replaces it." in err
     assert Path("new.mtl").read_text("utf-8") == "mine" and not Path("new.obj").exists()
     Path("new.mtl").unlink()
     assert ran(capsys, *command)[0] == 0 and Path("new.mtl").is_file()
@@ -310,8 +317,8 @@ def test_drawings_as_streams(
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["-o", "-"], "say the format: --to .svg or .png"),
-        (["-o", "-", "--to", "jpg"], "'jpg' cannot be drawn; it takes .svg or .png"),
+        (["-o", "-"], "give the format with --to .svg or .png"),
+        (["-o", "-", "--to", "jpg"], "'jpg' is not a drawing format; use .svg or .png"),
         (["-o", "-", "--to", "svg", "--json"], "--json and a drawing cannot both"),
     ],
 )
@@ -369,7 +376,7 @@ def test_variables_of_python_scripts(folder: Path, capsys: Capture) -> None:
     code, _, err = ran(capsys, "run", "m.py", "-o", "x.off", *values)
     assert (code, err) == (0, "") and b.load("x.off").volume == 7
     code, _, err = ran(capsys, "run", "m.py", "-o", "x.off", "-D", "sise=2")
-    assert code == 3 and "m.py: the script assigns no variable sise" in err
+    assert code == 3 and "m.py: the script does not assign the variable sise" in err
     assert "Is size meant? It assigns size, word, sure, said, count, known, result." in err
 
 
@@ -383,11 +390,11 @@ def test_variables_of_openscad(folder: Path, capsys: Capture) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["m.py", "-D", "w"], "'w' is not NAME=VALUE"),
-        (["m.py", "-D", "1=2"], "'1=2' is not NAME=VALUE"),
-        (["m.py", "-D", "w=2*3"], "'2*3' is no value"),
-        (["m.csg", "-D", "w=2"], "-D is not for .csg files"),
-        (["m.py", "--on-invalid", "warn"], "--on-invalid is not for .py files"),
+        (["m.py", "-D", "w"], "'w' is not of the form NAME=VALUE"),
+        (["m.py", "-D", "1=2"], "'1=2' is not of the form NAME=VALUE"),
+        (["m.py", "-D", "w=2*3"], "'2*3' is not a value"),
+        (["m.csg", "-D", "w=2"], "-D cannot be used with .csg files"),
+        (["m.py", "--on-invalid", "warn"], "--on-invalid cannot be used with .py files"),
     ],
 )
 def test_variables_that_cannot_be(
@@ -411,11 +418,23 @@ def test_every_verb_tells_its_options(capsys: Capture) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["render", "a.off", "-o", "x.svg", "--frames", "36"], "--frames is for a GIF only."),
-        (["render", "a.off", "-o", "x.png", "--seconds", "4"], "--seconds is for a GIF only."),
-        (["view", "a.off", "-o", "x.html", "--port", "0"], "--port goes with --live, or"),
-        (["run", "m.csg", "-o", "x.off", "--port", "8000"], "--port goes with --view only."),
-        (["run", "m.csg", "-o", "x.off", "--watch", "--port", "1"], "--port goes with --view"),
+        (
+            ["render", "a.off", "-o", "x.svg", "--frames", "36"],
+            "--frames can only be used when the output is a .gif file.",
+        ),
+        (
+            ["render", "a.off", "-o", "x.png", "--seconds", "4"],
+            "--seconds can only be used when the output is a .gif file.",
+        ),
+        (
+            ["view", "a.off", "-o", "x.html", "--port", "0"],
+            "--port can only be used with --live or",
+        ),
+        (["run", "m.csg", "-o", "x.off", "--port", "8000"], "--port can only be used with --view."),
+        (
+            ["run", "m.csg", "-o", "x.off", "--watch", "--port", "1"],
+            "--port can only be used with --view",
+        ),
     ],
 )
 def test_options_without_use_are_refused(

@@ -194,10 +194,10 @@ def test_the_stamp_sees_every_change(tmp_path: Path) -> None:
     [
         (["view", ".", "-o", "x.html"], "leave out -o"),
         (["view", "a.off", "--live", "-o", "x.html"], "leave out -o"),
-        (["view", "-", "--live", "--from", "stl"], "not for standard input"),
+        (["view", "-", "--live", "--from", "stl"], "not standard input"),
         (["run", "part.py"], "-o part.stl"),
         (["run", "part.py", "--watch"], "-o part.stl"),
-        (["run", "-", "--view"], "not for standard input"),
+        (["run", "-", "--view"], "not standard input"),
     ],
 )
 def test_refusals(folder: Path, capsys: Capture, arguments: list[str], words: str) -> None:

@@ -26,7 +26,7 @@ def test_a_simple_file(folder: Path, capsys: Capture) -> None:
     assert code == 0 and "short edges and slivers were removed" in err
     assert b.load("x.off").volume == pytest.approx(8, abs=1e-3) and "volume 8" in out
     code, _, err = ran(capsys, "simplify", "a.off", "-o", "y.off", "--tolerance", "0.01")
-    assert code == 0 and "nothing to simplify" in err and b.load("y.off") == b.cube(2)
+    assert code == 0 and "small enough to be simplified" in err and b.load("y.off") == b.cube(2)
 
 
 @pytest.mark.parametrize("name", ["x.svg", "x.dxf"])
@@ -61,22 +61,21 @@ def test_the_former_name_of_split_keeps_its_names_of_files(folder: Path, capsys:
     put("two.off", joined(cuboid((0, 0, 0), (1, 1, 1)), cuboid((5, 0, 0), (7, 2, 2))))
     code, out, err = ran(capsys, "explode", "two.off", "-o", "%.ply", "--json")
     assert (
-        code == 0
-        and err == "note: explode is called split now; the old name will be removed later.\n"
+        code == 0 and err.startswith("note: explode is now called split;") and err.count("\n") == 1
     )
     assert [part["output"] for part in json.loads(out)["parts"]] == ["two-1.ply", "two-2.ply"]
 
 
-# Found: `split` wrote parts over their inputs.
+# Found: `split` overwrote its inputs with parts.
 def test_parts_do_not_replace_inputs(folder: Path, capsys: Capture) -> None:
     put("two.off", joined(cuboid((0, 0, 0), (1, 1, 1)), cuboid((5, 0, 0), (7, 2, 2))))
     put("two-2.off", cuboid((0, 0, 0), (3, 1, 1)))
     code, out, err = ran(capsys, "split", "two.off", "two-2.off", "-o", "%.off")
     assert (code, out) == (2, "") and not Path("two-1.off").exists()
-    assert "part 2 of two.off would be written to two-2.off, which is an input, too." in err
+    assert "part 2 of two.off would overwrite two-2.off, which is also an input" in err
     code, out, err = ran(capsys, "split", "two-2.off", "-o", "two-%.off", "--plane", "x,1")
     assert (code, out) == (2, "") and not Path("two-1.off").exists()
-    assert "part 2 of two-2.off would be written to two-2.off, which is an input, too." in err
+    assert "part 2 of two-2.off would overwrite two-2.off, which is also an input" in err
     assert b.load("two-2.off").volume == 3
 
 
@@ -150,15 +149,15 @@ def test_objects_of_one_file_of_another_name_clash(
     code, out, err = ran(capsys, "clash", "all.part", "--from", suffix)
     assert (code, err) == (1, "") and "3 pairs of objects, 1 in each other's way" in out
     code, _, err = ran(capsys, "clash", "all.part", "--from", "json")
-    assert code == 2 and "ending in .json" in err
+    assert code == 2 and "ends in .json" in err
 
 
 def test_one_object_cannot_clash(folder: Path, capsys: Capture) -> None:
     code, _, err = ran(capsys, "clash", "a.off")
-    assert code == 2 and "a.off is one object" in err
+    assert code == 2 and "a.off contains one object only" in err
     boxes().save("all.3mf")
     code, _, err = ran(capsys, "clash", "all.3mf", "--on-invalid", "repair")
-    assert code == 2 and "several objects, all of them closed" in err
+    assert code == 2 and "several closed objects" in err
 
 
 def test_nobody_is_in_the_way(folder: Path, capsys: Capture) -> None:
@@ -169,7 +168,7 @@ def test_nobody_is_in_the_way(folder: Path, capsys: Capture) -> None:
     assert code == 0 and json.loads(out)["clashes"] == []
 
 
-# Found: `repair --digits` called a file a solid that rounding had broken.
+# Found: `repair --digits` called a file a solid although rounding had broken it.
 def test_repair_judges_what_it_writes(folder: Path, capsys: Capture) -> None:
     small = (b.cube(0.3).translate(1, 1, 1)).to_mesh()
     b.save(b.Solid(small.vertices, small.faces), "dig.ply")

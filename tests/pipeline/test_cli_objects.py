@@ -26,7 +26,7 @@ def files(folder: Path) -> Path:
     return folder
 
 
-# Found: a union flattened named objects.
+# Found: a union joined the named objects of its files into one object without a name.
 @pytest.mark.parametrize(
     ("line", "names"),
     [

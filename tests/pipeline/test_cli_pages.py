@@ -217,14 +217,18 @@ def test_differences_are_coloured_and_laid_over_each_other(
     ("arguments", "code", "words"),
     [
         (["compare", "a.off", "c.stl", "--html", "x.png"], 3, "must end in .html"),
-        (["compare", "a.off", "c.stl", "--html", "no/x.html"], 5, "no folder"),
-        (["check", "a.off", "--thin", "1"], 2, "say -o check.html too"),
-        (["check", "a.off", "-o", "x.json", "--thin", "1"], 2, "say -o check.html too"),
+        (
+            ["compare", "a.off", "c.stl", "--html", "no/x.html"],
+            5,
+            "does not exist or is not writable",
+        ),
+        (["check", "a.off", "--thin", "1"], 2, "add -o check.html"),
+        (["check", "a.off", "-o", "x.json", "--thin", "1"], 2, "add -o check.html"),
         (["check", "a.off", "-o", "x.pdf"], 3, "must end in .html, .json or .xml"),
-        (["check", "a.off", "-o", "no/x.xml"], 5, "no folder"),
+        (["check", "a.off", "-o", "no/x.xml"], 5, "does not exist or is not writable"),
         (["check", "a.off", "-o", "-"], 2, "--json prints the document"),
-        (["check", "a.off", "m.json", "-o", "m.json"], 2, "which is to be read"),
-        (["check", "a.off", "--html", "x.html", "--thin", "-1"], 2, "no length"),
+        (["check", "a.off", "m.json", "-o", "m.json"], 2, "would overwrite the input"),
+        (["check", "a.off", "--html", "x.html", "--thin", "-1"], 2, "not a length"),
     ],
 )
 def test_refusals(

@@ -175,25 +175,37 @@ def test_open_meshes_can_be_seen(folder: Path, capsys: Capture) -> None:
         (["part.step", "-o", "x.svg"], 3, "STEP"),
         (["a.off", "-o", "x.jpg"], 3, "end in .svg or .png or .gif"),
         (["a.off", "-o", "x"], 3, "end in .svg or .png or .gif"),
-        (["a.off", "-o", "no/x.svg"], 5, "no folder"),
-        (["a.off", "-o", "x.svg", "--size", "800"], 2, "'800' is no size"),
+        (["a.off", "-o", "no/x.svg"], 5, "does not exist or is not writable"),
+        (["a.off", "-o", "x.svg", "--size", "800"], 2, "'800' is not a picture size"),
         (["a.off", "-o", "x.svg", "--size", "0x600"], 2, "width"),
         (["a.off", "-o", "x.svg", "--size", "99999x600"], 2, "at most"),
         (["a.off", "-o", "x.svg", "--view", "behind"], 2, "behind"),
         (["a.off", "-o", "x.svg", "--background", "sky"], 2, "'sky' is not"),
         (["a.off"], 2, "-o"),
-        (["a.off", "-o", "x.svg", "--eye", "1,2"], 2, "'1,2' is no point"),
-        (["a.off", "-o", "x.svg", "--eye", "1,1,1", "--target", "1,1,1"], 2, "another point"),
-        (["a.off", "-o", "x.svg", "--eye", "9,9,9", "--view", "top"], 2, "--view does not go"),
-        (["a.off", "-o", "x.svg", "--eye", "9,9,9", "--azimuth", "3"], 2, "--azimuth does not"),
-        (["a.off", "-o", "x.svg", "--view", "top", "--elevation", "3"], 2, "--elevation does"),
-        (["a.off", "-o", "x.svg", "--target", "0,0,0"], 2, "--target goes with --eye"),
-        (["a.off", "-o", "x.svg", "--up", "0,0,0"], 2, "no direction"),
+        (["a.off", "-o", "x.svg", "--eye", "1,2"], 2, "'1,2' is not a point"),
+        (["a.off", "-o", "x.svg", "--eye", "1,1,1", "--target", "1,1,1"], 2, "same point"),
+        (
+            ["a.off", "-o", "x.svg", "--eye", "9,9,9", "--view", "top"],
+            2,
+            "--view cannot be combined",
+        ),
+        (
+            ["a.off", "-o", "x.svg", "--eye", "9,9,9", "--azimuth", "3"],
+            2,
+            "--azimuth cannot be combined",
+        ),
+        (["a.off", "-o", "x.svg", "--view", "top", "--elevation", "3"], 2, "--elevation cannot"),
+        (["a.off", "-o", "x.svg", "--target", "0,0,0"], 2, "--target needs --eye"),
+        (["a.off", "-o", "x.svg", "--up", "0,0,0"], 2, "not a direction"),
         (["a.off", "-o", "x.svg", "--view", "front", "--up", "0,1,0"], 2, "must not be parallel"),
         (["a.off", "-o", "x.svg", "--perspective=200"], 2, "200"),
-        (["a.off", "-o", "x.svg", "--colours", "origin"], 2, "no colours called 'origin'"),
-        (["a.off", "-o", "x.svg", "--colours", "#12"], 2, "must be like"),
-        (["a.off", "-o", "x.svg", "--section", "0,0,0,1"], 2, "no section"),
+        (
+            ["a.off", "-o", "x.svg", "--colours", "origin"],
+            2,
+            "no colours or attributes with the name 'origin'",
+        ),
+        (["a.off", "-o", "x.svg", "--colours", "#12"], 2, "must be a colour name or code such as"),
+        (["a.off", "-o", "x.svg", "--section", "0,0,0,1"], 2, "not a section"),
         (["open.off", "-o", "x.svg", "--section", "0,0,1,1"], 4, "not closed"),
         (["a.off", "-o", "x.gif", "--frames", "1"], 2, "--frames"),
     ],
@@ -228,7 +240,7 @@ def test_doctor_knows_what_pictures_need(capsys: Capture, monkeypatch: pytest.Mo
     assert parts["ezdxf"]["found"]
 
 
-# Found: a textured file was drawn without a word on what is missing.
+# Found: a textured file was drawn without a warning that the texture is missing.
 def test_one_colour_of_a_texture_is_said(folder: Path, capsys: Capture) -> None:
     data = io.BytesIO()
     Image.fromarray(np.full((4, 4, 3), (255, 0, 0), dtype=np.uint8)).save(data, "PNG")
@@ -242,7 +254,7 @@ def test_one_colour_of_a_texture_is_said(folder: Path, capsys: Capture) -> None:
     )
     textured.save("red.glb")
     code, _, err = ran(capsys, "render", "red.glb", "-o", "x.png", "--background", "white")
-    assert code == 0 and "of its texture a face shows one colour" in err
+    assert code == 0 and "each face is drawn in one colour" in err
     _, green, blue = np.asarray(Image.open("x.png").convert("RGB"))[200, 400]
     assert green == blue == 0
     assert "texture" not in ran(capsys, "render", "a.off", "-o", "x.png")[2]

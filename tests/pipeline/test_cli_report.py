@@ -63,19 +63,43 @@ def test_results_from_a_stream(shards: Path, piped: Piped) -> None:
     ("arguments", "code", "words"),
     [
         (["none.jsonl", "-o", "r.html"], 3, "none.jsonl: cannot read"),
-        (["r-1.jsonl", "-o", "r.pdf"], 3, "r.pdf: the name must end in one of .html"),
-        (["r-1.jsonl", "-o", "no/r.html"], 5, "no folder"),
-        (["r-1.jsonl", "-o", "-"], 2, "say the form: --format md"),
+        (
+            ["r-1.jsonl", "-o", "r.pdf"],
+            3,
+            "r.pdf: the format is unknown; the output name must end in one of .html",
+        ),
+        (["r-1.jsonl", "-o", "no/r.html"], 5, "does not exist or is not writable"),
+        (["r-1.jsonl", "-o", "-"], 2, "give the format, such as --format md"),
         (["r-1.jsonl", "-o", "-", "--format", "html", "--json"], 2, "cannot both go"),
         (["r-1.jsonl", "-o", "r.html", "--cards", "-1"], 2, "-1"),
         (["r-1.jsonl", "-o", "r.html", "--format", "pdf"], 2, "pdf"),
         (["r-1.jsonl"], 2, "-o"),
         (["-o", "r.html"], 2, "RESULTS"),
-        (["r-1.jsonl", "-o", "r-1.jsonl", "--format", "md"], 2, "would overwrite r-1.jsonl"),
-        (["bad.jsonl", "-o", "r.html"], 3, "bad.jsonl:1: this is no line of a results file"),
-        (["short.jsonl", "-o", "r.html"], 3, "short.jsonl: case has no 'bounds'"),
-        (["void.jsonl", "-o", "r.html"], 3, "void.jsonl: there is no case in these results."),
-        (["void.jsonl", "void.jsonl", "-o", "r.md"], 3, "void.jsonl, void.jsonl: there is no case"),
+        (
+            ["r-1.jsonl", "-o", "r-1.jsonl", "--format", "md"],
+            2,
+            "would overwrite the input r-1.jsonl",
+        ),
+        (
+            ["bad.jsonl", "-o", "r.html"],
+            3,
+            "bad.jsonl:1: this line is not a record of a results file",
+        ),
+        (
+            ["short.jsonl", "-o", "r.html"],
+            3,
+            "short.jsonl: the results file is not valid: case has no 'bounds'",
+        ),
+        (
+            ["void.jsonl", "-o", "r.html"],
+            3,
+            "void.jsonl: the results contain no case; run bspcsg crosscheck --results first.",
+        ),
+        (
+            ["void.jsonl", "void.jsonl", "-o", "r.md"],
+            3,
+            "void.jsonl, void.jsonl: the results contain no case",
+        ),
     ],
 )
 def test_refusals(

@@ -78,8 +78,8 @@ def test_what_a_script_leaves_out_is_told_though_it_is_refused(
 ) -> None:
     Path("mixed.csg").write_text("union() { square(size = [1, 1]); cube(size = [1, 1, 1]); }")
     code, _, err = ran(capsys, "run", "mixed.csg", "-o", "x.stl")
-    assert code == 3 and "the model is a plane figure" in err
-    assert "the solids among them are ignored" in err
+    assert code == 3 and "the model is two-dimensional" in err
+    assert "the 3D children are ignored" in err
 
 
 def test_scripts_that_fail_name_their_place(folder: Path, capsys: Capture) -> None:

@@ -47,13 +47,17 @@ def test_planes_that_miss(folder: Path, capsys: Capture, plane: list[str]) -> No
         (["none.stl", "-o", "x.svg", "--z", "1"], 3, "none.stl: cannot read"),
         (["part.step", "-o", "x.svg", "--z", "1"], 3, "STEP"),
         (["a.off", "-o", "x.png", "--z", "1"], 3, "end in .svg or .dxf"),
-        (["a.off", "-o", "no/x.svg", "--z", "1"], 5, "no folder"),
+        (["a.off", "-o", "no/x.svg", "--z", "1"], 5, "does not exist or is not writable"),
         (["a.off", "-o", "x.svg"], 2, "either --z"),
         (["a.off", "-o", "x.svg", "--z", "1", "--normal", "0,0,1"], 2, "either --z"),
-        (["a.off", "-o", "x.svg", "--z", "1", "--offset", "2"], 2, "--offset goes with"),
-        (["a.off", "-o", "x.svg", "--z", "nan"], 2, "not finite"),
-        (["a.off", "-o", "x.svg", "--normal", "0,0,0"], 2, "is no normal"),
-        (["a.off", "-o", "x.svg", "--normal", "0,1"], 2, "is no normal"),
+        (
+            ["a.off", "-o", "x.svg", "--z", "1", "--offset", "2"],
+            2,
+            "--offset can only be used with",
+        ),
+        (["a.off", "-o", "x.svg", "--z", "nan"], 2, "not a finite number"),
+        (["a.off", "-o", "x.svg", "--normal", "0,0,0"], 2, "is not a normal"),
+        (["a.off", "-o", "x.svg", "--normal", "0,1"], 2, "is not a normal"),
     ],
 )
 def test_refusals(

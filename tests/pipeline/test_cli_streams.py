@@ -35,7 +35,7 @@ def test_streams_in_and_out(folder: Path, piped: Piped, suffix: str) -> None:
     arguments = ["union", "a.off", "-", "--from", "stl", "-o", "-", "--to", suffix]
     code, out, err = piped(*arguments, given=given)
     assert code == 0 and volume_of(out, suffix) == pytest.approx(15, rel=1e-6)
-    # The mesh has standard output to itself; what is told goes beside it.
+    # Standard output has nothing but the mesh; messages go to standard error.
     assert b"check: agree" in err
 
 
@@ -59,7 +59,10 @@ def test_files_without_a_suffix(folder: Path, capsys: Capture) -> None:
         (["union", "-", "-", "-o", "x.ply", "--from", "stl"], "only once"),
         (["union", "a.off", "c.stl", "-o", "-"], "--to"),
         (["union", "a.off", "c.stl", "-o", "-", "--to", "ply", "--json"], "--json"),
-        (["union", "a.off", "c.stl", "-o", "x.ply", "--to", "step"], "'step' is no format"),
+        (
+            ["union", "a.off", "c.stl", "-o", "x.ply", "--to", "step"],
+            "'step' is not a known format",
+        ),
         (["info", "-"], "--from"),
     ],
 )
@@ -195,7 +198,7 @@ def test_no_permission(folder: Path, capsys: Capture) -> None:
     assert code == 3 and "Permission denied" in err
     folder.chmod(0o500)
     code, _, err = ran(capsys, "convert", "c.stl", "-o", "x.ply")
-    assert code == 5 and "can be written to" in err
+    assert code == 5 and "is not writable" in err
 
 
 def test_forbidden_files_as_the_system_tells_it(
@@ -283,13 +286,13 @@ def test_folders_that_are_forbidden(
     monkeypatch.setattr(os, "access", lambda *_: False)
     for arguments in (["convert", "a.off"], ["eval", "a.off"], ["split", "a.off"]):
         code, out, err = ran(capsys, *arguments, "-o", "x.ply")
-        assert (code, out) == (5, "") and "no folder . that can be written to" in err
+        assert (code, out) == (5, "") and "the folder . does not exist or is not writable" in err
 
 
-#: Whether Python's own streams hold bytes back.
+#: Environments in which Python's own streams are unbuffered or buffered.
 UNBUFFERED = [{"PYTHONUNBUFFERED": "1"}, {"PYTHONUNBUFFERED": ""}]
 
-#: Commands whose answers go to standard output by each way there is.
+#: Commands that write to standard output, one for each way in which the code writes.
 ANSWERS = [
     ["convert", "s.ply", "-o-", "--to", "stl"],
     ["render", "s.ply", "-o-", "--to", "svg", "-q"],
@@ -310,7 +313,7 @@ def at_most(size: int) -> Any:
     return limit
 
 
-# Found: unbuffered, an answer was cut off where the disk was full, with exit code 0.
+# Found: with unbuffered output, text was cut off when the disk was full, and the exit code was 0.
 @POSIX
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize("more", UNBUFFERED)
@@ -371,7 +374,7 @@ def test_words_that_nobody_can_hear_cost_no_work(folder: Path) -> None:
         assert finished("info", "none.off", stderr=full)[0] == 3
 
 
-# Found: the message named standard output.
+# Found: the error message named standard output instead of the file of results.
 @POSIX
 @pytest.mark.parametrize("size", [0, 100, 1500])
 def test_a_full_disk_under_the_results(folder: Path, size: int) -> None:

@@ -96,7 +96,7 @@ def test_streams(folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch)
     code, text, _ = asked(out.encode(), "--from", "json", "-o", "-", "--to", "csg")
     assert code == 0 and csg.parse(text) == csg.parse(PLATE)
     code, _, err = asked(b"\xff")
-    assert code == 3 and "byte 0 is no UTF-8" in err
+    assert code == 3 and "byte 0 cannot be decoded" in err
 
 
 # Found: `tree` sent escape sequences of a script to the terminal, and left colours out of what it
@@ -126,17 +126,21 @@ def test_trees_of_any_depth(folder: Path, capsys: Capture) -> None:
     assert code == 0 and lines[-1].endswith("└─ (4001) cube(1)") and len(lines[-1]) < 150
     assert ran(capsys, "tree", "deep.csg", "--simplify", "-o", "x.dot")[0] == 0
     code, _, err = ran(capsys, "tree", "deep.csg", "--to", "json")
-    assert code == 3 and "deeper than 200; write .csg" in err
+    assert code == 3 and "deeper than 200 levels; write .csg" in err
 
 
 @pytest.mark.parametrize(
     ("arguments", "code", "said"),
     [
-        (["a.off"], 3, "this is no tree; known are .csg, .json, .scad"),
+        (
+            ["a.off"],
+            3,
+            "the file is not a script with a tree; its name must end in one of .csg, .json, .scad",
+        ),
         (["plate.csg", "-o", "x.stl"], 3, "must end in one of .csg, .json"),
-        (["plate.csg", "-o", "no/x.csg"], 5, "no folder"),
+        (["plate.csg", "-o", "no/x.csg"], 5, "does not exist or is not writable"),
         (["plate.csg", "--json", "--to", "csg"], 2, "cannot both go"),
-        (["plate.csg", "--timeout", "3"], 2, "--timeout is not for .csg"),
+        (["plate.csg", "--timeout", "3"], 2, "--timeout cannot be used with .csg"),
         (["none.csg"], 3, "none.csg: cannot read"),
         (["bad.csg"], 3, "bad.csg:1:6: expected"),
     ],

@@ -58,7 +58,7 @@ def test_the_page_is_called_as_the_file_and_not_as_a_part_of_it(
     assert Path(told["output"]).name == "two.html"
 
 
-# Found: `lecture` demanded -o, `view` did not.
+# Found: `lecture` required the option -o, though `view` did not.
 def test_the_lecture_is_a_temporary_page_that_is_opened(
     folder: Path, capsys: Capture, opened: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -68,15 +68,15 @@ def test_the_lecture_is_a_temporary_page_that_is_opened(
     assert (code, err, opened) == (0, "", [page.as_uri()]) and page.is_relative_to(folder)
     assert ran(capsys, "lecture", "-o", "x.html")[0] == 0 and len(opened) == 1
     monkeypatch.setenv("DISPLAY", "")
-    assert "note: there is no screen here" in ran(capsys, "lecture")[2]
+    assert "note: no browser was opened" in ran(capsys, "lecture")[2]
 
 
 @pytest.mark.parametrize(
     ("changes", "arguments", "words"),
     [
         ({}, ["--no-open"], ""),
-        ({"SSH_CONNECTION": "1.2.3.4"}, [], "note: there is no screen here"),
-        ({"DISPLAY": ""}, [], "note: there is no screen here"),
+        ({"SSH_CONNECTION": "1.2.3.4"}, [], "note: no browser was opened"),
+        ({"DISPLAY": ""}, [], "note: no browser was opened"),
     ],
 )
 def test_no_browser_is_started(
@@ -107,7 +107,7 @@ def test_open_and_empty_meshes(folder: Path, capsys: Capture) -> None:
     put("open.off", (cube()[0], cube()[1][1:]))
     Path("none.off").write_text("OFF\n0 0 0\n")
     code, _, err = ran(capsys, "view", "open.off", "none.off", "-o", "x.html", "--no-open")
-    assert code == 0 and "none.off: there is nothing in it to be seen" in err
+    assert code == 0 and "none.off: the file has no triangles to show" in err
     assert "11 triangles, open" in Path("x.html").read_text(encoding="utf-8")
 
 
@@ -122,7 +122,7 @@ def test_units_are_said(folder: Path, capsys: Capture) -> None:
         (["none.stl"], 3, "none.stl: cannot read"),
         (["part.step"], 3, "STEP"),
         (["a.off", "-o", "x.png"], 3, "must end in .html"),
-        (["a.off", "-o", "no/x.html"], 5, "no folder"),
+        (["a.off", "-o", "no/x.html"], 5, "does not exist or is not writable"),
         (["-"], 2, "--from stl"),
         ([], 2, "FILE"),
     ],

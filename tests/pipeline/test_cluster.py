@@ -49,7 +49,9 @@ def test_no_scheduler_is_told(
     monkeypatch.setattr(cluster, "_TIMEOUT", 0.2)
     given = ["crosscheck", "a.off", "c.stl", "--scheduler", "tcp://127.0.0.1:9"]
     code, _, err = ran(capsys, *given)
-    assert code == 6 and err.startswith("bspcsg: error: tcp://127.0.0.1:9: no scheduler answers")
+    assert code == 6 and err.startswith(
+        "bspcsg: error: tcp://127.0.0.1:9: no Dask scheduler answers"
+    )
 
 
 def test_dask_is_optional(folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -59,7 +61,7 @@ def test_dask_is_optional(folder: Path, capsys: Capture, monkeypatch: pytest.Mon
     assert code == 6 and 'pip install "bspcsg[cluster]"' in err
 
 
-# Found: validate waited for ever, without a word.
+# Found: `validate` waited for ever without a message.
 def test_a_cluster_without_workers_is_told(
     folder: Path, capsys: Capture, scheduler: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -67,7 +69,7 @@ def test_a_cluster_without_workers_is_told(
     scheduler.scale(0)
     given = ["crosscheck", "a.off", "c.stl", "--results", "r.jsonl"]
     code, _, err = ran(capsys, *given, "--scheduler", scheduler.scheduler_address)
-    assert code == 6 and "the scheduler there has no workers" in err and "--resume" in err
+    assert code == 6 and "this scheduler has no workers" in err and "--resume" in err
 
 
 def test_workers_may_come_late(folder: Path, capsys: Capture, scheduler: Any) -> None:

@@ -24,16 +24,16 @@ def files(folder: Path) -> None:
 
 #: Commands, exit codes, and what appears on standard error, in order.
 ERRORS = [
-    (["unoin"], 2, "there is no verb 'unoin'. Is union meant?\n  Try: bspcsg --help"),
-    (["diff"], 2, "there is no verb 'diff'. Is difference meant?\n  Try: bspcsg --help"),
-    (["subtract"], 2, "there is no verb 'subtract'. Is difference meant?\n  Try: bspcsg --help"),
-    (["add"], 2, "there is no verb 'add'. Is union meant?\n  Try: bspcsg --help"),
+    (["unoin"], 2, "there is no command 'unoin'. Is union meant?\n  Try: bspcsg --help"),
+    (["diff"], 2, "there is no command 'diff'. Is difference meant?\n  Try: bspcsg --help"),
+    (["subtract"], 2, "there is no command 'subtract'. Is difference meant?\n  Try: bspcsg --help"),
+    (["add"], 2, "there is no command 'add'. Is union meant?\n  Try: bspcsg --help"),
     (
         ["intersect"],
         2,
-        "there is no verb 'intersect'. Is intersection meant?\n  Try: bspcsg --help",
+        "there is no command 'intersect'. Is intersection meant?\n  Try: bspcsg --help",
     ),
-    (["boolean"], 2, "there is no verb 'boolean'.\n  Try: bspcsg --help"),
+    (["boolean"], 2, "there is no command 'boolean'.\n  Try: bspcsg --help"),
     (
         ["union", "a.off", "-o", "x.ply"],
         2,
@@ -50,7 +50,7 @@ ERRORS = [
         "formula:8: expected a file name or “(”, found the end.\n  a.off -\n         ^\n"
         "  Try: bspcsg eval --help",
     ),
-    (["eval", " ", "-o", "x.ply"], 2, "formula:1: the formula is empty."),
+    (["eval", " ", "-o", "x.ply"], 2, "formula:1: the formula is empty;"),
     (
         ["union", "none.stl", "a.off", "-o", "x.ply"],
         3,
@@ -59,13 +59,14 @@ ERRORS = [
     (
         ["slice", ".", "--z", "1", "-o", "x.svg"],
         3,
-        ".: this is a folder; name the files in it, as in *.stl.",
+        ".: this is a folder, and a file is needed; name the files in it, as in *.stl.",
     ),
     (
         ["convert", "big.step", "-o", "out.stl"],
         3,
-        "big.step: STEP is a format of curved surfaces, and bspcsg reads meshes only. Make a mesh"
-        " of it first, for example with FreeCAD, Gmsh or the Python package cascadio.",
+        "big.step: STEP files contain curved surfaces, and bspcsg reads triangle meshes only."
+        " Convert the file to a mesh first, for example with FreeCAD, Gmsh or the Python package"
+        " cascadio.",
     ),
     (
         ["union", "a.off", "open.stl", "-o", "x.ply"],
@@ -76,7 +77,7 @@ ERRORS = [
     (
         ["difference", "a.off", "a.off", "-o", "x.ply"],
         4,
-        "x.ply: nothing is left, so nothing was written; say --allow-empty if that is meant.",
+        "x.ply: the result is empty, so nothing was written; --allow-empty writes an empty file.",
     ),
     (
         ["eval", "~a.off", "-o", "x.ply"],
@@ -86,7 +87,7 @@ ERRORS = [
     (
         ["union", "a.off", "c.stl", "-o", "no/x.ply"],
         5,
-        "no/x.ply: there is no folder no that can be written to.",
+        "no/x.ply: the folder no does not exist or is not writable.",
     ),
 ]
 
@@ -119,7 +120,7 @@ def test_an_open_file_gets_a_line_to_type(capsys: Capture) -> None:
         ),
         ("cube(1", "m.csg:1:7: expected “,” or “)”, found the end of the file."),
         ("cube(size = [1, 2]);", "m.csg:1:1: cube(): size must be 3 numbers"),
-        ("import(file = 3);", "m.csg:1:1: import(): file must be a text, not 3."),
+        ("import(file = 3);", "m.csg:1:1: import(): file must be a string, not 3."),
     ],
 )
 def test_scripts_name_line_and_column(capsys: Capture, script: str, said: str) -> None:
@@ -138,7 +139,7 @@ def test_a_result_in_one_line(capsys: Capture) -> None:
 
 
 def test_a_missing_unit_is_told_where_the_output_states_one(capsys: Capture) -> None:
-    note = "note: a.off and 1 more have no unit; mm assumed (say --unit in to change)\n"
+    note = "note: a.off and 1 more have no length unit, so mm is assumed; --unit in changes it\n"
     assert ran(capsys, "union", "a.off", "c.stl", "-o", "x.3mf", "-j", "1")[2] == note
     assert ran(capsys, "union", "a.off", "c.stl", "-o", "x.3mf", "--unit", "mm")[2] == ""
     assert ran(capsys, "union", "a.off", "c.stl", "-o", "x.3mf", "-q")[2] == ""
@@ -161,7 +162,9 @@ def test_check_of_several_files(capsys: Capture) -> None:
     ]
     assert lines[2].split() == ["a.off", "12", "yes", "yes", "yes", "no", "solid"]
     assert lines[3].split() == ["open.stl", "11", "no", "yes", "yes", "—", "not", "closed"]
-    assert any("3 edges with one triangle only, around 1 hole" in line for line in lines)
+    assert any(
+        "3 edges with only one triangle (open edges), around 1 hole" in line for line in lines
+    )
     assert lines[-1] == "1 of 2 files is not a solid."
 
 
@@ -185,7 +188,7 @@ def test_progress_at_a_terminal_only(capsys: Capture, monkeypatch: pytest.Monkey
 def test_no_mesh_on_a_terminal(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
     code, out, err = ran(capsys, "convert", "a.off", "-o", "-", "--to", "stl")
-    assert (code, out) == (2, "") and "this is no text for a terminal; use a pipe" in err
+    assert (code, out) == (2, "") and "mesh data is not written to a terminal; redirect" in err
 
 
 @pytest.mark.parametrize("verb", ["info", "check"])
@@ -235,7 +238,7 @@ def test_a_note_names_the_places_and_is_told_once(capsys: Capture) -> None:
 
 def test_what_holds_for_a_format_is_told_once(capsys: Capture) -> None:
     _, _, err = ran(capsys, "convert", "a.off", "c.stl", "--to", "glb", "--outdir", ".")
-    assert err.count("GLB is in metres") == 1
+    assert err.count("GLB uses metres") == 1
 
 
 def test_an_error_after_json_was_asked_for_wrongly(capsys: Capture) -> None:
@@ -253,4 +256,6 @@ def test_a_stream_that_is_no_mesh(capsys: Capture, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(sys, "stdin", Stream())
     assert run(["info", "-", "--from", "stl"]) == 3
     said = capsys.readouterr()
-    assert said.out == "" and said.err.startswith("bspcsg: error: -: at byte 6: this is no STL")
+    assert said.out == "" and said.err.startswith(
+        "bspcsg: error: -: at byte 6: the file is not an STL"
+    )

@@ -10,7 +10,7 @@ import bspcsg as b
 from support.cli import Capture, Piped, finished, put, ran
 from support.shapes import cube
 
-#: What a file name may be on Linux: all bytes but two, up to 255 of them.
+#: File names that Linux allows: up to 255 bytes, any but two.
 STEMS = {
     "no text": os.fsdecode(b"w\xfcrfel \xff"),
     "two lines": "new\nline",
@@ -22,7 +22,7 @@ STEMS = {
     "long in four bytes": "\U0001f980" * 62,
 }
 
-#: What is done with a file `x` of that name; outputs are called alike.
+#: Commands on a file `x`, for which a test puts a name of `STEMS`; also outputs have that name.
 LINES = {
     "info": ["info", "x.stl", "--json"],
     "check": ["check", "x.stl", "--html", "page.html"],
@@ -79,7 +79,7 @@ def test_files_without_a_suffix_are_refused_before_they_are_read(
     assert code == 3 and "first: there is no such file or folder." in err
     Path("first").write_bytes(b"")
     code, _, err = ran(capsys, "union", "first", "second", "-o", f"out{suffix}")
-    assert code == 3 and "first: the name needs a suffix that says the format" in err
+    assert code == 3 and "first: the file name has no suffix to tell the format" in err
 
 
 # Found: an empty name was the current folder, which `validate` then took its cases from, and one of
@@ -103,7 +103,7 @@ def test_names_are_not_empty(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     code, _, err = ran(capsys, *line)
-    assert code == 2 and "the name is empty" in err
+    assert code == 2 and "the file name is empty" in err
 
 
 def test_names_too_long_for_any_file_are_an_error(tmp_path: Path) -> None:

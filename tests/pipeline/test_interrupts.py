@@ -159,7 +159,7 @@ def test_scripts_are_interrupted_quietly_while_python_starts(
     )
     (tmp_path / "cube.py").write_text("import bspcsg\nresult = bspcsg.box(1, 1, 1)\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    with pytest.raises(b.FormatError, match="with code 130"):
+    with pytest.raises(b.FormatError, match="with exit code 130"):
         run.run_script(str(tmp_path / "cube.py"))
     assert capfd.readouterr() == ("", "")
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, set())
@@ -253,8 +253,9 @@ entry.main()
 """
 
 
-# Found: one that was to come again came when Python had no handlers any more, and killed by another
-# signal; others came while the handlers changed, or after them.
+# Found: an interrupt that was raised a second time came when Python had no signal handlers any
+# more, and killed the process by another signal; other interrupts came while handlers were being
+# changed, or later.
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 @pytest.mark.parametrize(("moment", "code"), [("import", 130), ("finally", 130), ("after", 0)])
 def test_interrupts_at_the_end_are_quiet(moment: str, code: int) -> None:

@@ -120,7 +120,7 @@ def test_few_divisions_do_the_work_of_a_whole_tree(browser: Browser) -> None:
     assert int(_tile(browser, "fig-adaptive", "divisions")) < 12 / 2
 
 
-# Found: it was said to adapt, and nowhere shown when that pays and when it does not.
+# Found: the page said that the tree adapts, but did not show when that pays off.
 def test_the_tree_that_organises_itself_pays_where_rays_go_one_way(browser: Browser) -> None:
     rows = browser.run(
         "return [...document.querySelectorAll('#fig-adaptive tbody tr')]"
@@ -134,7 +134,7 @@ def test_the_tree_that_organises_itself_pays_where_rays_go_one_way(browser: Brow
     assert nodes > 0.8 * whole and first > 2 * ready and last > 0.9 * still
 
 
-# Found: "Play" wore the sign of fast forward, "step" that of play.
+# Found: the button "Play" had the icon of fast forward, and "step" had the icon of "Play".
 def test_icons_say_what_buttons_do(browser: Browser) -> None:
     bar = "#fig-autopartition .stepper"
     paths = browser.run(
@@ -252,7 +252,7 @@ def test_a_search_asks_as_many_cuts_as_its_path_has(browser: Browser) -> None:
     assert _tile(browser, "fig-search", "steps") == "3"
 
 
-# Found: trees were drawn at the end only.
+# Found: the page drew only the final tree.
 def test_steps_go_to_and_fro_and_orders_change_the_tree(browser: Browser) -> None:
     def figure(key: str) -> int:
         return int(_tile(browser, "fig-autopartition", key))

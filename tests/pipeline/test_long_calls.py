@@ -113,7 +113,7 @@ else:
 """
 
 
-# Found: SIGINT was not honoured in exact volumes, in half-spaces.
+# Found: exact volumes and half-spaces did not respond to SIGINT.
 @pytest.mark.deep
 @pytest.mark.skipif(os.name != "posix", reason="signals as POSIX has them")
 @pytest.mark.parametrize("name", CALLS)
@@ -161,7 +161,7 @@ def test_an_interrupt_after_a_tenth_of_a_second_of_work_ends_the_call(name: str)
     assert time.process_time() - began < SOON
 
 
-# Found: saving a large mesh heeded Ctrl-C after up to a second.
+# Found: saving a large mesh responded to Ctrl-C only after up to a second.
 @pytest.mark.deep
 @pytest.mark.skipif(os.name != "posix", reason="signals as POSIX has them")
 @pytest.mark.parametrize("suffix", [".stl", ".obj", ".off", ".3mf"])

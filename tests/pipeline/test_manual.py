@@ -36,7 +36,7 @@ def name(path: Path) -> str:
     return str(path.relative_to(DOCS))
 
 
-# Found: a page called a method that is not there.
+# Found: a page called a method that does not exist.
 # Found: the first example of the manual's page on `compare` showed three errors.
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("path", PAGES, ids=name)
@@ -104,7 +104,7 @@ def test_methods_and_types_are_described() -> None:
     assert "carried" not in page and "Later" not in page
 
 
-# Found: the search knew "watertight" from one page, on the inside.
+# Found: the search found "watertight" on one page only, an internal one.
 @pytest.mark.parametrize(
     "word", ["watertight", "non-manifold", "screw thread", "color", "STEP", "fillet", "boolean"]
 )
@@ -116,7 +116,7 @@ def test_words_of_others_lead_somewhere(word: str) -> None:
     assert len(leading) == 1 and re.search(r"\[.+\]\(.+\.md\)", leading[0][2])
 
 
-# Found: `bsp.analysis` was in no page.
+# Found: `bsp.analysis` was on no page of the manual.
 def test_every_public_name_is_in_the_api() -> None:
     text = "".join(api_pages().values())
     documented = described(text)
@@ -136,7 +136,7 @@ def test_every_public_name_is_in_the_api() -> None:
     assert {f"bspcsg.bsp.analysis.{name}" for name in own} <= documented
 
 
-# Found: the examples took the name `b`, which operands have in those of trimesh.
+# Found: the examples called the package `b`, which in the examples for trimesh is an operand.
 def test_examples_have_one_name_for_the_package() -> None:
     written = [ROOT / "README.md", *PAGES, *(ROOT / "examples").rglob("*.py")]
     written += [*(ROOT / "examples").glob("*.md"), *(ROOT / "bspcsg").rglob("*.py")]

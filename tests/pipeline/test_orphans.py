@@ -43,7 +43,7 @@ def killed(running: "subprocess.Popen[bytes]") -> "list[psutil.Process]":
     return started
 
 
-# Found: workers lived on in one kill of three, while they began or held Python's lock.
+# Found: in one kill of three, workers that were starting or held Python's lock lived on.
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("delay", [0.2, 0.5, 1.0, 2.0])
 def test_workers_end_with_their_runner(folder: Path, delay: float) -> None:

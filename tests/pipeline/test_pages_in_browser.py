@@ -122,7 +122,8 @@ def _clipped(browser: Browser, selector: str) -> list[str]:
     return list(found)
 
 
-# Found: the last columns lay beyond the edge of a desktop, and names ended in dots.
+# Found: at the width of a desktop the last columns were outside the window, and names were
+# truncated.
 def test_all_columns_and_names_are_in_sight(browser: Browser, tmp_path: Path) -> None:
     found = records(tmp_path)
     for one in found:

@@ -71,7 +71,7 @@ def test_outdir_is_not_made_for_nothing(folder: Path, capsys: Capture) -> None:
     code, _, _ = ran(capsys, "convert", "-", "--to", "ply", "--outdir", "new")
     assert code == 2 and not Path("new").exists()
     code, _, err = ran(capsys, "convert", "a.off", "--to", "ply", "--outdir", "a.off/x")
-    assert code == 5 and "a.off/x: cannot make this folder" in err
+    assert code == 5 and "a.off/x: cannot create this folder" in err
 
 
 # Found: units were misspelt.
@@ -85,13 +85,13 @@ def test_units_are_converted(folder: Path, capsys: Capture, unit: str, size: flo
 
 def test_formats_with_units_take_no_other(folder: Path, capsys: Capture) -> None:
     code, _, err = ran(capsys, "convert", "a.off", "-o", "x.3mf", "--to-unit", "cm")
-    assert code == 2 and "--to-unit: 3MF files state their unit" in err
+    assert code == 2 and "--to-unit: 3MF files have a fixed or stored unit" in err
 
 
 # Inputs
 
 
-# Found: `eval` expanded no patterns.
+# Found: `eval` did not expand file name patterns.
 @pytest.mark.parametrize(
     ("line", "volume"),
     [
@@ -121,7 +121,11 @@ def test_patterns_without_a_match(folder: Path, capsys: Capture) -> None:
     code, _, err = ran(capsys, "info", "none*.stl")
     assert code == 3 and "none*.stl: no file matches this pattern." in err
     code, _, err = ran(capsys, "slice", "*.*", "--z", "1", "-o", "x.svg")
-    assert code == 2 and "*.* matches 2 files; name one of them, as a.off." in err
+    assert (
+        code == 2
+        and "*.* matches 2 files, but only one is allowed here; name one of them, such as a.off."
+        in err
+    )
 
 
 @pytest.mark.parametrize(
@@ -137,7 +141,7 @@ def test_companions_of_meshes_are_skipped_and_counted(
         Path("in", name).touch()
     Path("in/deep/.hidden/b.off").touch()
     code, out, err = ran(capsys, "info", *meant.split(), "--json")
-    assert code == 0 and err == "note: skipped 2 files that are no meshes: 1 .mtl, 1 .png.\n"
+    assert code == 0 and err == "note: skipped 2 files that are not meshes: 1 .mtl, 1 .png.\n"
     files = json.loads(out)["files"]
     assert [Path(one["file"]) for one in files] == [Path("in/a.off"), Path("in/deep/c.stl")]
     assert ran(capsys, "info", *meant.split(), "-q")[2] == ""
@@ -152,7 +156,7 @@ def test_views_skip_companions_and_open_no_folders(folder: Path, capsys: Capture
         line = ["view", *meant.split(), "-o", "x.html", "--no-open", "--json"]
         code, out, err = ran(capsys, *line)
         assert code == 0 and json.loads(out)["files"] == ["a.off", "c.stl"]
-        assert "skipped 2 files that are no meshes" in err
+        assert "skipped 2 files that are not meshes" in err
         Path("x.html").unlink()
 
 
@@ -170,10 +174,15 @@ def test_what_is_named_alone_or_is_of_another_format_is_no_companion(
 
 def test_folders_without_meshes(folder: Path, capsys: Capture) -> None:
     Path("none/deep").mkdir(parents=True)
-    assert ran(capsys, "check", "none")[::2] == (3, "bspcsg: error: none: there is no mesh.\n")
+    assert ran(capsys, "check", "none")[::2] == (
+        3,
+        "bspcsg: error: none: no mesh file was found.\n",
+    )
     Path("none/deep/a.txt").touch()
     code, _, err = ran(capsys, "check", "none")
-    assert code == 3 and "none: there is no mesh, only 1 file that is no mesh: 1 .txt." in err
+    assert (
+        code == 3 and "none: no mesh file was found, only 1 file that is not a mesh: 1 .txt." in err
+    )
     # Where something else is a mesh, an empty folder is nothing to speak of.
     assert ran(capsys, "check", "none", "a.off")[0] == 0
 
@@ -197,7 +206,7 @@ def test_scripts_come_from_standard_input(folder: Path, piped: Piped) -> None:
     code, _, err = piped("info", "-", "--from", "csg", given=b"cube(;")
     assert code == 3 and err.startswith(b"bspcsg: error: -:1:6: expected")
     code, _, err = piped("info", "-", "--from", "py", given=b"")
-    assert code == 2 and b"-: .py scripts are run by name; save it to a file." in err
+    assert code == 2 and b"-: .py scripts cannot be read from standard input" in err
 
 
 def test_scripts_may_have_any_suffix(folder: Path, capsys: Capture) -> None:
@@ -208,7 +217,7 @@ def test_scripts_may_have_any_suffix(folder: Path, capsys: Capture) -> None:
 # What is said
 
 
-# Found: no-break spaces as separators in pipes.
+# Found: numbers in pipes had no-break spaces as separators of digits.
 def test_numbers_are_whole_in_pipes_and_grouped_at_terminals(
     folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -290,7 +299,7 @@ def test_colours_by_convention(
         assert re.sub(r"\033\[\d+m", "", err).startswith("bspcsg: error: ")
 
 
-# Found: wrong use with `--json` left standard output empty.
+# Found: wrong usage with `--json` left standard output empty.
 @pytest.mark.parametrize(
     "verb", ["union", "info", "convert", "slice", "bench", "crosscheck", "unoin"]
 )
@@ -318,7 +327,7 @@ def test_repair_tells_what_was_noticed(folder: Path, capsys: Capture) -> None:
         assert code == 0 and finding["code"] == said and finding["message"] in err
 
 
-# Found: printed seconds left out half of the work.
+# Found: the printed seconds omitted half of the work.
 def test_seconds_are_all_of_them(folder: Path, capsys: Capture) -> None:
     put("ball.ply", icosphere(5))
     began = time.perf_counter()
@@ -373,7 +382,7 @@ def test_nothing_is_under_way_in_pipes(folder: Path, monkeypatch: pytest.MonkeyP
             assert status._line is None
 
 
-# Found: names of files could steer the terminal.
+# Found: control sequences in names of files reached the terminal.
 @POSIX
 @pytest.mark.parametrize(
     ("line", "code"),

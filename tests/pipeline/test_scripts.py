@@ -18,7 +18,7 @@ def test_campaign_goes_on_where_it_stopped(tmp_path: Path) -> None:
     common = ["--meshes", str(ROOT / "examples" / "meshes"), "--results", str(journal), "-j", "2"]
     first = script("campaign", *common, "--poses", "2")
     assert first.returncode == 0, first.stdout + first.stderr
-    assert "1 file left out that is no solid" in first.stderr
+    assert "1 file left out because it is not a solid" in first.stderr
     answers = journal.read_text("utf-8").splitlines()
     second = script("campaign", *common, "--poses", "3")
     assert second.returncode == 0, second.stdout + second.stderr

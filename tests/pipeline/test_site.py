@@ -111,7 +111,7 @@ def test_pages_are_searched_without_a_server(site: Path, browser: Browser) -> No
     assert browser.errors() == []
 
 
-# Found: words that people use elsewhere led to a page of the inside, or to none.
+# Found: the search led from terms that other programs use to an internal page, or to none.
 @pytest.mark.parametrize(
     ("word", "page"),
     [

@@ -10,8 +10,9 @@ import pytest
 
 import bspcsg as b
 
-#: Modules that cost a tenth of a second or more, or come with dozens of others; no small boolean
-#: of STL files needs them. numpy.unique imports numpy.ma, xml.sax.saxutils imports urllib.request.
+#: Modules that take a tenth of a second or more to import, or import dozens of others; no small
+#: boolean of STL files needs them. numpy.unique imports numpy.ma, xml.sax.saxutils imports
+#: urllib.request.
 HEAVY = [
     "PIL",
     "email",
@@ -30,7 +31,7 @@ HEAVY = [
     "zipfile",
 ]
 
-#: Runs the command line and names the modules that are there when it ends.
+#: A program that runs the command line and then prints the imported modules.
 PROGRAM = """
 import sys
 try:
@@ -64,7 +65,7 @@ def test_the_list_of_verbs_needs_no_numpy() -> None:
     assert imported("--help").isdisjoint({"numpy", "trimesh"})
 
 
-# Found: GLB cost an import of trimesh.
+# Found: using GLB files imported trimesh.
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", ["stl", "obj", "ply"])
 def test_a_checked_boolean_imports_little(cubes: Path, kind: str) -> None:
@@ -103,5 +104,5 @@ def test_sources_that_are_not_compiled_say_so(tmp_path: Path) -> None:
         command, cwd=tmp_path, capture_output=True, text=True, timeout=100, check=False
     )
     last = done.stderr.splitlines()[-1]
-    assert last.startswith("ImportError: ") and "run Python in another folder" in last
+    assert last.startswith("ImportError: ") and "Run Python in another folder" in last
     assert str(tmp_path) in last

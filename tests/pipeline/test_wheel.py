@@ -42,7 +42,7 @@ def put_wheel(folder: Path, change: Callable[[dict[str, bytes]], object] = len) 
     return path
 
 
-# Found: no wheels, and 47 MB of core.
+# Found: there were no wheels, and the core took 47 MB.
 def test_a_wheel_of_all_files_is_in_order(tmp_path: Path) -> None:
     assert len(package()) > 300 and not [name for name in package() if "test" in name]
     assert problems_of(put_wheel(tmp_path)) == []
@@ -147,7 +147,7 @@ def test_the_source_distribution_has_what_a_build_needs(source: Path) -> None:
     assert problems_of(source) == []
 
 
-# Found: no extra `all`.
+# Found: there was no extra `all`.
 def test_the_metadata_say_who(source: Path) -> None:
     with tarfile.open(source) as archive:
         found = next(name for name in archive.getnames() if name.endswith("/PKG-INFO"))
@@ -188,7 +188,7 @@ def test_all_is_what_users_want() -> None:
     assert set(named) == set(extras) - {"all", "bench", "docs", "examples", "test"}
 
 
-# Found: offsets, `validate` and pictures failed on a plain install.
+# Found: offsets, `validate` and pictures failed in an installation without extras.
 def test_what_a_plain_install_brings_is_what_doctor_asks_for() -> None:
     from bspcsg.cli.verbs import doctor
 

@@ -52,7 +52,7 @@ def test_what_workflows_name_exists(path: Path) -> None:
     assert all("timeout-minutes" in job for job in jobs.values())
 
 
-# Found: no workflow that builds wheels.
+# Found: no workflow built wheels.
 def test_every_kind_of_wheel_is_built_and_those_of_the_runners_are_tried() -> None:
     jobs = document(ROOT / ".github/workflows/release.yml")["jobs"]
     built = {row["name"] for row in jobs["wheels"]["strategy"]["matrix"]["include"]}
@@ -63,7 +63,7 @@ def test_every_kind_of_wheel_is_built_and_those_of_the_runners_are_tried() -> No
     assert jobs["publish"]["permissions"] == {"id-token": "write"}
 
 
-# Found: where no index has the package, a tag had no wheels to be taken either.
+# Found: a tag without a package on any index also offered no wheels for download.
 def test_a_tag_gets_the_files_that_were_tried() -> None:
     job = document(ROOT / ".github/workflows/release.yml")["jobs"]["release-files"]
     assert set(job["needs"]) == {"source", "try", "try-musl"}
@@ -113,7 +113,7 @@ def stepped(number: int, variables: dict[str, str]) -> tuple[int, str]:
     return done.returncode, done.stdout + done.stderr
 
 
-# Found: the action asked an index for a package that is on none.
+# Found: the action installed the package from an index, but no index has it.
 def test_the_action_installs_what_lies_beside_it_or_what_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

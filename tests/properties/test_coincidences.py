@@ -35,7 +35,7 @@ def test_cubes_anywhere(far: float) -> None:
     assert probes.cubes_at(far) == []
 
 
-# Found: spheres moved by 1e-12 took seconds.
+# Found: operations on spheres that differ by a translation of 1e-12 took seconds.
 def test_nearly_identical_cubes() -> None:
     assert probes.nearly_identical_cubes(count(60, 2000), seed=6) == []
 

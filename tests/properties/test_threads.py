@@ -98,8 +98,8 @@ def seen(solid: b.Solid) -> tuple[object, list[int]]:
     return mesh_of(solid), solid.tree.sources
 
 
-# Found: threads that looked at one moved solid for the first time together got an error, or two
-# meshes of it.
+# Found: threads that queried one transformed solid for the first time at the same time got an
+# error, or two meshes of it.
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", PENDING)
 def test_a_thread_may_come_between_any_two_lines(name: str) -> None:

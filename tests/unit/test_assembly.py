@@ -257,7 +257,7 @@ def test_parts_of_which_single_precision_leaves_nothing_are_said(tmp_path: Path)
     assert codes_of(findings) == codes_of(b.save(slab, tmp_path / "slab.glb"))
     finding = findings[-1]
     assert (finding.code, finding.count) == ("thickened_in_single", 12)
-    assert finding.message.startswith("“slab”: all of this is thinner than single precision")
+    assert finding.message.startswith("“slab”: the whole mesh is so thin")
     parts = b.Assembly.load(tmp_path / "x.glb")
     assert [part.solid.volume > 0 for part in parts] == [True, True, True]
     assert made.save(tmp_path / "x.3mf") == ()

@@ -311,7 +311,7 @@ def test_materials_check_what_they_are_given() -> None:
             b.Material(**wrong)
 
 
-# Found: who put something into `mesh.face_attributes` changed all later answers of the solid.
+# Found: assigning to `mesh.face_attributes` changed all later results of the solid.
 def test_given_arrays_can_be_changed_afterwards() -> None:
     values = np.arange(12)
     part = cube(face_attributes={"id": values})
@@ -390,8 +390,8 @@ def layers_and_sides(solid: b.Solid) -> set[tuple[int, bool]]:
     return set(zip(layers[layers > 0].tolist(), beyond[layers > 0].tolist(), strict=True))
 
 
-# Found: one solid that was tagged twice, or left untagged and tagged, had the last tag everywhere
-# once both were combined.
+# Found: if one solid was tagged twice, or once tagged and once not, both had the last tag after
+# they were combined.
 @pytest.mark.parametrize("shift", [(0, 0, 0), (0, 0, 5)])
 def test_each_of_two_tags_of_one_solid_stays_where_it_was_said(
     shift: tuple[float, float, float],
@@ -427,7 +427,7 @@ def test_tags_of_what_reaches_to_infinity_stay_when_it_is_turned() -> None:
     assert set(mesh.face_attributes["kind"].tolist()) == {0, 1}
 
 
-# Found: pickles of nothing that was tagged could not be combined: a ValueError.
+# Found: unpickled empty sets that had been tagged could not be combined: a ValueError.
 @pytest.mark.parametrize("full", [False, True])
 def test_nothing_that_was_tagged_comes_back_from_other_lattices(full: bool) -> None:
     tagged, other = b.cube(1).tagged(layer=1), b.cube(1).translate(5, 5, 5)

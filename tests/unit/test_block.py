@@ -264,7 +264,7 @@ def test_a_task_counts_in_the_block_that_it_was_started_in_while_that_is_open() 
     assert [solid.volume for solid in asyncio.run(main())] == [1, 27]
 
 
-# Found: `align` used up the solid that it was asked to align with, in a block.
+# Found: in a block, `align` consumed the target solid, to which another is aligned.
 def test_what_a_solid_is_aligned_with_still_counts() -> None:
     with b.union() as u:
         table = b.box((8, 8, 1))
@@ -272,7 +272,7 @@ def test_what_a_solid_is_aligned_with_still_counts() -> None:
     assert u.solid.volume == 72
 
 
-# Found: `hull` of a generator used up nothing, in a block.
+# Found: in a block, `hull` of a generator consumed none of its operands.
 def test_hulls_use_up_what_any_iterable_holds() -> None:
     with b.xor() as x:
         pins = [b.cube(1), b.cube(1).translate(3, 0, 0)]

@@ -57,7 +57,8 @@ def test_shells_are_turned_outwards_but_for_those_in_others() -> None:
     assert (inward[40:] == is_turned[40:, None]).all()
 
 
-# Found: cavities cost their square in `decompose` and reports, parts theirs in `repair`.
+# Found: the time of `decompose` and of reports grew with the square of the number of cavities, that
+# of `repair` with the square of the number of parts.
 @pytest.mark.deep
 def test_many_cavities_cost_each_alike() -> None:
     times = {}

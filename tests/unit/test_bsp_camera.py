@@ -94,8 +94,8 @@ def test_lengths_of_directions_do_not_matter() -> None:
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        ({"target": (1, 2, 3)}, "another point than the eye"),
-        ({"up": (0, 0, 0)}, "up vector must not be zero"),
+        ({"target": (1, 2, 3)}, "two different points"),
+        ({"up": (0, 0, 0)}, "up vector of the camera must not be"),
         ({"up": (-2, -4, -6), "target": (2, 4, 6)}, "parallel"),
         ({"eye": (0, float("nan"), 0)}, "finite"),
         ({"eye": (0, 0)}, "three"),
@@ -113,7 +113,7 @@ def test_refused_perspectives(change: dict[str, Any], text: str) -> None:
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        ({"direction": (0, 0, 0)}, "direction of view must not be zero"),
+        ({"direction": (0, 0, 0)}, "direction of view must not be the zero"),
         ({"direction": (0, 0, float("inf"))}, "finite"),
         ({"up": (3, 0, 0)}, "parallel"),
         ({"scale": 0}, "scale"),
@@ -141,7 +141,7 @@ def test_refused_views(change: dict[str, Any], text: str) -> None:
         bsp.Camera.named(**{"view": "iso", "points": BOX, **change})
 
 
-# Found: cameras kept the array of their eye, and let their own be written into.
+# Found: cameras kept the caller's array of the eye, and their own array could be changed.
 def test_cameras_keep_copies_that_nobody_writes_into() -> None:
     eye, target = np.array([0.0, -10, 0]), np.array([0.0, 0, 0])
     cameras = [bsp.Camera.perspective(eye, target), bsp.Camera.orthographic((0, 1, 0), target=eye)]

@@ -85,7 +85,7 @@ def test_svg_fill_rules(tmp_path: Path) -> None:
     styled = f'<g style="fill-rule:evenodd">{path.format("")}</g>'
     assert drawn(tmp_path, styled).area == 12
     for hidden in ('fill="none"', 'style="fill:none"', 'display="none"'):
-        with pytest.warns(bsp.DrawingWarning, match="nothing to fill"):
+        with pytest.warns(bsp.DrawingWarning, match="no closed outline"):
             assert drawn(tmp_path, path.format(hidden)).is_empty
     two = '<rect width="2" height="2"/><rect x="1" width="2" height="2"/>'
     assert drawn(tmp_path, two).area == 6
@@ -144,7 +144,7 @@ def test_dxf_names_the_extra_that_it_needs(tmp_path: Path, monkeypatch: pytest.M
         with pytest.raises(b.MissingPartError) as caught:
             call()
         assert caught.value.code == "missing_package"
-        words = 'This needs the package ezdxf: pip install "bspcsg[dxf]".'
+        words = 'The package ezdxf is needed but not installed. Try: pip install "bspcsg[dxf]"'
         assert words in str(caught.value)
     assert not (tmp_path / "b.dxf").exists()
 
@@ -239,7 +239,7 @@ def test_what_is_not_filled_or_shown_is_left_out(tmp_path: Path, said: str) -> N
 def test_drawings_that_are_not_displayed_are_empty(tmp_path: Path, said: str) -> None:
     text = f'<svg xmlns="http://www.w3.org/2000/svg" {said}>{SQUARE_PATH.format("")}</svg>'
     (tmp_path / "x.svg").write_text(text)
-    with pytest.warns(bsp.DrawingWarning, match="nothing to fill"):
+    with pytest.warns(bsp.DrawingWarning, match="no closed outline"):
         assert R.from_svg(tmp_path / "x.svg").is_empty
 
 

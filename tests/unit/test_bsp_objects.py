@@ -304,8 +304,7 @@ def test_trees_of_other_dimensions_cannot_become_such_a_set(
     assert caught.value.code == "invalid_parameter"
 
 
-# Found: inherited constructors made objects of another dimension.
-# Found: see R A11.
+# Found: constructors inherited from a base class made objects of another dimension.
 def test_constructors_of_other_dimensions_are_not_inherited() -> None:
     """A maker of sets of any dimension would make another one than the class it is asked for."""
     for kind in (bsp.Region, bsp.Intervals):

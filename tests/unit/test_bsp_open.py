@@ -98,7 +98,7 @@ class TestStabTrees:
             assert signs <= known
 
     def test_leaves_with_several_facets_have_no_partition_tree(self) -> None:
-        with pytest.raises(InvalidParameterError, match="holds 8 facets"):
+        with pytest.raises(InvalidParameterError, match="contains 8 facets"):
             bsp.AdaptiveTree(COMB).to_partition_tree()
 
     def test_what_is_no_node_is_refused(self) -> None:
@@ -310,7 +310,7 @@ class TestCallables:
             bsp.PartitionTree(np.tile(COMB, (500, 1, 1)), broken)
 
     def test_unknown_names_are_refused(self) -> None:
-        with pytest.raises(InvalidParameterError, match="callable"):
+        with pytest.raises(InvalidParameterError, match="pass a function"):
             bsp.PartitionTree(COMB, "best")  # type: ignore[arg-type]
 
 

@@ -54,8 +54,8 @@ def test_an_empty_panorama() -> None:
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        ({"eye": (0, 0), "direction": (0, 1)}, "either"),
-        ({}, "either"),
+        ({"eye": (0, 0), "direction": (0, 1)}, "exactly one"),
+        ({}, "exactly one"),
         ({"direction": (0, 0)}, "direction"),
         ({"eye": (0, 0, 0)}, "eye"),
         ({"eye": (0, 0), "size": (63, 100)}, "64"),

@@ -272,7 +272,7 @@ def test_svg_needs_no_pillow(monkeypatch: pytest.MonkeyPatch) -> None:
     [
         ({"size": (0, 10)}, "width"),
         ({"size": (10, 2.5)}, "height"),
-        ({"size": 10}, "width and a height"),
+        ({"size": 10}, "pair .width, height."),
         ({"size": (10, 20000)}, "at most"),
         ({"style": "wire"}, "style"),
         ({"edges": "some"}, "edges"),
@@ -281,7 +281,7 @@ def test_svg_needs_no_pillow(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"crease": float("nan")}, "crease"),
         ({"colors": "blue-ish"}, "colors"),
         ({"colors": [(1, 0, 0)] * 3}, "shape"),
-        ({"colors": ["#fff"] * 3}, "12 colors"),
+        ({"colors": ["#fff"] * 3}, "12 colours"),
         ({"colors": (0.0, 2, 0)}, "0 to 1"),
         ({"background": "#12345"}, "background"),
         ({"line_width": 0}, "line_width"),
@@ -360,7 +360,7 @@ def by_buffer(monkeypatch: pytest.MonkeyPatch, scene: Any, **looks: Any) -> bsp.
         return bsp.picture(scene, **looks)
 
 
-# Found: 1.3 million triangles took 47 seconds.
+# Found: a picture of 1.3 million triangles took 47 seconds.
 @pytest.mark.parametrize("name", BOTH_WAYS)
 def test_a_buffer_shows_what_the_painter_shows(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     scene, given = BOTH_WAYS[name]

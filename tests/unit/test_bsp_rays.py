@@ -249,8 +249,7 @@ OPEN: dict[str, tuple[Any, list[int]]] = {
 }
 
 
-# Found: `intervals` answered for open meshes.
-# Found: see R A10.
+# Found: `intervals` returned a result for open meshes.
 @pytest.mark.parametrize("name", OPEN)
 def test_intervals_of_what_is_not_closed_are_refused(name: str) -> None:
     facets, where = OPEN[name]
@@ -290,7 +289,7 @@ def test_the_numbers_of_open_facets_are_those_of_the_input() -> None:
     assert list(caught.value.where) == [3]
 
 
-# Found: a point of two triangles was told twice.
+# Found: a point at which a ray meets two triangles was returned twice.
 def test_one_row_for_each_point_of_a_ray() -> None:
     caster = bsp.RayCaster(b.cube(2))
     starts = [[0.5, 0.5, 3], [0.5, 0.25, 3], [0, 0, 3], [-1, 1, 2], [2, 0, 3]]
@@ -383,7 +382,7 @@ def test_facets_that_lose_their_extent_leave_a_moved_scene() -> None:
     moved[0], moved[2] = 7, [[3, 0], [3, 1]]
     again = caster.refitted(moved)
     assert again.all_hits([-1, 0.5], [1, 0]).hits.facet.tolist() == [1, 2]
-    with pytest.raises(b.InvalidMeshError, match="same shape"):
+    with pytest.raises(b.InvalidMeshError, match="same array shape"):
         caster.refitted(facets[:2])
     with pytest.raises(b.LimitError):
         caster.refitted(facets * 1e9)

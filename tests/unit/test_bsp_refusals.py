@@ -341,14 +341,14 @@ TAKEN = {
     ("AttributeTree.insert_hyperplane", "rule"): True,
 }
 
-#: What is made by hand; other classes are what functions return.
+#: The classes whose constructors users call; objects of other classes are returned by functions.
 KINDS = (
     *(bsp.AdaptiveTree, bsp.AttributeTree, bsp.Camera, bsp.Intervals, bsp.ObjectTree),
     *(bsp.PartitionTree, bsp.Picture, bsp.RayCaster, bsp.SphericalRegion, bsp.StaticTree),
     bsp.SubHyperplane,
 )
 
-#: Methods that others of this package call, with what they have checked.
+#: Methods that only this package calls, with arguments that it has checked.
 WITHIN = {"Camera.facing", "Camera.flatten", "Camera.place", "PartitionTree.from_core"}
 
 

@@ -116,7 +116,7 @@ def test_value() -> None:
     assert R(region.to_polygons(), winding="positive").area == pytest.approx(region.area)
 
 
-# Found: shapely's shapes were read in quadratic time.
+# Found: reading shapes of shapely took quadratic time.
 def test_shapely_in_and_out() -> None:
     pytest.importorskip("shapely")
     shape = plate().to_shapely()
@@ -260,7 +260,7 @@ def test_bad_parameters() -> None:
         R.rectangle(1e8) | R([(0, 0), (1e-14, 0), (0, 1)], pitch=-15)
 
 
-# Found: finite boundaries of complements were refused.
+# Found: the perimeter of a complement was refused, although it is finite.
 def test_the_perimeter_of_a_complement_is_that_of_the_region() -> None:
     assert (~plate()).perimeter == plate().perimeter
     assert R.full().perimeter == 0
@@ -302,5 +302,5 @@ def test_the_suffix_chooses_how_a_drawing_is_saved(tmp_path: Path) -> None:
     for name in ("x.svg", "x.DXF"):
         region.save(tmp_path / name)
     assert R.from_svg(tmp_path / "x.svg") == R.from_dxf(tmp_path / "x.DXF") == region
-    with pytest.raises(b.FormatError, match=r"written as \.svg or \.dxf"):
+    with pytest.raises(b.FormatError, match=r"ends in \.svg or \.dxf"):
         region.save(tmp_path / "x.png")

@@ -221,7 +221,7 @@ class TestValues:
         assert shown == "SubHyperplane((0, 1), 2, Intervals((-4, 0)))"
 
 
-# Found: a sub-hyperplane united with itself lay in another hyperplane by its rounding.
+# Found: the union of a sub-hyperplane with itself lay in another hyperplane, because of rounding.
 @pytest.mark.parametrize("normal", [(1, 4), (1, 2, 3), (0, 3, 1), (0.3, 0.7)])
 def test_set_operations_keep_the_hyperplane(normal: tuple[float, ...]) -> None:
     part = SubHyperplane(normal, 3)
@@ -245,8 +245,8 @@ PARTS = [
 ]
 
 
-# Found: empty regions of the sphere and parts of hyperplanes were true, and their operators
-# raised an `AttributeError`.
+# Found: empty regions of the sphere and empty parts of hyperplanes were true as bool, and their
+# operators raised an `AttributeError`.
 @pytest.mark.parametrize(("full", "empty"), PARTS)
 def test_parts_of_nothing_are_false(full: Any, empty: Any) -> None:
     assert bool(full) and not bool(empty)

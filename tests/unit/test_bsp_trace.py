@@ -39,7 +39,7 @@ def scenes() -> Iterator[tuple[str, Any]]:
 SCENES = [pytest.param(facets, id=name) for name, facets in scenes()]
 
 
-# Found: leaves that store a segment were not those of the notes.
+# Found: leaves that store a segment differed from those in the lecture notes.
 class TestConstruction:
     @pytest.mark.sampled(3)
     @pytest.mark.parametrize("policy", [*bsp.POLICIES, "end-points"])
@@ -138,7 +138,7 @@ def meeting(facet: Any, origin: Any, direction: Any) -> Fraction | None:
     s = (arm[0] * d[1] - arm[1] * d[0]) / turn
     return t if t >= 0 and 0 <= s <= 1 else None
 
-    # Found: `PartitionTree` took no rays and told no path.
+    # Found: `PartitionTree` had no method for rays, and none for paths of points.
 
 
 class TestRays:
@@ -216,7 +216,7 @@ class TestRays:
         beside = tree.trace_ray((5, 1), (1, 0)).steps[0]
         assert beside.case == "near"
 
-    # Found: the bound on visits was tested, never shown.
+    # Found: a test checked the bound on visits, but no public function showed the visits.
     def test_c_of_t_is_at_most_depth_times_stabbed_leaves(self) -> None:
         random = np.random.default_rng(1)
         for facets in (segments(1, 40), triangles(1, 20), np.arange(20.0)):
@@ -461,7 +461,7 @@ class TestMerging:
         with pytest.raises(InvalidParameterError, match="op must be"):
             polygons(1).trace_merge(polygons(2), "sum")  # type: ignore[arg-type]
 
-    # Found: the augmented tree could not be seen from outside.
+    # Found: no public function showed the augmented tree.
 
 
 class TestCounting:

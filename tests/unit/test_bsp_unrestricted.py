@@ -75,7 +75,7 @@ def quarters() -> bsp.AttributeTree[str]:
     whole: bsp.AttributeTree[str] = bsp.AttributeTree(2, "all")
     return whole.insert_hyperplane((1, 0), 0, ("west", "east")).insert([[5, 1], [1, 1]], "inherit")
 
-    # Found: no hyperplanes and no policy of one's own.
+    # Found: callers could give neither hyperplanes nor a policy of their own.
 
 
 class TestLabels:
@@ -299,8 +299,8 @@ BAD_BOXES = [
 ]
 
 
-# Found: boxes turned over gave measures of 1 and views of nothing in silence, and those of NaN a
-# raw `ValueError`.
+# Found: boxes with exchanged corners gave measures of 1 and empty views without an error, and boxes
+# with NaN a raw `ValueError`.
 @pytest.mark.parametrize(("low", "high"), BAD_BOXES)
 def test_boxes_that_are_none_are_refused(low: Any, high: Any) -> None:
     whole = bsp.AttributeTree(2, "all")
@@ -319,9 +319,9 @@ def test_a_volume_is_seen_in_no_box_that_is_turned_over() -> None:
         bsp.visibility_volume(np.ones((0, 3, 3)), (0, 0, 0), (-2, 2, -2), (2, -2, 2))
 
 
-# Found: a spherical polygon whose corners are one ended in a raw `TypeError`.
+# Found: a spherical polygon with equal corners ended in a raw `TypeError`.
 def test_spherical_polygons_need_corners_that_differ() -> None:
-    with pytest.raises(InvalidParameterError, match="must not all have one direction"):
+    with pytest.raises(InvalidParameterError, match="must not all have the same direction"):
         bsp.SphericalRegion.polygon([[1, 0, 0], [2, 0, 0], [3, 0, 0]])
 
 

@@ -42,7 +42,7 @@ def test_folder_is_paired_with_itself(parts: Path) -> None:
     assert pairs == {("a.off", "b.stl"), ("a.off", "c.obj"), ("b.stl", "c.obj"), ("m.csg",)}
 
 
-# Found: cases of a report were called by number, not by file.
+# Found: reports named cases by numbers, not by files.
 def test_cases_are_called_by_their_files(parts: Path) -> None:
     (parts / "elsewhere").mkdir()
     (parts / "elsewhere" / "b.off").write_bytes((parts / "a.off").read_bytes())
@@ -91,7 +91,9 @@ MESH = {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], "faces": [[0, 
 def test_other_files_of_cases_are_refused(tmp_path: Path, document: Any) -> None:
     path = tmp_path / "cases.json"
     path.write_text(document if isinstance(document, str) else json.dumps(document))
-    with pytest.raises(b.FormatError, match=r"cases\.json: this is no file of cases") as caught:
+    with pytest.raises(
+        b.FormatError, match=r"cases\.json: the file is not a valid list of cases"
+    ) as caught:
         cases_of(inputs_in([path]), SET_OPS, Draw())
     assert '{"cases": [{"operation"' in caught.value.message
 

@@ -156,7 +156,7 @@ def test_operands_that_overlap_themselves() -> None:
     double = b.Solid(*joined(cube(), moved(cube(), (0.5, 0.5, 0.5))))
     report = validate("difference", double, b.cube(0.25))
     assert report.verdict is Verdict.AGREE
-    assert [note.split(";")[0] for note in report.notes] == ["operand 1 overlaps itself"]
+    assert [note.split(",")[0] for note in report.notes] == ["operand 1 overlaps itself"]
     assert report.set_volume == 15 / 8 - 1 / 64
 
 
@@ -260,7 +260,7 @@ def test_operands_after_a_refused_one_have_their_notes(monkeypatch: pytest.Monke
     double = b.Solid(*joined(cube(), moved(cube(), (0.5, 0.5, 0.5))))
     report = validate("union", b.cube(0.25), double, double.translate(1, 0, 0))
     assert (report.verdict, report.reason) == (Verdict.ORACLE_REFUSED, "no operand 1")
-    told = [note.split(";")[0] for note in report.notes]
+    told = [note.split(",")[0] for note in report.notes]
     assert told == ["operand 2 overlaps itself", "operand 3 overlaps itself"]
 
 

@@ -69,7 +69,9 @@ def test_what_colours_mean(given: Any, meant: tuple[int, ...]) -> None:
 )
 def test_what_is_no_colour_is_refused(given: Any) -> None:
     for take in (color_of, b.Material, lambda one: b.cube(1).tagged(color=one)):
-        with pytest.raises(b.InvalidParameterError, match="must be like 'orange'"):
+        with pytest.raises(
+            b.InvalidParameterError, match="must be a colour name or code such as 'orange'"
+        ):
             take(given)
 
 
@@ -86,7 +88,7 @@ def test_colours_come_one_for_each() -> None:
         options: dict[str, Any] = {f"{kind}_attributes": {"color": "red"}}
         said = b.Solid(vertices, faces, **options).to_mesh()
         assert (said.attributes.at_corners("color") == (255, 0, 0)).all()
-    with pytest.raises(b.InvalidMeshError, match="must be like"):
+    with pytest.raises(b.InvalidMeshError, match="must be a colour name or code such as"):
         b.Solid(vertices, faces, face_attributes={"color": ["no"] * 12})
 
 

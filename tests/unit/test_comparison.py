@@ -57,7 +57,8 @@ def test_the_farthest_of_many_points_is_that_of_all_pairs(shift: float) -> None:
     assert comparison.distances(mesh, points).tolist() == every
 
 
-# Found: each point looked at all triangles in a cube around it, and a fine mesh filled the memory.
+# Found: each point was compared with all triangles in a cube around it, which for a fine mesh
+# filled the memory.
 def test_points_far_away_are_compared_with_few_triangles(monkeypatch: pytest.MonkeyPatch) -> None:
     compared = []
 

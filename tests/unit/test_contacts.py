@@ -28,7 +28,7 @@ def said(solid: b.Solid) -> list[tuple[str, int]]:
     return [(finding.code, finding.count) for finding in solid.findings]
 
 
-# Found: a solid that was moved, refined or pickled no longer said where it touches itself.
+# Found: a solid that was moved, refined or pickled lost the findings about contacts with itself.
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize(("place", "code"), CONTACTS)
 def test_contacts_are_said_on_every_way(place: tuple[int, int, int], code: str, way: str) -> None:
@@ -45,7 +45,8 @@ TAKEN: dict[str, Callable[[b.Solid], b.Solid]] = {
 }
 
 
-# Found: nothing told of vertices that an input has in one place without sharing them.
+# Found: there was no finding about vertices of an input that have equal coordinates but different
+# indices.
 @pytest.mark.parametrize("way", TAKEN)
 @pytest.mark.parametrize(("place", "count"), [((1, 1, 1), 2), ((1, 1, 0), 4)])
 def test_vertices_that_an_input_has_in_one_place_are_said(

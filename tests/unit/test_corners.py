@@ -86,18 +86,18 @@ def test_sizes_make_no_difference(scale: float) -> None:
 @pytest.mark.parametrize(
     ("call", "word"),
     [
-        (lambda: ELL.fillet(2.6), r"no room at \(0, 5\)"),
-        (lambda: ELL.chamfer(6), "no room"),
+        (lambda: ELL.fillet(2.6), r"edges at the corner \(0, 5\)"),
+        (lambda: ELL.chamfer(6), "too short"),
         (lambda: (ELL - Region.circle(0.5, 16).translate(9.2, 9.2)).fillet(2), "cross"),
         (lambda: ELL.fillet(0), "above 0"),
-        (lambda: ELL.fillet(1, segments=3), "from 4"),
-        (lambda: ELL.fillet(1, lambda p: p), "one truth value for each of 6 points"),
+        (lambda: ELL.fillet(1, segments=3), "at least 4"),
+        (lambda: ELL.fillet(1, lambda p: p), "one bool for each of 6 points"),
         (lambda: ELL.chamfer(1, "all"), "function"),  # type: ignore[arg-type]
-        (lambda: Region.slot(3, d=4), "at least as long as wide"),
-        (lambda: Region.slot(3), "needs r, or d"),
-        (lambda: Region.regular_polygon(2, 1), "from 3"),
-        (lambda: Region.regular_polygon(6, 1, flats=2), "only one"),
-        (lambda: Region.regular_polygon(6), "needs r, or d"),
+        (lambda: Region.slot(3, d=4), "must be at least its width"),
+        (lambda: Region.slot(3), "needs a radius or a diameter"),
+        (lambda: Region.regular_polygon(2, 1), "at least 3"),
+        (lambda: Region.regular_polygon(6, 1, flats=2), "exactly one"),
+        (lambda: Region.regular_polygon(6), "needs a radius or a diameter"),
     ],
 )  # fmt: skip
 def test_corners_refuse_what_makes_no_sense(call: Any, word: str) -> None:

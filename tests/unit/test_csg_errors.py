@@ -18,7 +18,7 @@ from support.scripts import moved
             "multmatrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1e-320]]) cube(1);",
             "its matrix has an entry beyond ±1e100",
         ),
-        ('cube(size = "a");', 'size must be 3 numbers within ±1e100, not "a"'),
+        ('cube(size = "a");', 'size must be 3 numbers from -1e100 to 1e100, not "a"'),
         ("cube(size = [1, 2]);", "size must be 3 numbers"),
         ("cube(1e300);", "size must be 3 numbers"),
         ('cube(1, center = "yes");', "center must be true or false"),
@@ -29,12 +29,12 @@ from support.scripts import moved
         ("polyhedron(points = [[0, 0, 0]], faces = [[0, 1, 2]]);", "from 0 to 0"),
         ("polygon(points = 3);", "points must be a list of points"),
         ("polygon(points = [[0, 0]], paths = [[0.5]]);", "whole numbers"),
-        ("rotate_extrude() square(2, center = true);", "must not cross the axis"),
+        ("rotate_extrude() square(2, center = true);", "must lie on one side"),
         ('linear_extrude(file = "../a.dxf");', "outside the script's folder"),
         ("linear_extrude(height = 1, v = [1, 0]) square(1);", "v must be 3 numbers"),
         ("sphere(r = 1, $fn = 1e9);", "more than 4,000,000 corners"),
         ("linear_extrude(height = 1, twist = 1, slices = 1e12) square(1);", "corners"),
-        ("text(text = 3);", "text must be a text"),
+        ("text(text = 3);", "text must be a string"),
         ('text("a", size = "b");', "size must be a number"),
         ("tent() square(1);", "tent() is not supported. Supported: circle color"),
     ],
@@ -64,15 +64,15 @@ def test_sizes_beyond_the_lattice_are_errors_not_crashes(text: str) -> None:
 # What is left out
 
 
-# Found: infinite numbers and missing files refused the whole script.
+# Found: infinite numbers and missing files made the whole script fail.
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ('import(file = "none.stl");', "there is no file “none.stl”"),
-        ('import(file = ".");', "there is no file"),
-        ('import(file = "a\\x01b.stl");', "there is no file"),
-        ('linear_extrude(1) import(file = "none.svg");', "there is no file"),
-        ('surface(file = "none.dat");', "there is no file"),
+        ('import(file = "none.stl");', "the file “none.stl” does not exist"),
+        ('import(file = ".");', "does not exist"),
+        ('import(file = "a\\x01b.stl");', "does not exist"),
+        ('linear_extrude(1) import(file = "none.svg");', "does not exist"),
+        ('surface(file = "none.dat");', "does not exist"),
         ("import();", "file is missing"),
         ("cube(size = [nan, 1, 1]);", "size must be 3 numbers"),
         ("cube(inf);", "size must be 3 numbers"),
@@ -93,7 +93,7 @@ def test_what_openscad_leaves_out_is_left_out_and_told(text: str, says: str) -> 
     assert solid.volume == 8
     [message] = [str(one.message) for one in told]
     assert message.startswith("part.csg:2:") and says in message
-    assert message.endswith("It is left out.")
+    assert message.endswith("This node is left out.")
 
 
 @pytest.mark.parametrize(
@@ -136,11 +136,11 @@ def test_a_lenient_evaluation_drops_bad_children_with_their_place(
     with pytest.warns(csg.CsgWarning) as told:
         assert csg.loads(script, name="part.csg", folder=tmp_path, lenient=True).volume == 56
     [message] = [str(one.message) for one in told]
-    assert message.startswith("part.csg:2:") and message.endswith("It is left out.")
+    assert message.startswith("part.csg:2:") and message.endswith("This node is left out.")
 
 
 def test_a_lenient_evaluation_repairs_what_it_is_told_to(tmp_path: Path) -> None:
-    with pytest.warns(csg.CsgWarning, match="It is repaired"):
+    with pytest.warns(csg.CsgWarning, match="This mesh is repaired"):
         solid = csg.loads(BAD_CHILDREN[1], lenient=True, on_invalid="repair")
     assert solid.volume == pytest.approx(1 / 6)
 
@@ -158,7 +158,7 @@ def test_a_lenient_evaluation_drops_polyhedra_whose_faces_do_not_close() -> None
         assert csg.loads(text, name="part.csg", lenient=True).volume == 729
     assert found.is_empty
     assert str(told[-1].message).startswith(
-        "part.csg:2:3: polyhedron(): its faces do not close: 3 edges"
+        "part.csg:2:3: polyhedron(): its faces do not form a closed surface: 3 edges"
     )
     # Four faces at one edge are closed.
     pair = b.cube(1) | b.cube(1).translate(1, 1, 0)
@@ -212,18 +212,18 @@ def test_what_is_moved_beyond_all_lattices_is_an_error_of_its_node(move: str) ->
     text = f"cube(1); {move} {{ cube(1); }}"
     with pytest.raises(b.LimitError, match=r"<csg>:1:10: (multmatrix|resize)\(\)"):
         csg.evaluate(csg.parse(text))
-    with pytest.warns(csg.CsgWarning, match=r"It is left out"):
+    with pytest.warns(csg.CsgWarning, match=r"This node is left out"):
         assert csg.loads(text, lenient=True).volume == 1
 
 
-# Found: of nodes alike that are left out only the first was told.
+# Found: of several equal nodes that are left out, only the first was reported.
 def test_each_node_that_is_left_out_is_told_at_its_place() -> None:
     with pytest.warns(csg.CsgWarning) as told:
         csg.loads('sphere(r = "two"); cube(1); sphere(r = "two");', lenient=True)
     assert [str(one.message)[:9] for one in told] == ["<csg>:1:1", "<csg>:1:2"]
 
 
-# Found: `!` counted inside of what `*` takes out.
+# Found: `!` had an effect inside a node that `*` disables.
 def test_nodes_in_one_that_does_not_exist_do_not_count_alone() -> None:
     for text in ("*group() { !cube(2); } cube(5);", "*!cube(2); cube(5);"):
         assert csg.loads(text).volume == 125
@@ -253,7 +253,8 @@ def test_a_node_that_counts_alone_keeps_the_variables_around_it() -> None:
         assert csg.loads(csg.dumps(one)).equals(alone)
 
 
-# Found: errors of scripts were their own cause, which a scheduler of other machines could not send.
+# Found: errors of scripts were their own cause, so that a scheduler on other machines could not
+# send them.
 def test_no_error_is_its_own_cause() -> None:
     with pytest.raises(b.BspcsgError) as caught:
         csg.loads("polyhedron(points = [[0,0,0],[1,0,0],[0,1,0]], faces = [[0,1,2]]);")

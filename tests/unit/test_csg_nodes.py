@@ -30,9 +30,9 @@ def test_nothing_first_leaves_nothing() -> None:
 
 
 def test_first_child_says_the_dimension() -> None:
-    with pytest.warns(csg.CsgWarning, match=r"<csg>:1:1: union\(\).*plane figures .* ignored"):
+    with pytest.warns(csg.CsgWarning, match=r"<csg>:1:1: union\(\).*2D children are ignored"):
         assert volume("union() { cube(1); square(5); }") == 1
-    with pytest.warns(csg.CsgWarning, match="solids among them are ignored"):
+    with pytest.warns(csg.CsgWarning, match="3D children are ignored"):
         assert region("union() { square(2); cube(1); }").area == 4
 
 
@@ -41,7 +41,7 @@ def test_plane_figures_combine() -> None:
     assert region(text).area == 12
     assert region(f"intersection() {{ square(4); {moved(3, 3, 0)} square(4); }}").area == 1
     assert region("square([0, 3]);").is_empty
-    with pytest.raises(b.FormatError, match="plane figure; put linear_extrude"):
+    with pytest.raises(b.FormatError, match="solid is needed; put linear_extrude"):
         csg.loads("square(4);")
 
 
@@ -61,9 +61,9 @@ def test_matrices() -> None:
     assert volume("multmatrix([[-2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) cube(2);") == 16
     for wrong in ("inf", "nan"):
         text = f"multmatrix([[{wrong},0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) cube(2);"
-        with pytest.warns(csg.CsgWarning, match="not finite; it is left out"):
+        with pytest.warns(csg.CsgWarning, match="not a finite number; this node is left out"):
             assert csg.loads(text).is_empty
-    with pytest.warns(csg.CsgWarning, match="flattens its children"):
+    with pytest.warns(csg.CsgWarning, match="would flatten its children"):
         flat = "multmatrix([[1,0,0,0],[0,1,0,0],[0,0,0,0],[0,0,0,1]])"
         assert csg.loads(f"{flat} cube(2);").is_empty
     # The third row and column do not concern the plane.
@@ -90,7 +90,7 @@ def test_polyhedra_run_clockwise_but_need_not() -> None:
         assert volume(f"polyhedron({TETRAHEDRON}, {faces});") == pytest.approx(1)
 
 
-# Found: polyhedra that are not closed refused the whole script.
+# Found: polyhedra that are not closed made the whole script fail.
 def test_open_polyhedra_are_errors_or_left_out() -> None:
     text = f"cube(1); polyhedron({TETRAHEDRON}, faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3]]);"
     with pytest.raises(b.InvalidMeshError, match=r"^<csg>:1:10: polyhedron\(\): .*not closed"):

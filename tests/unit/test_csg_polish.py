@@ -31,7 +31,7 @@ MOVES = {
 }
 
 
-# Found: nor did it reach into a model that is moved as a whole.
+# Found: `polish` did not reach the parts of a model that is moved as a whole.
 @pytest.mark.parametrize("move", MOVES)
 @pytest.mark.parametrize("around", ["{}", "group() {{ {} }}", "render() {{ union() {{ {} }} }}"])
 def test_polish_reaches_parts_inside_of_moves(move: str, around: str) -> None:
@@ -135,7 +135,7 @@ def test_polish_keeps_what_is_no_rotation() -> None:
     assert csg.loads("", polish=True).is_empty
 
 
-# Found: `csg.evaluate(..., polish=True)` told its warnings twice.
+# Found: `csg.evaluate(..., polish=True)` raised its warnings twice.
 def test_polish_tells_a_warning_once() -> None:
     near = 'cube([10, 10, 10.00001]); cube(9); import("no.stl");'
     up = "multmatrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 10], [0, 0, 0, 1]]) cube(10);"

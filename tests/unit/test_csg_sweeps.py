@@ -47,7 +47,7 @@ def test_minkowski_sums() -> None:
     assert volume(f"minkowski() {{ {corner} cube(1); }}") == 5 * (25 - 9)
 
 
-# Found: a sum with an empty operand was empty.
+# Found: a Minkowski sum with an empty operand was empty.
 @pytest.mark.parametrize(
     ("children", "expected"),
     [
@@ -78,14 +78,14 @@ def test_minkowski_in_the_plane_keeps_openscads_rule(children: str, area: float)
     assert region(f"minkowski() {{ {children} }}").area == area
 
 
-# Found: an intersection of both dimensions was the solid.
+# Found: an intersection of a solid and a plane figure was the solid.
 @pytest.mark.filterwarnings("ignore::bspcsg.csg.CsgWarning")
 def test_intersections_of_both_dimensions_are_empty() -> None:
     assert csg.loads("intersection() { cube(5); circle(2); }").is_empty
     assert region("intersection() { circle(2); cube(5); }").is_empty
     assert volume("difference() { cube(5); circle(2); }") == 125
     assert volume("union() { cube(5); circle(2); }") == 125
-    with pytest.warns(csg.CsgWarning, match="2D and 3D"):
+    with pytest.warns(csg.CsgWarning, match="partly 2D and partly 3D"):
         csg.loads("intersection() { cube(5); circle(2); }")
 
 
@@ -120,7 +120,7 @@ def test_projections() -> None:
     assert region(f"projection() {ball}").area == 4
     assert region(f"projection(cut = true) {ball}").is_empty
     assert region("projection(cut = true) cube(2);").area == 4
-    with pytest.warns(csg.CsgWarning, match="plane figures are ignored"):
+    with pytest.warns(csg.CsgWarning, match="2D children are ignored"):
         assert csg.evaluate(csg.parse("projection() square(1);")) is None
 
 
@@ -129,11 +129,11 @@ def test_offsets() -> None:
     assert region("offset(delta = -0.5) square(2);").area == 1
     assert region("offset(delta = -5) square(2);").is_empty
     assert region("offset(r = 1, $fn = 4) square(2);").area == pytest.approx(4 + 8 + 2)
-    with pytest.warns(csg.CsgWarning, match="solids are ignored"):
+    with pytest.warns(csg.CsgWarning, match="3D children are ignored"):
         assert csg.evaluate(csg.parse("offset(r = 1) cube(1);")) is None
 
 
-# Found: offsets of turned unions drew out hairs that rounding leaves.
+# Found: offsets of unions of rotated figures widened hairs that rounding had left.
 @pytest.mark.parametrize("hair", [1e-5, 1e-4])
 @pytest.mark.parametrize("around", ["union()", "group() union()", "union() { union()"])
 def test_offsets_do_not_widen_what_six_digits_part(hair: float, around: str) -> None:
@@ -221,21 +221,21 @@ def test_offsets_that_cannot_be_counted_are_refused(text: str) -> None:
 
 # Found: `offset(r=…, delta=…)` took `delta`.
 def test_a_radius_goes_before_a_distance() -> None:
-    with pytest.warns(csg.CsgWarning, match="its delta does not count beside r"):
+    with pytest.warns(csg.CsgWarning, match="its delta is ignored in favour of r"):
         round_corners = region("offset(r = 2, delta = 1) square(10);")
     assert round_corners.equals(region("offset(r = 2) square(10);"))
 
 
-# Found: turns in parts of a half turn or more were empty or inside out.
+# Found: revolutions with segments of half a turn or more were empty or inside out.
 def test_turns_are_divided_below_half_turns() -> None:
     plate = "polygon([[1, 0], [2, 0], [2, 1], [1, 1]]);"
     assert volume(f"rotate_extrude(angle = 200, $fn = 3) {plate}") > 2
     for angle in (180, 200):
-        with pytest.raises(b.InvalidParameterError, match="from 2 on"):
+        with pytest.raises(b.InvalidParameterError, match="at least 2"):
             b.revolve([(1, 0), (2, 0), (2, 1)], angle=angle, segments=1)
 
 
-# Found: plane figures were taken away one by one, for the square of their number.
+# Found: plane figures were subtracted one by one, in time quadratic in their number.
 def test_many_plane_figures_are_taken_away_at_once() -> None:
     def rest(count: int) -> b.Region:
         circles = "".join(f"{moved(2 * k, 0, 0)} circle(r=1, $fn=24);" for k in range(count))

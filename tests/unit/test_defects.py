@@ -117,7 +117,7 @@ def test_a_process_writes_few_reports(folder: Path) -> None:
     assert len(os.listdir(folder)) == 16
 
 
-# Found: extraction began anew where it met a defect of its own.
+# Found: extraction started again when it met a defect of its own.
 def test_no_result_depends_on_a_defect() -> None:
     """Only what makes an error, or words for one, knows that it is about a defect."""
     core = Path(__file__).resolve().parents[2] / "core" / "src"

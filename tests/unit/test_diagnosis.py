@@ -161,7 +161,8 @@ def with_objects(*meshes: Arrays) -> RawMesh:
     return RawMesh(*joined(*meshes), objects=tuple(zip(names, counts, strict=True)))
 
 
-# Found: a lid that rests on a body in one file was told to overlap it, and not to be manifold.
+# Found: a lid that rests on a body in the same file was reported as overlapping it and as
+# non-manifold.
 def test_objects_that_touch_are_solids_that_touch() -> None:
     for other in (moved(cube(), (0, 0, 1)), cuboid((0.25, 0.25, 1), (2, 0.75, 2)), cube()[:2]):
         raw = with_objects(cube(), other)
@@ -178,7 +179,7 @@ def test_objects_that_clash_are_told_with_place_and_measured_once() -> None:
     found = examine(with_objects(cube(2), moved(cube(), (5, 0, 0)), moved(cube(), (1.5, 0, 0))))
     (finding,) = found.found.findings
     assert (finding.code, finding.severity, finding.count) == ("clash", "warning", 1)
-    assert "“a” and “c”, 0.5 near (1.75, 0.5, 0.5)" in finding.message
+    assert "“a” and “c”, with a common volume of 0.5 near (1.75, 0.5, 0.5)" in finding.message
     assert found.found.volume == 8 + 1 + 0.5 and found.found.signed_volume == 10
 
 

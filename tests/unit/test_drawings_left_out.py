@@ -68,10 +68,10 @@ LEFT_OUT: dict[str, tuple[Draw, str]] = {
     ),
     "points": (
         lambda space, _: (square(space), space.add_line((9, 9), (9, 9)), dot(space)),
-        r"left out: line that surrounds nothing \(2\)\.$",
+        r"left out: line that encloses no area \(2\)\.$",
     ),
     "in blocks": (in_blocks, r"left out: ATTRIB \(1\), HATCH \(2\)\.$"),
-    "nothing": (lambda *_: None, "the region is empty: the drawing has nothing to fill"),
+    "nothing": (lambda *_: None, "the region is empty: the drawing has no closed outline"),
     "twice": (
         lambda space, _: (square(space), square(space)),
         "the region is empty: its outlines cancel each other out",
@@ -180,7 +180,9 @@ def test_binary_dxf_is_refused_with_the_way_out(tmp_path: Path) -> None:
     document = ezdxf.new()
     square(document.modelspace())
     document.saveas(tmp_path / "a.dxf", fmt="bin")
-    with pytest.raises(b.FormatError, match=r"a\.dxf: this is a binary DXF; .* ezdxf\.readfile"):
+    with pytest.raises(
+        b.FormatError, match=r"a\.dxf: binary DXF files cannot be read; .* ezdxf\.readfile"
+    ):
         bsp.load_dxf(tmp_path / "a.dxf")
     ezdxf.readfile(tmp_path / "a.dxf").saveas(tmp_path / "b.dxf")
     assert bsp.load_dxf(tmp_path / "b.dxf").area == 9
@@ -202,7 +204,7 @@ RECT = '<rect width="3" height="3" {}/>'
         (RECT.format('fill="none" stroke="black"'), r"stroke \(1\)"),
         ('<g style="stroke:red"><line x2="3"/><path d="M0 0L1 1"/></g>', r"stroke \(2\)"),
         ('<image width="3" height="3" xlink:href="a.png"/>', r"image \(1\)"),
-        ('<use xlink:href="#a"/><use href="b.svg#a"/>', r"use of what is not there \(2\)"),
+        ('<use xlink:href="#a"/><use href="b.svg#a"/>', r"use of a missing element \(2\)"),
         (f"<foreignObject>{RECT.format('')}</foreignObject>", r"foreignObject \(1\)"),
         ('<switch><rect systemLanguage="xx" width="3" height="3"/></switch>', r"switch \(1\)"),
     ],
@@ -251,6 +253,6 @@ def test_a_switch_draws_the_first_child_that_fits(
 
 def test_scripts_tell_what_svg_files_hold_beside_shapes(tmp_path: Path) -> None:
     (tmp_path / "a.svg").write_text(SVG.format('<switch><text>A</text></switch><use href="#a"/>'))
-    says = r"import\(\): a\.svg: left out: text \(1\), use of what is not there \(1\)\.$"
+    says = r"import\(\): a\.svg: left out: text \(1\), use of a missing element \(1\)\.$"
     with pytest.warns(csg.CsgWarning, match=says):
         assert not imported(tmp_path / "a.svg").is_empty

@@ -192,10 +192,10 @@ def grid(space: Any) -> None:
 @pytest.mark.parametrize(
     ("draw", "words"),
     [
-        (in_itself, "contain each other"),
-        (many, "hold too much"),
-        (grid, "hold too much"),
-        (lambda space: space.add_blockref("nothing", (0, 0)), "no block called “nothing”"),
+        (in_itself, "nested deeper"),
+        (many, "contain more than"),
+        (grid, "contain more than"),
+        (lambda space: space.add_blockref("nothing", (0, 0)), "the block “nothing”"),
         (lambda space: space.add_circle((0, 0), 1e12), "larger tolerance"),
     ],
 )
@@ -273,8 +273,10 @@ def test_names_of_layers_in_any_letters_and_case(tmp_path: Path, version: str, n
 
 # Found: layers that a DXF has not gave the empty region in silence.
 def test_layers_that_a_file_lacks_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(b.FormatError, match=r"no layer 'nope'; it has .*'there'") as refusal:
+    with pytest.raises(
+        b.FormatError, match=r"no layer 'nope'; its layers are .*'there'"
+    ) as refusal:
         region_of(tmp_path, lambda space: square(space, layer="there"), layers=["there", "nope"])
     assert refusal.value.code == "unknown_name"
-    with pytest.warns(bsp.DrawingWarning, match="nothing to fill"):
+    with pytest.warns(bsp.DrawingWarning, match="no closed outline"):
         assert region_of(tmp_path, square, layers=["Defpoints"]).is_empty

@@ -64,7 +64,7 @@ def test_concave_edges_have_angles_above_180() -> None:
 def test_selections_say_what_is_wrong_with_conditions() -> None:
     edges = BOX.edges()
     for condition in (lambda e: e.length, [True], lambda e: True):
-        with pytest.raises(b.InvalidParameterError, match="one truth value"):
+        with pytest.raises(b.InvalidParameterError, match="one bool"):
             edges.where(condition)
     with pytest.raises(b.InvalidParameterError, match="axis"):
         edges.parallel("w")
@@ -162,7 +162,7 @@ def test_triangles_know_their_solid_until_something_is_made_of_them() -> None:
     assert (triangles == BORED.to_mesh().faces).all() and not triangles.flags.writeable
     made: list[Any] = [triangles[:4], triangles + 1, pickle.loads(pickle.dumps(triangles))]
     for array in made:
-        with pytest.raises(b.InvalidParameterError, match="no solid's any more"):
+        with pytest.raises(b.InvalidParameterError, match="does not know its solid any more"):
             array()
 
 
@@ -172,12 +172,12 @@ def test_triangles_know_their_solid_until_something_is_made_of_them() -> None:
         (lambda: BOX.edges(angle=180), "angle"),
         (lambda: BOX.edges(all=cast("Any", 7)), "all"),
         (lambda: BOX.faces(angle=-1), "angle"),
-        (lambda: BOX.edges().sort_by("size"), "There is no key 'size'; there are x, y, z, length"),
-        (lambda: BOX.faces().group_by("length"), "there are x, y, z, area"),
+        (lambda: BOX.edges().sort_by("size"), "Unknown key 'size'; known are x, y, z, length"),
+        (lambda: BOX.faces().group_by("length"), "known are x, y, z, area"),
         (lambda: BOX.edges().sort_by(lambda e: e.ends), "one finite number for each of the 12"),
         (lambda: BOX.edges().group_by(lambda e: e.length * math.inf), "finite"),
         (lambda: BOX.edges().on("z"), "offset"),
-        (lambda: BOX.edges().on(BOX.faces(), 3), "offset belongs to a plane"),
+        (lambda: BOX.edges().on(BOX.faces(), 3), "offset can only be given with a normal"),
         (lambda: BOX.edges().on(STEP.faces()), "different solids"),
         (lambda: BOX.edges() & STEP.edges(), "different solids"),
     ],
@@ -270,7 +270,9 @@ def test_a_pyramid_s_apex() -> None:
     assert len(steep) == 4 and part.genus == 0 and part.to_mesh().certificate.ok
     apart = 4 * 0.2**2 / 2 * math.sin(math.radians(steep.angle[0])) * math.hypot(2, 3)
     assert 0.9 * apart < pyramid.volume - part.volume < apart
-    with pytest.raises(b.InvalidParameterError, match=r"At \(0, 0, 3\) more than three round"):
+    with pytest.raises(
+        b.InvalidParameterError, match=r"At \(0, 0, 3\) the corner cannot be rounded"
+    ):
         pyramid.fillet(steep, 0.2)
 
 
@@ -445,7 +447,8 @@ def rims(part: b.Solid) -> b.EdgeSelection:
     return part.edges().filter(lambda e: e.length < 2.9)
 
 
-# Found: each of 132 edges around four bosses was evaluated twice, which took ten times as long.
+# Found: each of 132 edges around four bosses was evaluated twice, which made the call ten times
+# slower.
 @pytest.mark.parametrize("verb", ["fillet", "chamfer"])
 @pytest.mark.parametrize("turn", [TURNS[0], TURNS[2]])
 @pytest.mark.parametrize(
@@ -547,7 +550,7 @@ def test_turned_faces_on_which_edges_vanish_leave_no_skins(turn: Any) -> None:
 
 def test_blends_leave_something_of_each_part_of_a_face() -> None:
     bars = (b.box(9, 1, 2) | b.box(1, 9, 2)).edges().on("z", 2)
-    with pytest.raises(b.InvalidParameterError, match="no room at"):
+    with pytest.raises(b.InvalidParameterError, match="too small for a blend or offset"):
         (b.box(9, 1, 2) | b.box(1, 9, 2)).chamfer(bars, 0.6)
 
 
@@ -557,19 +560,22 @@ def test_blends_leave_something_of_each_part_of_a_face() -> None:
 @pytest.mark.parametrize(
     ("call", "word"),
     [
-        (lambda: BOX.chamfer(BOX.edges(), 1.01), r"no room at \("),
-        (lambda: BOX.chamfer(BOX.edges(), 5), "no room"),
-        (lambda: BOX.chamfer(BOX.edges().parallel("x"), 1.01), "no room"),
-        (lambda: BOX.fillet(BOX.edges(), 1.01), "no room"),
-        (lambda: BOX.fillet(BOX.edges().parallel("x"), 1.01), "no room"),
+        (lambda: BOX.chamfer(BOX.edges(), 1.01), r"faces at \("),
+        (lambda: BOX.chamfer(BOX.edges(), 5), "too small"),
+        (lambda: BOX.chamfer(BOX.edges().parallel("x"), 1.01), "too small"),
+        (lambda: BOX.fillet(BOX.edges(), 1.01), "too small"),
+        (lambda: BOX.fillet(BOX.edges().parallel("x"), 1.01), "too small"),
         (lambda: STAR.chamfer(STAR.edges(), 0.1), "more than three convex and concave"),
-        (lambda: FLUSH.fillet(FLUSH.edges(), 0.25), r"no room at \(1\.82222, 2\.01192, 4\)"),
+        (
+            lambda: FLUSH.fillet(FLUSH.edges(), 0.25),
+            r"faces at \(1\.82222, 2\.01192, 4\)",
+        ),
         (lambda: BOX.chamfer(STEP.edges(), 0.1), "another solid"),
         (lambda: BOX.chamfer(cast("Any", [0]), 0.1), "selection"),
         (lambda: BOX.chamfer(BOX.edges(), 0), "above 0"),
         (lambda: BOX.chamfer(BOX.edges(), math.nan), "finite"),
         (lambda: BOX.fillet(BOX.edges(), -1), "above 0"),
-        (lambda: BOX.fillet(BOX.edges(), 0.1, 3), "from 4"),
+        (lambda: BOX.fillet(BOX.edges(), 0.1, 3), "at least 4"),
         (lambda: STAR.chamfer(STAR.edges().where(lambda e: e.is_convex), 0.1), "more than three"),
     ],
 )
@@ -583,14 +589,14 @@ def test_a_hole_near_an_edge_leaves_no_room() -> None:
     edge = plate.edges().where(lambda e: (e.middle[:, [0, 2]] == [0, 2]).all(axis=1))
     assert len(edge) == 1
     assert plate.chamfer(edge, 0.9).volume == pytest.approx(plate.volume - 0.9**2 / 2 * 10)
-    with pytest.raises(b.InvalidParameterError, match=r"no room at \(0, 5, 2\)") as caught:
+    with pytest.raises(b.InvalidParameterError, match=r"faces at \(0, 5, 2\)") as caught:
         plate.chamfer(edge, 1.1)
     assert caught.value.where
 
 
 def test_many_edges_are_refused() -> None:
     ball = b.sphere(10, segments=160)
-    with pytest.raises(b.LimitError, match="edges are chosen"):
+    with pytest.raises(b.LimitError, match="edges are selected"):
         ball.chamfer(ball.edges(all=True), 1e-4)
 
 
@@ -630,7 +636,7 @@ def test_blends_may_take_all_of_a_face(verb: str, share: float) -> None:
         nearly = getattr(body, verb)(rim, room * (1 - 1e-6))
         assert full.volume == pytest.approx(nearly.volume, rel=1e-5)
         assert full.surface_count == 1 and full.to_mesh().certificate.ok
-        with pytest.raises(b.InvalidParameterError, match="no room"):
+        with pytest.raises(b.InvalidParameterError, match="too small"):
             getattr(body, verb)(rim, room * 1.001)
 
 

@@ -87,7 +87,7 @@ def test_errors_and_findings_of_any_kind() -> None:
     assert json.dumps(found.message, ensure_ascii=False) == '"a\ufffdb"'
 
 
-# Found: a file that was not there was no FileNotFoundError.
+# Found: the error for a missing file was not a `FileNotFoundError`.
 @pytest.mark.parametrize(
     "call",
     [

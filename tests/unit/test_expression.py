@@ -180,10 +180,11 @@ def test_a_profile_tells_the_stages_and_why_work_was_handed_on() -> None:
     assert pair.handed_on is None
     step = (b.cube(2) - b.cube(1) - b.cube(1).translate(1.5, 1.5, 1.5)).profile()
     assert [stage.name for stage in step.stages] == ["descent"]
-    assert "two different meshes" in str(step)
+    assert "two different, unchanged" in str(step)
     apart = (cube | b.cube(1).translate(5, 5, 5)).profile()
     assert "apart" in (apart.handed_on or "")
     assert (
-        str(apart).splitlines()[-1] == "left to the descent: the boxes around the meshes are apart"
+        str(apart).splitlines()[-1]
+        == "left to the descent: the bounding boxes of the meshes do not overlap"
     )
     assert cube.profile().lines() == []

@@ -57,9 +57,9 @@ def test_holes_lean_into_the_material() -> None:
     assert solid.genus == 1
 
 
-# Found: scaled extrusions of contours that cross, or with unequal scales, were vouched for though
-# their meshes crossed themselves, and had wrong or negative volumes; flat cones thinner than the
-# lattice were not empty.
+# Found: scaled extrusions of contours that cross, or with unequal scales, were marked as trusted
+# though their meshes crossed themselves, and had wrong or negative volumes; flat cones thinner than
+# the lattice were not empty.
 def test_contours_that_cross_are_united_as_they_shrink() -> None:
     two = [[(0, 0), (2, 0), (2, 2), (0, 2)], [(1, 1), (3, 1), (3, 3), (1, 3)]]
     bow = [(0, 0), (2, 2), (2, 0), (0, 2)]
@@ -124,13 +124,13 @@ def test_gaps_that_close_outwards(taper: float) -> None:
 @pytest.mark.parametrize(
     ("figure", "options", "words"),
     [
-        (SQUARE, {"taper": 45, "twist": 10}, "no room at"),
-        (SLOTTED, {"taper": -60, "scale": 2}, "no room at"),
+        (SQUARE, {"taper": 45, "twist": 10}, "too large at the corner"),
+        (SLOTTED, {"taper": -60, "scale": 2}, "too large at the corner"),
         (SQUARE, {"taper": 90}, "taper must be"),
-        (SQUARE, {"scale": -1}, "scale must not be below 0"),
-        (SQUARE, {"scale": (1, 2, 3)}, "scale must be one number or two"),
+        (SQUARE, {"scale": -1}, "scale must be at least 0"),
+        (SQUARE, {"scale": (1, 2, 3)}, "scale must be one number or a pair"),
         (SQUARE, {"slices": 0}, "slices must be"),
-        (SQUARE, {"twist": math.inf}, "twist must be finite"),
+        (SQUARE, {"twist": math.inf}, "twist must be a finite"),
         (SQUARE, {"twist": 1, "slices": 10**9}, "corners"),
     ],
 )

@@ -81,10 +81,10 @@ def test_a_file_is_listed_once() -> None:
         ("(a", 2, "expected an operator or “)”"),
         ("a)", 1, "expected an operator or the end"),
         ("()", 1, "expected a file name"),
-        ("a | 'b", 4, "never closed"),
-        ('a | ""', 4, "no name"),
-        ("(" * 500 + "a" + ")" * 500, 101, "too deep"),
-        ("~" * 500 + "a", 101, "too deep"),
+        ("a | 'b", 4, "no closing mark"),
+        ('a | ""', 4, "is empty"),
+        ("(" * 500 + "a" + ")" * 500, 101, "nested deeper"),
+        ("~" * 500 + "a", 101, "nested deeper"),
     ],
 )
 def test_errors_point_at_the_place(text: str, column: int, words: str) -> None:

@@ -60,7 +60,9 @@ def test_holes_follow_each_other_on_one_face() -> None:
     top = PLATE.faces().sort_by("z")[-1]
     made = PLATE.hole(top, (5, 5, 5), d=4).hole(top, (25, 5, 5), d=4)
     assert made == PLATE.hole(top, [(5, 5, 5), (25, 5, 5)], d=4)
-    with pytest.raises(b.InvalidParameterError, match=r"no such face at the point \(5, 5, 5\)"):
+    with pytest.raises(
+        b.InvalidParameterError, match=r"no face in the plane of the hole at the point \(5, 5, 5\)"
+    ):
         made.hole(top, (5, 5, 5), d=6)
 
 
@@ -78,22 +80,22 @@ BORE = PLATE.hole(TOP, d=4).faces().filter(lambda f: ~f.is_flat)
 @pytest.mark.parametrize(
     ("call", "word"),
     [
-        (lambda: PLATE.hole(TOP), "A hole needs r, or d"),
-        (lambda: PLATE.hole(TOP, d=4, r=2), "not both"),
-        (lambda: PLATE.hole(TOP, d=-4), "d must not be below 0"),
+        (lambda: PLATE.hole(TOP), "A hole needs a radius or a diameter"),
+        (lambda: PLATE.hole(TOP, d=4, r=2), "give one of them"),
+        (lambda: PLATE.hole(TOP, d=-4), "d must be at least 0"),
         (lambda: PLATE.hole(TOP, d=4, depth=0), "depth must be above 0"),
-        (lambda: PLATE.hole(PLATE.faces(), d=4), "Select one face; these are 6"),
-        (lambda: PLATE.hole(BORE, d=4), "The face is round"),
+        (lambda: PLATE.hole(PLATE.faces(), d=4), "Exactly one face must be selected, but 6 are"),
+        (lambda: PLATE.hole(BORE, d=4), "The selected face is curved"),
         (lambda: PLATE.hole(PLATE.edges(), d=4), "face must be a selection"),  # type: ignore[arg-type]
-        (lambda: b.cube(5).hole(TOP, d=4), "no such face at the point"),
-        (lambda: PLATE.hole(TOP, (5, 5, 4), d=4), r"no such face at the point \(5, 5, 4\)"),
+        (lambda: b.cube(5).hole(TOP, d=4), "no face in the plane of the hole at the point"),
+        (lambda: PLATE.hole(TOP, (5, 5, 4), d=4), r"at the point \(5, 5, 4\)"),
         (lambda: PLATE.hole(TOP, (31, 5, 5), d=4), r"point \(31, 5, 5\)"),
         (lambda: PLATE.hole(TOP, (5, 5), d=4), "three finite numbers"),
         (lambda: PLATE.counterbore(TOP, d=4, head_d=4, head_depth=1), "head must be wider"),
-        (lambda: PLATE.counterbore(TOP, d=4, head_depth=1), "head_d or as head_r"),
+        (lambda: PLATE.counterbore(TOP, d=4, head_depth=1), "exactly one of head_r and head_d"),
         (lambda: PLATE.counterbore(TOP, d=4, head_d=8, head_depth=2, depth=2), "depth must be"),
         (lambda: PLATE.countersink(TOP, d=4, head_d=8, angle=180), "between 0 and 180"),
-        (lambda: PLATE.countersink(TOP, d=4, head_d=8, depth=1), "depth must be more than that"),
+        (lambda: PLATE.countersink(TOP, d=4, head_d=8, depth=1), "depth must be greater"),
     ],
 )  # fmt: skip
 def test_holes_refuse_what_makes_no_sense(call: Any, word: str) -> None:

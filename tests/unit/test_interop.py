@@ -248,7 +248,9 @@ def test_options_reach_the_solid() -> None:
 # Found: options given with a solid, as `Solid.from_mesh(solid, pitch=…)`, did nothing.
 @pytest.mark.parametrize("solid", [b.cube(1), b.Assembly("", b.cube(1))])
 def test_options_are_refused_where_they_would_do_nothing(solid: Any) -> None:
-    with pytest.raises(b.InvalidParameterError, match=f"^pitch: .* {type(solid).__name__} is a"):
+    with pytest.raises(
+        b.InvalidParameterError, match=f"^pitch .* of type {type(solid).__name__}\\."
+    ):
         b.Solid.from_mesh(solid, pitch=-6)
     assert b.Solid.from_mesh(solid).volume == 1
 
@@ -289,7 +291,7 @@ def test_bytes_and_open_files(tmp_path: Path, suffix: str) -> None:
     [
         (b"OFF", None, "unknown_format", "one of .*, not None"),
         (b"OFF", "step", "unknown_format", "not 'step'"),
-        (io.StringIO("OFF"), "off", "unreadable", "mode 'rb'"),
+        (io.StringIO("OFF"), "off", "unreadable", r"open\(path, 'rb'\)"),
         (b"", "off", "empty_file", "<bytes>: the file is empty"),
         (b"OFF", "off", "syntax", "<bytes>"),
     ],

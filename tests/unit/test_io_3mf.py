@@ -119,7 +119,7 @@ def test_refused_models(tmp_path: Path, old: str, new: str, code: str) -> None:
 MATERIALS = 'xmlns:m="http://schemas.microsoft.com/3dmanufacturing/material/2015/02"'
 
 
-# Found: what was wrong with an element was told twice, at line 1 and as a fault of its encoding.
+# Found: a fault of an element was reported twice, at line 1 and as a fault of the encoding.
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
@@ -153,7 +153,7 @@ def test_documents_that_are_refused_keep_their_line(tmp_path: Path, document: st
     assert message.count("3dmodel.model") == 1
 
 
-# Found: a colour that does not exist was told as damage of the archive.
+# Found: a reference to a colour that does not exist was reported as a damaged archive.
 @pytest.mark.parametrize(
     "group",
     [
@@ -221,7 +221,7 @@ def test_parts_that_unpack_to_too_much(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(threemf, "_MIN_BYTE_LIMIT", 1000)
     path = package(tmp_path / "bomb.3mf", model(CUBE, ITEM) + " " * 10**7)
     assert path.stat().st_size < 20_000
-    assert "unpacks to far more" in refusal(path, path.read_bytes(), "too_large")
+    assert "unpacks to too much data" in refusal(path, path.read_bytes(), "too_large")
 
 
 def test_archives_of_too_many_parts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -270,7 +270,7 @@ def test_objects_outside_the_build_are_told(tmp_path: Path) -> None:
     other = CUBE.replace('id="1"', 'id="2"')
     raw = read(package(tmp_path / "x.3mf", model(CUBE + other, ITEM)))
     assert [finding.message for finding in raw.findings] == [
-        "1 objects outside the build were ignored."
+        "1 objects that the build does not use were ignored."
     ]
     assert raw.passed_by and len(raw.faces) == 12
 

@@ -15,7 +15,7 @@ from support.shapes import cube
 FORMS = [(suffix, False) for suffix in FORMATS] + [(".stl", True), (".ply", True)]
 
 
-# Found: it could not read its own empty file.
+# Found: `load` could not read the file that `save` had written of an empty solid.
 @pytest.mark.parametrize(("suffix", "text"), FORMS)
 def test_save_and_load(tmp_path: Path, suffix: str, text: bool) -> None:
     path = tmp_path / f"x{suffix}"
@@ -81,7 +81,7 @@ def test_on_the_command_line(
     name = f"e{suffix}"
     assert ran(capsys, "difference", "a.off", "a.off", "-o", name, "--allow-empty")[0] == 0
     code, _, err = ran(capsys, "union", "a.off", name, "-o", "u.ply")
-    assert code == 0 and f"note: {name}: this file is the empty set" in err
+    assert code == 0 and f"note: {name}: this file represents the empty set" in err
     assert b.load("u.ply").equals(b.Solid(*cube()))
     for other in FORMATS:
         assert ran(capsys, "convert", name, "-o", f"c{other}")[0] == 0

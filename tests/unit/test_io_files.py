@@ -57,11 +57,11 @@ def refused_pointer(call: Callable[[], object], name: object) -> None:
     with pytest.raises(FormatError) as caught:
         call()
     assert caught.value.code == "unreadable"
-    assert caught.value.message.startswith(f"{name}: this is a pointer of Git LFS")
+    assert caught.value.message.startswith(f"{name}: the file is a Git LFS pointer")
     assert "git lfs pull" in caught.value.message
 
 
-# Found: a pointer of Git LFS was told as a mesh cut off, or as an OBJ without vertices.
+# Found: a pointer file of Git LFS was reported as a truncated mesh, or as an OBJ without vertices.
 @pytest.mark.parametrize("suffix", FORMATS)
 @pytest.mark.parametrize(
     "data", [POINTER, POINTER.replace(b"\n", b"\r\n"), POINTER.replace(b"git-lfs", b"hawser")]
@@ -259,7 +259,7 @@ def test_real_files(shared_meshes: Path) -> None:
 def test_open_pipes_are_no_ordinary_files() -> None:
     read_end, write_end = os.pipe()
     try:
-        with pytest.raises(FormatError, match="it is no ordinary file"):
+        with pytest.raises(FormatError, match="it is not an ordinary file"):
             write_file(f"/dev/fd/{write_end}", [b"x"])
     finally:
         os.close(read_end)

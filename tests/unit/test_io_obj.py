@@ -51,7 +51,8 @@ def test_names_may_end_in_a_backslash(tmp_path: Path, line: str, name: str) -> N
     assert (raw.name, len(raw.vertices)) == (name, 4)
 
 
-# Found: groups whose names end so took a vertex, a face or a material with them.
+# Found: groups of an OBJ whose names end in a backslash swallowed a vertex, a face or a material
+# after them.
 @pytest.mark.parametrize("word", ["g", "o", "usemtl", "mtllib", "usemap", "shadow_obj"])
 @pytest.mark.parametrize("name", ["part\\", "one two\\", "part \\", "part\\\n# a comment"])
 @pytest.mark.parametrize("second", ["v 9 9 9", "f 1 2 3", "vn 0 0 1", "l 1 2"])
@@ -203,14 +204,14 @@ def test_materials_are_found_by_names_of_any_kind(first: str, second: str) -> No
     assert not raw.dropped and not raw.findings
 
 
-# Found: names of materials in Latin-1 became one name.
+# Found: names of materials that differ only in Latin-1 characters became one name.
 def test_names_that_are_no_utf_8_stay_apart() -> None:
     library = "newmtl \xe4\nKd 1 0 0\nnewmtl \xf6\nKd 0 0 1\n".encode("latin-1")
     text = f"mtllib m.mtl\n{SQUARE}usemtl \xe4\nf 1 2 3\nusemtl \xf6\nf 1 3 4\n".encode("latin-1")
     assert colors(decoded("x.obj", text, ".obj", {"m.mtl": library})) == [RED, BLUE]
 
 
-# Found: a library of materials lost its first by a byte order mark.
+# Found: a byte order mark hid the first material of a library.
 def test_a_byte_order_mark_hides_no_material() -> None:
     library = "\ufeffnewmtl a\nKd 1 0 0\n".encode()
     assert colors(painted(["a", "a"], {"m.mtl": library})) == [RED, RED]

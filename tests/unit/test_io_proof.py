@@ -111,7 +111,7 @@ def test_faults_are_found(
         write(assembly(), path, text=text)
     expected = {"write_mismatch", "unwritable"} if fault == "no triangles" else {"write_mismatch"}
     assert caught.value.code in expected
-    assert caught.value.message.startswith((str(path), "A mesh without faces"))
+    assert caught.value.message.startswith((str(path), "The mesh has no faces"))
     assert path.read_bytes() == b"as it was" and list(tmp_path.iterdir()) == [path]
 
 

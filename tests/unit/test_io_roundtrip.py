@@ -33,7 +33,7 @@ def test_single_formats_give_the_rounded_set(tmp_path: Path, suffix: str) -> Non
     assert b.load(path).equals(b.Solid(rounded, part.faces))
     lost = losses_between(RawMesh(part.vertices, part.faces), read(path))
     assert lost.shift is not None and 0 < lost.shift < 1e-6
-    assert len(lost.sentences()) == 1 and "coordinates moved" in lost.sentences()[0]
+    assert len(lost.sentences()) == 1 and "coordinates changed" in lost.sentences()[0]
 
 
 @pytest.mark.parametrize("suffix", [".3mf", ".glb", ".obj", ".stl"])
@@ -50,7 +50,7 @@ def test_names_that_are_gone_are_told(tmp_path: Path) -> None:
     write(mesh, tmp_path / "x.ply")
     lost = losses_between(mesh, read(tmp_path / "x.ply"))
     assert lost.names == ("lid", "body") and lost.any
-    assert lost.sentences() == ["names gone: “lid”, “body”"]
+    assert lost.sentences() == ["names of objects: “lid”, “body”"]
 
 
 def test_3mf_says_millimetres_and_nothing_else(tmp_path: Path) -> None:

@@ -157,7 +157,7 @@ def test_what_old_files_call_a_modifier(tmp_path: Path) -> None:
     path = packed(tmp_path / "x.3mf", objects, '<item objectid="1"/>', prusa=said)
     assert b.load(path).volume == 64
     assert read(path).passed_by == (
-        "1 modifiers of a slicer, which are no material, were ignored.",
+        "1 modifiers of a slicer, which are not material, were ignored.",
     )
 
 
@@ -209,9 +209,9 @@ def test_what_there_is_nothing_to_take_away_from_is_told(tmp_path: Path) -> None
     )
     assert b.load(path).volume == 64
     (told,) = read(path).findings
-    assert told.code == "ignored" and told.message.endswith("object 2 is no mesh.")
+    assert told.code == "ignored" and told.message.endswith("object 2 is not a mesh.")
     for make, kind in ((prusa, "NegativeVolume"), (bambu, "negative_part")):
-        with pytest.raises(b.InvalidMeshError, match=r"negative volumes .* there is nothing"):
+        with pytest.raises(b.InvalidMeshError, match=r"negative volumes .* there is no part"):
             b.load(make(tmp_path / "x.3mf", [(BODY, kind)]))
 
 
@@ -252,7 +252,7 @@ def test_settings_that_cannot_be_read_are_told(tmp_path: Path, said: str) -> Non
     path = packed(tmp_path / "x.3mf", objects, '<item objectid="1"/>', prusa=said)
     assert b.load(path).volume == 64
     (told,) = read(path).passed_by
-    assert told.startswith("the settings of a slicer cannot be read")
+    assert told.startswith("the settings of a slicer in the file cannot be read")
 
 
 def test_numbers_out_of_range_and_kinds_that_are_not_known(tmp_path: Path) -> None:

@@ -45,7 +45,7 @@ def test_binary_that_begins_with_solid(tmp_path: Path) -> None:
 
 def test_truncated_binary_that_begins_with_solid(tmp_path: Path) -> None:
     message = refusal(tmp_path / "cut.stl", binary_stl(cube_corners(), b"solid")[:-70], "truncated")
-    assert "ends in triangle 10" in message and "promises 12" in message
+    assert "ends in triangle 10" in message and "says 12" in message
 
 
 @pytest.mark.parametrize("size", [1, 79, 83, 84, 133, 683])

@@ -100,7 +100,7 @@ def test_off_whose_numbers_of_vertices_are_floats(tmp_path: Path, old: str, new:
     message = refusal(
         tmp_path / "x.off", f"OFF\n8 12 0\n{POINTS}{FACES.replace(' 0 ', ' 0.5 ')}", "syntax"
     )
-    assert "whole numbers" in message
+    assert "integer vertex indices" in message
 
 
 def test_colours_of_off_with_its_numbers_beside_the_keyword(tmp_path: Path) -> None:
@@ -176,7 +176,7 @@ def test_ply_as_text(tmp_path: Path, text: str) -> None:
 def test_lines_of_a_header_that_are_no_statements_are_told(tmp_path: Path, line: str) -> None:
     raw = read_text(tmp_path / "x.ply", ply(f"{line}\n") + POINTS + FACES)
     assert is_cube(raw)
-    assert raw.passed_by == ("1 lines of the header are no statements, and were ignored.",)
+    assert raw.passed_by == ("1 lines of the header have no PLY keyword and were ignored.",)
     assert raw.findings[0].where == (3,)
 
 
@@ -234,4 +234,4 @@ def test_bad_corners_of_strips_name_their_line(tmp_path: Path) -> None:
         rows = [*STRIPS, [0, 1, bad]]
         path = tmp_path / "x.ply"
         message = refusal(path, strips_ply("ascii", rows), "index_out_of_range")
-        assert f"vertex {bad} " in message and f":{9 + 8 + 7}: " in message
+        assert f"vertex index {bad} " in message and f":{9 + 8 + 7}: " in message

@@ -183,9 +183,9 @@ def test_regions_of_very_different_sizes_combine_where_no_corner_moves() -> None
     assert (small & b.Region.half_plane((1, 0), 1e9)) == small
     fine = b.Region.rectangle(1e-8, 1)
     assert fine != large
-    with pytest.raises(b.LimitError, match="that the corners of another need"):
+    with pytest.raises(b.LimitError, match="that the corners of another region need"):
         fine | large
-    with pytest.raises(b.LimitError, match="that the corners of another need"):
+    with pytest.raises(b.LimitError, match="that the corners of another region need"):
         b.Region.compose([fine, large])
 
 

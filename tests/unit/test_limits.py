@@ -54,7 +54,9 @@ def test_absurd_numbers_are_refused_at_once(make: Callable[[], Any]) -> None:
     ],
 )
 def test_what_fits_no_common_lattice_is_refused(make: Callable[[], Any]) -> None:
-    with pytest.raises(b.LimitError, match=r"does not fit the lattice of 2\^53 steps") as caught:
+    with pytest.raises(
+        b.LimitError, match=r"lattice of 2\^53 steps|beyond the 2\^53 steps"
+    ) as caught:
         make()
     assert caught.value.code == "too_large"
 
@@ -116,7 +118,7 @@ def refused(data: bytes) -> b.FormatError:
 def test_archives_that_grow_too_much_are_refused_unread() -> None:
     data = bomb(1 << 27)
     tracemalloc.start()
-    assert "unpacks to far more" in str(refused(data))
+    assert "unpacks to too much data" in str(refused(data))
     _, most = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert most < 1 << 23
@@ -138,7 +140,7 @@ def test_many_small_parts_count_together() -> None:
     inner = part.replace(b"<resources/>", b'<resources><object id="1"><mesh/></object></resources>')
     root = f"<model><build>{items}</build></model>".encode()
     data = packed({"3D/3dmodel.model": root} | dict.fromkeys(names, inner))
-    assert "unpacks to far more" in str(refused(data))
+    assert "unpacks to too much data" in str(refused(data))
 
 
 def test_archives_of_too_many_parts_are_refused() -> None:

@@ -132,12 +132,12 @@ def test_sums_refuse_what_is_unbounded_or_too_large() -> None:
 
 def test_sums_refuse_what_would_take_all_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(touching, "_MAX_PIECE_FACES", 100)
-    with pytest.raises(b.LimitError, match="choose coarser") as caught:
+    with pytest.raises(b.LimitError, match="choose solids with fewer faces") as caught:
         b.minkowski(frame(), b.cube(1))
     assert caught.value.code == "too_large"
 
 
-# Found: more than 2 000 faces were refused.
+# Found: sums of solids with more than 2 000 faces were refused.
 def test_sums_of_many_faces() -> None:
     ball = b.hull(b.sphere(10, segments=80))
     sum_of_hollow = b.minkowski(ball - b.cube(2), b.cube(1))
@@ -391,8 +391,8 @@ def test_round_edges() -> None:
     assert b.cube(1).rounded(0.6).is_empty
 
 
-# Found: `offset(0)` passed by its `segments`, and `offset(1e-25)` told of a mesh that nobody
-# gave.
+# Found: `offset(0)` did not check `segments`, and the error of `offset(1e-25)` named a mesh that
+# nobody had given.
 @pytest.mark.parametrize(
     "verb",
     [

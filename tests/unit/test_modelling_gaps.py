@@ -176,7 +176,7 @@ def test_squares_of_small_and_large_gaps() -> None:
     assert Fraction(b.cube(1e6).min_gap(b.cube(1e6).translate(3e6, 0, 0))) == 2_000_000
 
 
-# Found: `closest_points` of solids whose common part is too thin for doubles ended in an
+# Found: `closest_points` of solids whose common part is so thin for doubles ended in an
 # `IndexError`.
 def test_what_is_common_may_be_too_thin_for_doubles() -> None:
     far = 8e6
@@ -185,5 +185,5 @@ def test_what_is_common_may_be_too_thin_for_doubles() -> None:
     corner = b.box(2, 2, 1).translate(far - 1, far - 1, 0) & cut
     box = b.box(1, 1, 1).translate(far, far, 0)
     assert corner.min_gap(box) == 0
-    with pytest.raises(b.LimitError, match="too thin"):
+    with pytest.raises(b.LimitError, match="so thin"):
         corner.closest_points(box)

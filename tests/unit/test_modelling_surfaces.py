@@ -137,7 +137,8 @@ def shaken(by: float) -> Callable[[Any], Any]:
     return lambda p: p + by * rng.normal(size=p.shape)
 
 
-# Found: it took from 6 to 60 s to tell, first for all pairs and then for what no mending can part.
+# Found: the refusal of faces that pierce others took 6 to 60 s: first all pairs were found, and
+# then those that no mending can separate.
 @pytest.mark.parametrize(
     ("body", "f"),
     [

@@ -19,7 +19,7 @@ def test_public_functions_are_the_ones_of_their_modules() -> None:
     assert b.union.__name__ == "union" and (b.Solid.__or__.__doc__ or "").startswith("Union")
 
 
-# Found: `dir` leaked what is not public.
+# Found: `dir` listed names that are not public.
 def test_dir_shows_public_names_only() -> None:
     names = dir(b)
     assert set(b.__all__) <= set(names)

@@ -70,8 +70,8 @@ def test_a_sheet_of_slivers_is_looked_at_at_once() -> None:
         assert seconds(solid.normalized) < 2
 
 
-# Found: a mesh in one plane that crosses itself took as long as its crossings are many, though it
-# bounds nothing.
+# Found: a mesh in one plane that crosses itself took time proportional to the number of crossings,
+# though it bounds nothing.
 @pytest.mark.parametrize("winding", ["positive", "nonzero", "even-odd"])
 def test_what_lies_in_one_plane_and_crosses_itself_bounds_nothing(winding: WindingRule) -> None:
     flat = stack(40, 111, 0)
@@ -108,7 +108,8 @@ def test_thin_layers_with_a_plane_in_common_are_combined_at_once() -> None:
     assert seconds(lambda: rest(160).volume_exact) < 4
 
 
-# Found: needles cost their square in the checks of meshes and results, turned or not.
+# Found: the time of checks of meshes and results grew with the square of the number of needles,
+# rotated or not.
 @pytest.mark.deep
 @pytest.mark.parametrize(
     ("few", "make"),

@@ -96,7 +96,7 @@ def test_without_pillow_there_are_no_pixels(monkeypatch: pytest.MonkeyPatch) -> 
     assert b.cube(1)._repr_png_() is None and "<svg" in str(b.cube(1)._repr_svg_())
 
 
-# Found: `PartitionTree` was text in notebooks, and traces printed thousands of characters.
+# Found: `PartitionTree` was shown as text in notebooks, and traces printed thousands of characters.
 def test_trees_in_the_plane_are_pictures() -> None:
     tree = b.bsp.PartitionTree([[(0, 0), (2, 1)], [(1, 0), (1, 3)]])
     drawn = tree._repr_svg_()

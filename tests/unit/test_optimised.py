@@ -70,7 +70,7 @@ def findings() -> Iterator[object]:
             yield b.load(path).volume_exact, run(["check", path]), run(["check", f"{path}.none"])
 
 
-# Found: `python -O` removed what an `assert` did.
+# Found: `python -O` removed work that was done inside an `assert`.
 def test_a_little_of_each_layer_works_without_asserts_and_docstrings() -> None:
     ended = subprocess.run(
         [sys.executable, "-OO", __file__],

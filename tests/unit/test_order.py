@@ -71,8 +71,8 @@ def woven(operands: list[b.Solid], seed: int, ask: Callable[[b.Solid], object]) 
     return pool[0]
 
 
-# Found: a volume that was asked for on the way changed the order of vertices and triangles in the
-# file.
+# Found: querying the volume of an intermediate solid changed the order of vertices and triangles in
+# the file.
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize("combine", [folded, woven])
 @pytest.mark.parametrize("make", [balls, boxes])

@@ -38,7 +38,7 @@ def test_triangles_name_faces_that_hold_their_centres(axis: int) -> None:
     assert len(centres) > 1500 and shares(named, centres).min() > -1e-6
 
 
-# Found: plates with many holes cost their square where their mesh is made.
+# Found: the time to make the mesh of a plate grew with the square of the number of its holes.
 @pytest.mark.deep
 def test_many_holes_cost_each_alike() -> None:
     times = {}

@@ -84,7 +84,7 @@ def test_parameters_have_an_error_of_their_own() -> None:
     mesh = refusal(lambda: b.Solid([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
     assert type(mesh) is b.InvalidMeshError
 
-    # Found: `pitch`, `threads` of other types were raw errors.
+    # Found: a `pitch` or `threads` of another type ended in a raw error of Python.
 
 
 @pytest.mark.parametrize("make", PITCHED.values(), ids=PITCHED)
@@ -134,7 +134,7 @@ def test_large_seeds_keep_all_their_digits() -> None:
     assert seed_number(2**64 + 5) == 5
 
 
-# Found: `margin=-5` became 0, and NaN was told twice.
+# Found: `margin=-5` became 0, and an error about NaN appeared twice.
 @pytest.mark.parametrize("call", WITH_MARGIN.values(), ids=WITH_MARGIN)
 def test_margins(call: Callable[[Any], Any]) -> None:
     for margin in (-5, -1e-300, np.nan, np.inf, "1", True):

@@ -154,7 +154,8 @@ def cone(sides: int) -> b.Solid:
     return b.Solid(np.concatenate([[[0, 0, 0], [0, 0, 10]], rim]), np.concatenate([base, mantle]))
 
 
-# Found: the mates of edges cost the square of the faces around a vertex, deaf to signals.
+# Found: pairing the edges around a vertex took time quadratic in the number of its faces, and did
+# not respond to signals.
 def test_faces_around_a_corner_cost_each_alike() -> None:
     times = {}
     for sides in (4_000, 16_000):

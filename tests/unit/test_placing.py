@@ -254,7 +254,8 @@ def with_flat(flat: list[tuple[int, int, int]]) -> RawMesh:
     return RawMesh(np.vstack([vertices, middle]), np.vstack([faces, more]))
 
 
-# Found: where a file's unit or place rounds, triangles without area were gone in silence.
+# Found: where a file's unit or placement rounds coordinates, triangles without area were dropped
+# without a finding.
 @pytest.mark.parametrize("flat", [[(0, 0, 1)], [(0, 2, 1)], [(0, 0, 0), (0, 2, 1), (1, 1, 0)]])
 @pytest.mark.parametrize("place", ["unit", "turned", "kept", "rescaled"])
 def test_triangles_without_area_are_kept_or_told(

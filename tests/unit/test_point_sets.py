@@ -87,7 +87,7 @@ def same(kind: Kind) -> list[Any]:
     ]
 
 
-# Found: regions were equal by identity only.
+# Found: regions compared by identity only.
 @every_kind
 def test_equal_sets_are_equal_however_they_were_made(kind: Kind) -> None:
     for a in same(kind):
@@ -235,5 +235,5 @@ def test_partition_trees_are_equal_if_facets_and_cuts_are() -> None:
 # Found: `() in` a set raised an `IndexError`.
 @every_kind
 def test_nothing_is_no_point(kind: Kind) -> None:
-    with pytest.raises(b.InvalidParameterError, match="A point has coordinates"):
+    with pytest.raises(b.InvalidParameterError, match="A point must be one tuple of coordinates"):
         _ = () in kind.box(0, 1)

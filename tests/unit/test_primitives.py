@@ -242,7 +242,7 @@ def test_parameters_that_make_no_solid_are_refused(name: str) -> None:
     assert len(str(caught.value)) > 10
 
 
-# Found: half-spaces took spans of time for numbers.
+# Found: half-spaces accepted time spans as numbers.
 @pytest.mark.parametrize(
     "normal", [(0, 0, 0), (NAN, 0, 1), (1, 2), "up", 3, (0, 0, np.timedelta64(3))]
 )
@@ -271,20 +271,20 @@ def test_sizes_as_people_type_them() -> None:
 @pytest.mark.parametrize(
     ("call", "word"),
     [
-        (lambda: b.box(1, 2), "one edge length, or three"),
-        (lambda: b.box(1, z=2), "one edge length, or three"),
+        (lambda: b.box(1, 2), "one edge length or three"),
+        (lambda: b.box(1, z=2), "one edge length or three"),
         (lambda: b.box((1, 2, 3), 4, 5), "three"),
         (lambda: b.box(1, 2, 0), "above 0"),
         (lambda: b.box(1, True, 3), "one edge length"),
-        (b.sphere, "needs r"),
-        (lambda: b.sphere(1, d=2), "not both"),
-        (lambda: b.sphere(d=-2), "below 0"),
-        (lambda: b.cylinder(5), "needs r"),
-        (lambda: b.cylinder(5, 1, d=2), "not both"),
-        (lambda: b.cylinder(5, d1=2), "needs r"),
-        (lambda: b.cylinder(5, r1=1, d1=2, r2=1), "not both"),
+        (b.sphere, "needs a radius"),
+        (lambda: b.sphere(1, d=2), "give one of them"),
+        (lambda: b.sphere(d=-2), "at least 0"),
+        (lambda: b.cylinder(5), "needs a radius"),
+        (lambda: b.cylinder(5, 1, d=2), "give one of them"),
+        (lambda: b.cylinder(5, d1=2), "needs a radius"),
+        (lambda: b.cylinder(5, r1=1, d1=2, r2=1), "give one of them"),
         (lambda: b.cylinder(5, d=cast("Any", "2")), "number"),
-        (lambda: b.cone(5), "needs r"),
+        (lambda: b.cone(5), "needs a radius"),
     ],
 )
 def test_sizes_that_do_not_fit_are_refused(call: Callable[[], Any], word: str) -> None:
@@ -293,9 +293,9 @@ def test_sizes_that_do_not_fit_are_refused(call: Callable[[], Any], word: str) -
 
 
 def test_wrong_sizes_are_told_as_they_were_given() -> None:
-    with pytest.raises(b.InvalidParameterError, match=r"^d must not be below 0, but is -2"):
+    with pytest.raises(b.InvalidParameterError, match=r"^d must be at least 0, not -2"):
         b.cylinder(h=1, d=-2)
-    with pytest.raises(b.InvalidParameterError, match=r"^r must not be below 0, but is -2"):
+    with pytest.raises(b.InvalidParameterError, match=r"^r must be at least 0, not -2"):
         b.cylinder(h=1, r1=-2, r2=1)
 
 
@@ -329,9 +329,9 @@ def test_round_shapes_take_a_diameter(by_radius: Any, by_diameter: Any) -> None:
 )
 def test_round_shapes_need_one_radius_above_0(make: Callable[..., Any]) -> None:
     for given, words in (
-        ({"r": 1, "d": 2}, "not both"),
-        ({}, "needs r, or d"),
-        ({"d": -1}, "d must not be below 0"),
+        ({"r": 1, "d": 2}, "give one of them"),
+        ({}, "needs a radius or a diameter"),
+        ({"d": -1}, "d must be at least 0"),
         ({"d": 0}, "above 0"),
         ({"d": "2"}, "d must be a number"),
     ):

@@ -29,7 +29,7 @@ def ran(name: str, folder: Path, patience: float = 100, **environment: str) -> t
     return ended.stdout, ended.stderr
 
 
-# Found: a process that was forked after use waited for ever.
+# Found: a process that was forked after it had used the package waited for ever.
 @unix
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", ["fork", "preload", "with-fork", "with-forkserver"])
@@ -98,8 +98,8 @@ def test_small_operations_leave_no_memory_behind(tmp_path: Path) -> None:
     assert float(grown) < 20
 
 
-# Found: a symmetric difference of many operands in one place went a call deeper for each, to the
-# end of the stack.
+# Found: a symmetric difference of many operands in the same place used one nested call for each,
+# until the stack overflowed.
 @pytest.mark.parametrize("count", [75, pytest.param(300, marks=pytest.mark.deep)])
 def test_many_symmetric_differences_need_no_deep_stack(count: int, tmp_path: Path) -> None:
     ran(f"stack {count}", tmp_path)

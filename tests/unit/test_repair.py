@@ -103,7 +103,7 @@ def test_what_may_bound_something_is_no_fragment() -> None:
 # Found: `repair` of files without triangles, and of holes of 2^31 edges and more, ended in a
 # message of pymeshlab's binding.
 def test_nothing_cannot_be_repaired() -> None:
-    with pytest.raises(InvalidMeshError, match=r"scan: there is no triangle in it") as caught:
+    with pytest.raises(InvalidMeshError, match=r"scan: the mesh has no triangles") as caught:
         repair(RawMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64), "scan"))
     assert caught.value.code == "empty_mesh"
 

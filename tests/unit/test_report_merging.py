@@ -55,7 +55,7 @@ def test_versions_of_all_runs() -> None:
     [
         ("", "no case"),
         ('{"schema": 1, "type": "run"}\n', "run has no 'command'"),
-        ("solid cube\n", ":1: this is no line of a results file"),
+        ("solid cube\n", ":1: this line is not a record of a results file"),
         ('{"schema": 99, "type": "run"}\n', "schema 99"),
         ('{"schema": 1, "type": "case", "key": "k"}\n', "case has no 'bounds'"),
     ],
@@ -70,13 +70,16 @@ def test_what_is_no_results_file(tmp_path: Path, text: str, words: str) -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"operands": {}}, "case.operands is no list"),
+        ({"operands": {}}, "case.operands is not of type list"),
         ({"operands": [{"name": "a"}]}, r"case.operands\[0\] has no 'file'"),
-        ({"seconds": 3}, "case.seconds is no object"),
-        ({"memory_mb": "much"}, "case.memory_mb is no finite number"),
-        ({"memory_mb": float("nan")}, "case.memory_mb is no finite number"),
-        ({"verdict": None}, "case.verdict is no str"),
-        ({"hausdorff": {"forward": 0, "backward": 0, "samples": 1.5}}, "samples is no int"),
+        ({"seconds": 3}, "case.seconds is not a JSON object"),
+        ({"memory_mb": "much"}, "case.memory_mb is not a finite number"),
+        ({"memory_mb": float("nan")}, "case.memory_mb is not a finite number"),
+        ({"verdict": None}, "case.verdict is not of type str"),
+        (
+            {"hausdorff": {"forward": 0, "backward": 0, "samples": 1.5}},
+            "samples is not of type int",
+        ),
     ],
 )
 def test_a_case_of_another_form_is_named(

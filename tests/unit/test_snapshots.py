@@ -57,10 +57,8 @@ def test_bytes_of_the_version_before_are_read() -> None:
         loaded(bytes(newer) + zlib.crc32(newer).to_bytes(CHECKSUM, "little"))
 
 
-# Found: pickles held the meshes and attributes that nothing of a solid comes from (a unit cube
-# within a sphere: 2.4 MB), and such meshes kept it from being refined.
-# Found: pickles held the meshes and attributes that nothing of a solid comes from (a unit cube
-# within a sphere: 2.4 MB), and such meshes kept it from being refined.
+# Found: pickles contained meshes and attributes of inputs that contribute no face to the solid (a
+# unit cube within a sphere: 2.4 MB), and such meshes prevented the solid from being refined.
 def test_what_bounds_nothing_is_not_in_the_bytes() -> None:
     inside = b.cube(1).tagged(part=1) & b.sphere(5, segments=100).tagged(part=2)
     data = pickle.dumps(inside)
@@ -76,7 +74,6 @@ def test_what_bounds_nothing_does_not_keep_a_solid_in_its_place() -> None:
     assert refined.volume6_exact(100) == inside.volume6_exact(100)
 
 
-# Found: damaged snapshots were loaded, and panicked later.
 # Found: damaged snapshots were loaded, and panicked later.
 def test_any_damaged_byte_shows() -> None:
     data = solid().tree.dump()
@@ -129,9 +126,9 @@ def test_a_later_version_is_named() -> None:
 
 def test_a_snapshot_of_another_kind_is_refused() -> None:
     region = bsp.Region.circle(2) - bsp.Region.rectangle(1)
-    with core_errors(), pytest.raises(_core.CoreError, match="do not begin as one"):
+    with core_errors(), pytest.raises(_core.CoreError, match="do not start with its header"):
         _core.Tree.load(region._tree.dump())
-    with core_errors(), pytest.raises(_core.CoreError, match="do not begin as one"):
+    with core_errors(), pytest.raises(_core.CoreError, match="do not start with its header"):
         _core.ObjectTree.load(solid().tree.dump())
 
 

@@ -407,7 +407,7 @@ def test_errors_have_a_code_places_and_a_sentence() -> None:
     )
 
 
-# Found: errors told twenty digits.
+# Found: messages of errors had numbers of twenty digits.
 def test_messages_round_numbers() -> None:
     ball = b.sphere(1, segments=12).rotate((10, 20, 33))
     with pytest.raises(b.InvalidMeshError) as caught:
@@ -486,7 +486,7 @@ def test_operands_in_one_place_are_combined_without_dividing_space() -> None:
         assert counts["parts"] <= 12 * count, counts
 
 
-# Found: exact volumes grew without bound.
+# Found: exact volumes had no limit of digits.
 def test_exact_volumes_refuse_to_be_too_long() -> None:
     ball = b.sphere(1, segments=24)
     rest = ball - ball.rotate((10, 20, 30)).translate((0.1, 0.2, 0.3))
@@ -518,7 +518,7 @@ def test_solids_show_what_users_need_and_no_more() -> None:
     assert not inside & set(dir(b.Solid))
 
 
-# Found: small results of meshes of more than 16 384 faces lost whole faces.
+# Found: small results from meshes of more than 16 384 faces lacked whole faces.
 def test_little_of_a_large_mesh_is_whole() -> None:
     # Short lists are worked on outside of the pool, long meshes in chunks: both at once here.
     ball = b.sphere(10, segments=200)
@@ -570,7 +570,7 @@ def test_needle_fans_in_single_precision_are_measured_at_once() -> None:
     assert common.volume + joint.volume == pytest.approx(2 * volume, rel=1e-9)
 
 
-# Found: numbers in `mesh.source` depended on whether results on the way were asked for.
+# Found: the numbers in `mesh.source` depended on whether intermediate results had been queried.
 @pytest.mark.parametrize("asked", [False, True])
 def test_numbers_of_sources_do_not_tell_what_was_asked_for(asked: bool) -> None:
     def seen(solid: b.Solid) -> b.Solid:

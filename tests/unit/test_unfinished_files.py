@@ -69,7 +69,7 @@ def at_first(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(atomic, "_swept", set())
 
 
-# Found: kill -9 left hidden files of full size for ever.
+# Found: after kill -9, hidden files of full size stayed for ever.
 def test_files_of_the_dead_go_and_those_of_the_living_stay(tmp_path: Path) -> None:
     dead, living = begun(tmp_path), begun(tmp_path)
     kill(dead)

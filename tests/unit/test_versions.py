@@ -51,7 +51,7 @@ def test_the_tests_need_all_that_users_may_install() -> None:
     assert extras and requirements(*extras[1].split(",")) <= requirements("test")
 
 
-# Found: one format took a quarter of the room of an installation.
+# Found: the packages for one format took a quarter of the disk space of an installation.
 def test_drawings_of_one_format_are_an_extra() -> None:
     needed = {re.split(r"[<>=;]", each)[0] for each in requirements()}
     assert {"numpy", "manifold3d"} < needed and needed.isdisjoint({"ezdxf", "fonttools", "rtree"})

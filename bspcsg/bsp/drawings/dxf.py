@@ -79,9 +79,11 @@ def _names(layers: Any) -> set[str]:
     try:
         names = set(layers)
     except TypeError as error:
-        raise invalid_parameter(f"layers must be names, not {shown(layers)}.") from error
+        raise invalid_parameter(
+            f"layers must be a list of layer names, not {shown(layers)}."
+        ) from error
     if isinstance(layers, (str, bytes)) or not all(isinstance(name, str) for name in names):
-        raise invalid_parameter(f"layers must be a list of names, not {shown(layers)}.")
+        raise invalid_parameter(f"layers must be a list of layer names, not {shown(layers)}.")
     return names
 
 
@@ -97,7 +99,7 @@ def _wanted(names: set[str], document: Any, file: str) -> set[str]:
     unknown = sorted(name for name in names if name.casefold() not in there)
     if unknown:
         known = ", ".join(map(shown, sorted(there.values())))
-        message = f"{file}: there is no layer {shown(unknown[0])}; it has {known}."
+        message = f"{file}: the drawing has no layer {shown(unknown[0])}; its layers are {known}."
         raise FormatError(message, "unknown_name")
     return {name.casefold() for name in names}
 
@@ -161,8 +163,8 @@ def _without_time(options: Any) -> Iterator[None]:
 _BINARY = b"AutoCAD Binary DXF"
 
 _TEXT_OF_BINARY = (
-    "{}: this is a binary DXF; save it as a text DXF first, for example in Python with"
-    ' ezdxf.readfile("in.dxf").saveas("out.dxf").'
+    "{}: binary DXF files cannot be read; save it as a text DXF first, for example in Python"
+    ' with ezdxf.readfile("in.dxf").saveas("out.dxf").'
 )
 
 
@@ -177,7 +179,9 @@ def read_document(path: str | os.PathLike[str]) -> Any:
         text = _decoded(data.replace(b"\r\n", b"\n"))
         return ezdxf.document.Drawing.load(with_markers(io.StringIO(text)))
     except Exception as error:  # ezdxf raises errors of any type on damaged files
-        raise FormatError(f"{name}: this is no valid DXF: {words_of(error)}.", "syntax") from error
+        raise FormatError(
+            f"{name}: the file is not a valid DXF drawing: {words_of(error)}.", "syntax"
+        ) from error
 
 
 def _decoded(data: bytes) -> str:
@@ -257,7 +261,11 @@ def _joined(chains: list[FloatArray], places: Any, name: str) -> list[FloatArray
         if len(found) != 2:
             x, y = chains[found[0]][0 if places[found[0]][0] == place else -1]
             what = "open" if len(found) == 1 else "branching"
-            raise FormatError(f"{name}: an outline is {what} at ({x:g}, {y:g}).", "not_closed")
+            raise FormatError(
+                f"{name}: the outline of the region is not closed, for it is {what} at ({x:g},"
+                f" {y:g}); exactly two lines must meet there.",
+                "not_closed",
+            )
     loops, left = [], set(range(len(chains)))
     while left:
         loops.append(_walk(chains, places, at, left))

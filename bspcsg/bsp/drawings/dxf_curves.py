@@ -84,12 +84,12 @@ def _entities(layout: Any) -> Iterator[tuple[Any, str, bool]]:
             continue
         count += len(waiting) > 1
         if count > MAX_BLOCK_ENTITIES:
-            raise ValueError("its blocks hold too much")
+            raise ValueError(f"its nested blocks contain more than {MAX_BLOCK_ENTITIES} entities")
         layer = entity.dxf.get("layer") or ANY_LAYER
         layer = outer if layer == ANY_LAYER else layer
         if entity.dxftype() == _BLOCK and is_placed:
             if len(waiting) > _MAX_BLOCK_DEPTH:
-                raise ValueError("its blocks contain each other too often")
+                raise ValueError(f"its blocks are nested deeper than {_MAX_BLOCK_DEPTH} levels")
             waiting.append((inserted(entity), layer))
         else:
             yield entity, layer, is_placed
@@ -101,7 +101,7 @@ def inserted(insert: Any, *, rows: bool = True) -> Iterator[tuple[Any, bool]]:
     Each entity comes with True if it was transformed: ezdxf cannot transform all kinds.
     """
     if insert.block() is None:
-        raise ValueError(f"there is no block called “{insert.dxf.name}”")
+        raise ValueError(f"an INSERT refers to the block “{insert.dxf.name}”, which is not defined")
     if insert.mcount > 1 and rows:
         yield from ((one, True) for one in insert.multi_insert())
         return
@@ -170,7 +170,10 @@ def _chords(radius: float, turn: float, chord: float) -> int:
     half = 2 * math.asin(math.sqrt(min(chord / (2 * radius), 1.0))) if radius else math.pi
     count = math.ceil(abs(turn) / min(2 * half, math.pi / 2))
     if count > _MAX_ARC_CHORDS:
-        raise ValueError(f"an arc would have {count} chords; a larger tolerance leaves fewer")
+        raise ValueError(
+            f"an arc would be divided into {count} chords, more than {_MAX_ARC_CHORDS}; choose a"
+            " larger tolerance"
+        )
     return max(count, 1)
 
 

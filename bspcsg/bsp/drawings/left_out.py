@@ -41,7 +41,7 @@ class LeftOut:
     def surrounding(self, loops: list[FloatArray]) -> list[FloatArray]:
         """Return the loops with at least three different corners; count the others as omitted."""
         found = [loop for loop in loops if len(np.unique(loop, axis=0)) >= 3]
-        self.add("line that surrounds nothing", len(loops) - len(found))
+        self.add("line that encloses no area", len(loops) - len(found))
         self.outlines += len(found)
         return found
 
@@ -53,9 +53,9 @@ class LeftOut:
             return lacking.rstrip()
         reason = ""
         if self.outlines:
-            reason = ": its outlines cancel each other out, or have no area"
+            reason = ": its outlines cancel each other out, or enclose no area"
         elif not kinds:
-            reason = ": the drawing has nothing to fill"
+            reason = ": the drawing has no closed outline"
         return f"{lacking}{'The' if kinds else 'the'} region is empty{reason}."
 
     def _kinds(self) -> str:

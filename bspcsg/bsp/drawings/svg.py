@@ -126,7 +126,7 @@ def shown_shapes(
     try:
         root = ElementTree.fromstring(data)
         if name_of(root) != "svg":
-            raise ValueError("the outermost element is not svg")
+            raise ValueError("its root element is not <svg>")
         prepare(root)
         paths = _set_aside(root)
         plain = io.BytesIO(ElementTree.tostring(root))
@@ -145,7 +145,7 @@ def shown_shapes(
         for element in found:
             lost.add(*_no_shape(element))
     except Exception as error:  # svgelements raises errors of any type
-        message = f"{os.fspath(path)}: this is no valid SVG: {words_of(error)}."
+        message = f"{os.fspath(path)}: the file is not a valid SVG drawing: {words_of(error)}."
         raise FormatError(message, "syntax") from error
     return shapes
 
@@ -170,7 +170,7 @@ def _no_shape(element: Any) -> tuple[str, int]:
     """Return an element's name, and 1 if it is visible content without a shape, else 0."""
     name = str(element.values.get("tag"))
     if name == "use":
-        return "use of what is not there", int(not len(element))
+        return "use of a missing element", int(not len(element))
     return name, int(name in NO_SHAPES)
 
 
@@ -207,10 +207,15 @@ def svg_data(region: Region, *, fill: str = "#9db8d9", margin: Scalar = 0.05) ->
     low, high = (np.zeros(2), np.ones(2)) if bounds is None else bounds
     space = float((high - low).max()) * not_negative(margin, "margin")
     if not isinstance(fill, str):
-        raise invalid_parameter(f"fill must be a colour, not {shown(fill)}.")
+        raise invalid_parameter(
+            f"fill must be an SVG colour as text, such as 'orange', not {shown(fill)}."
+        )
     width, height = (high - low + 2 * space).tolist()
     if not math.isfinite(max(width, height)):
-        message = f"The margin {shown(margin)} is too large for doubles; choose a smaller one."
+        message = (
+            f"The margin {shown(margin)} makes the drawing larger than doubles can represent;"
+            " choose a smaller margin."
+        )
         raise invalid_parameter(message)
     x, y = float(low[0]) - space, -float(high[1]) - space
     outlines = " ".join(_path_of(points) for points in region.to_polygons())
@@ -234,7 +239,11 @@ def _checked(path: str | os.PathLike[str]) -> bytes:
     parser = expat.ParserCreate()
 
     def refuse(*_: object) -> None:
-        raise FormatError(f"{name}: entities are not allowed here.", "syntax")
+        raise FormatError(
+            f"{name}: the SVG declares XML entities, which are not supported; save it without"
+            " them.",
+            "syntax",
+        )
 
     parser.EntityDeclHandler = refuse
     try:

@@ -117,7 +117,7 @@ def _check_uses(root: Element) -> None:
 
     def shown(element: Element, outer: int) -> tuple[int, int]:
         if outer > _MAX_USE_DEPTH:
-            raise ValueError("its uses contain each other too often")
+            raise ValueError(f"its <use> elements are nested deeper than {_MAX_USE_DEPTH} levels")
         count = depth = 0
         for inner in element.iter():
             target = _target(inner) if name_of(inner) == "use" else ""
@@ -129,9 +129,9 @@ def _check_uses(root: Element) -> None:
 
     count, depth = shown(root, 0)
     if depth > _MAX_USE_DEPTH:
-        raise ValueError("its uses contain each other too often")
+        raise ValueError(f"its <use> elements are nested deeper than {_MAX_USE_DEPTH} levels")
     if count > _MAX_ELEMENTS_SHOWN + sum(1 for _ in root.iter()):
-        raise ValueError("its uses show too much")
+        raise ValueError(f"its <use> elements repeat more than {_MAX_ELEMENTS_SHOWN} elements")
 
 
 def _target(use: Element) -> str:

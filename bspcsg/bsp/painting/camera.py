@@ -89,7 +89,10 @@ class Camera:
         place = vector(eye, "eye")
         direction = vector(target, "target") - place
         if not direction.any():
-            raise invalid_parameter("The target must be another point than the eye.")
+            raise invalid_parameter(
+                f"The eye and the target of the camera are the same point {shown(eye)}; choose two"
+                " different points."
+            )
         return cls(_axes(direction, up), place, _tangent(field_of_view), True)
 
     @classmethod
@@ -155,7 +158,7 @@ class Camera:
         change; parameters are those of `named`.
         """
         if not 0 <= number(margin, "margin") < 0.5:
-            raise invalid_parameter(f"The margin must be from 0 to below 0.5, not {margin}.")
+            raise invalid_parameter(f"margin must be at least 0 and below 0.5, not {margin}.")
         wanted = _spread(points)
         middle = (wanted.min(axis=0) + wanted.max(axis=0)) / 2
         x, y, depth = self.axes @ (wanted - middle).T
@@ -216,7 +219,9 @@ class Camera:
         """
         given = vector_rows(points, 3, "Points")
         if not np.isfinite(given).all():
-            raise invalid_parameter("Points must be finite.")
+            raise invalid_parameter(
+                "The points have coordinates that are not finite numbers; remove these points."
+            )
         placed = self.place(given)
         depth = placed[:, 2]
         return self.flatten(placed), depth
@@ -265,17 +270,20 @@ def vector(value: Any, name: str) -> FloatArray:
 
 def _axes(direction: FloatArray, up: Any) -> FloatArray:
     if not direction.any():
-        raise invalid_parameter("The direction of view must not be zero.")
+        raise invalid_parameter("The direction of view must not be the zero vector.")
     away = _unit(direction)
     if up is None:
         along_z = np.hypot(away[0], away[1]) < _PARALLEL
         up = (0, 1, 0) if along_z else (0, 0, 1)
     upwards = vector(up, "up")
     if not upwards.any():
-        raise invalid_parameter("The up vector must not be zero.")
+        raise invalid_parameter("The up vector of the camera must not be (0, 0, 0).")
     right = np.cross(away, _unit(upwards))
     if np.linalg.norm(right) < _PARALLEL:
-        message = "The up vector must not be parallel to the direction of view; leave it out."
+        message = (
+            "The up vector must not be parallel to the direction of view; choose another, or"
+            " leave up out."
+        )
         raise invalid_parameter(message)
     right = _unit(right)
     # Adding 0 makes negative zeros positive, for printing.

@@ -32,7 +32,10 @@ def colours(values: Any, count: int, name: str = "colours") -> ColourArray:
     if given.ndim == 1:
         return np.tile(given, (count, 1))
     if given.shape != (count, 3):
-        message = f"There must be {count} {name}, of shape ({count}, 3), not {given.shape}."
+        message = (
+            f"{name} must be one colour or {count} colours in an array of shape ({count}, 3), not"
+            f" {given.shape}."
+        )
         raise invalid_parameter(message)
     return given
 
@@ -40,7 +43,10 @@ def colours(values: Any, count: int, name: str = "colours") -> ColourArray:
 def _opaque(given: Any, name: str) -> ColourArray:
     """Return colours as bytes without their opacity, or raise an error if it is not 1."""
     if not is_opaque(given):
-        raise invalid_parameter(f"The {name} must be opaque: pictures show nothing through faces.")
+        raise invalid_parameter(
+            f"The {name} must be opaque, because pictures cannot show transparent faces; set the"
+            " opacity to 1 or leave it out."
+        )
     return as_bytes(given[..., :3])
 
 

@@ -73,10 +73,16 @@ def panorama(
     """
     frame = checked_size(size)
     if min(frame) < 64:
-        raise invalid_parameter(f"A panorama has at least 64 pixels a side, not {min(frame)}.")
+        raise invalid_parameter(
+            "The size of a panorama must be at least 64 pixels in width and height, not"
+            f" {min(frame)}."
+        )
     tree = scene if isinstance(scene, PartitionTree) else PartitionTree(scene)
     if tree.dimension != 2:
-        raise invalid_parameter("Panoramas show segments in the plane; `picture` shows facets.")
+        raise invalid_parameter(
+            f"panorama takes segments in the plane, but this scene has {tree.dimension}"
+            " dimensions; use picture for triangles and polygons."
+        )
     fragments = tree.back_to_front(eye=eye, direction=direction)
     viewpoint = np.asarray(eye if direction is None else direction, dtype=np.float64)
     strip, strip_source = _strip(fragments, viewpoint, direction is not None, frame)

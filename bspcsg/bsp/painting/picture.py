@@ -85,7 +85,10 @@ class Picture:
         """
         ending = Path(file_path(path)).suffix.lower()
         if ending not in (".svg", ".png"):
-            message = f"Pictures are saved as .svg or .png, not {ending or 'without an ending'!r}."
+            message = (
+                "The file name of a picture must end in .svg or .png, not"
+                f" {ending or 'without an ending'!r}."
+            )
             raise FormatError(message, "unknown_format")
         write_file(path, [self.svg.encode() if ending == ".svg" else self.png])
 
@@ -311,7 +314,10 @@ def _shapes_of(scene: Any) -> tuple[Facets, MeshArrays | None]:
     """
     if isinstance(scene, PartitionTree):
         if scene.dimension != 3:
-            message = "Pictures show facets in space; `panorama` shows segments in the plane."
+            message = (
+                "picture takes triangles or polygons in 3 dimensions, but this scene has"
+                f" {scene.dimension}; use panorama for segments in the plane."
+            )
             raise invalid_parameter(message)
         corners, offsets = scene.core.lattice()
         units: FloatArray = np.asarray(corners * 10.0**scene.pitch, dtype=np.float64)
@@ -339,7 +345,10 @@ def _check_coordinates(triangles: FloatArray) -> None:
         message = f"Face {where[0]} has a coordinate that is not a finite number."
         raise InvalidMeshError(message, "non_finite", where)
     if len(triangles) and np.abs(triangles).max() > _MAX_COORDINATE:
-        message = f"Coordinates beyond {_MAX_COORDINATE:g} do not fit any lattice; scale the mesh."
+        message = (
+            f"The scene has a coordinate beyond {_MAX_COORDINATE:g}, the largest that is allowed;"
+            " scale the scene down."
+        )
         raise LimitError(message, "too_large")
 
 
@@ -375,10 +384,13 @@ def checked_size(size: Any) -> tuple[int, int]:
     try:
         width, height = size
     except (TypeError, ValueError) as error:
-        raise invalid_parameter("The size must be a width and a height in pixels.") from error
+        raise invalid_parameter(
+            f"size must be a pair (width, height) in pixels, not {shown(size)}."
+        ) from error
     frame = at_least(1, width, "width"), at_least(1, height, "height")
     if max(frame) > _MAX_SIDE_PIXELS:
         raise invalid_parameter(
-            f"A picture has at most {_MAX_SIDE_PIXELS} pixels a side, not {max(frame)}."
+            f"The width and height of a picture must be at most {_MAX_SIDE_PIXELS} pixels, not"
+            f" {max(frame)}."
         )
     return frame

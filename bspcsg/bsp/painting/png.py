@@ -78,7 +78,9 @@ def canvas_size(size: tuple[int, int], samples: int) -> tuple[int, int]:
     width, height = size
     if width * height * samples**2 > _MAX_CANVAS_PIXELS:
         message = (
-            f"A picture is painted on at most {_MAX_CANVAS_PIXELS} pixels; choose fewer samples."
+            f"A picture of {width} x {height} pixels with {samples} x {samples} samples each"
+            f" exceeds the limit of {_MAX_CANVAS_PIXELS} samples; choose fewer samples or a"
+            " smaller size."
         )
         raise LimitError(message, "too_large")
     return samples * width, samples * height
@@ -102,7 +104,10 @@ def _pillow() -> Any:
         import PIL.Image
         import PIL.ImageDraw
     except ImportError as error:
-        message = "PNG pictures need Pillow: pip install pillow."
+        message = (
+            "Writing PNG pictures needs the package Pillow, which is not installed. Try: pip"
+            " install pillow"
+        )
         raise BspcsgError(message, "missing_dependency") from error
     return PIL
 

@@ -129,7 +129,10 @@ class StabTree:
         """
         first, second = ray_arrays(origin, direction, self.dimension)
         if len(first) != 1:
-            raise invalid_parameter("A trace is that of one ray.")
+            raise invalid_parameter(
+                f"A trace is made for one ray only, but there are {len(first)} rays; pass one"
+                " origin and one direction."
+            )
         with core_errors():
             columns, counts, rows = self._tree.test_watched(first.ravel(), second.ravel())
         steps = tuple(map(stab_step, rows))
@@ -324,7 +327,10 @@ def _pivots(nodes: StabNodes) -> Iterator[int]:
             yield int(held[0])
             pending += [int(nodes.plus[node]), int(nodes.minus[node])]
         elif len(held) > 1:
-            raise invalid_parameter(f"Leaf {node} holds {len(held)} facets.")
+            raise invalid_parameter(
+                f"Leaf {node} contains {len(held)} facets, but at most one is allowed here; build"
+                " the tree with at most one facet in each leaf."
+            )
         else:
             yield from held.tolist()
 
@@ -346,8 +352,14 @@ def _permutation(order: Any, seed: int, count: int) -> IndexArray:
             return np.arange(count)
         if order == "random":
             return np.random.default_rng(seed).permutation(count)
-        raise invalid_parameter(f"Unknown order {order!r}; use 'given', 'random' or an array.")
-    places = doubles(order, invalid_parameter("The order must be an array of indices."))
+        raise invalid_parameter(
+            f"Unknown order {order!r}; use 'given', 'random' or an array of facet indices."
+        )
+    places = doubles(
+        order, invalid_parameter("order must be 'given', 'random' or an array of facet indices.")
+    )
     if places.shape != (count,) or (np.sort(places) != np.arange(count)).any():
-        raise invalid_parameter(f"The order must be a permutation of {count} facets.")
+        raise invalid_parameter(
+            f"order must contain each of the facet indices from 0 to {count - 1} exactly once."
+        )
     return places.astype(np.int64)

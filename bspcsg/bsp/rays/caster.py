@@ -263,7 +263,8 @@ class RayCaster:
         if found.corners.shape != self._facets.corners.shape:
             shapes = f"{found.corners.shape}, not {self._facets.corners.shape}"
             raise InvalidMeshError(
-                f"Facets that have moved must have the same shape: {shapes}.", "shape"
+                f"The moved facets must have the same array shape as the facets before: {shapes}.",
+                "shape",
             )
         moved = type(self).__new__(type(self))
         moved._facets = found
@@ -451,12 +452,13 @@ class RayCaster:
             and directions is given, or if `max_t` is given with targets.
         """
         if (targets is None) == (directions is None):
-            raise invalid_parameter("Give either targets or directions.")
+            raise invalid_parameter("Give exactly one of targets and directions.")
         if targets is not None:
             first, second = ray_arrays(origins, targets, self.dimension, ("Origins", "Targets"))
             if not np.isposinf(_limits(max_t, len(first))).all():
                 raise invalid_parameter(
-                    "max_t needs directions; with targets, each ray ends at its target."
+                    "max_t can only be given together with directions, because with targets"
+                    " each ray ends at its target; leave max_t out."
                 )
             with core_errors():
                 return self._scene.hidden(first.ravel(), second.ravel(), thread_count(threads))
@@ -503,9 +505,18 @@ def _taken(rows: Any, index: IndexArray) -> Any:
 
 
 def _limits(given: Any, count: int) -> FloatArray:
-    limits = doubles(given, invalid_parameter("max_t must be a number or one for each ray."))
+    limits = doubles(
+        given,
+        invalid_parameter("max_t must be one number, or an array with one number for each ray."),
+    )
     if limits.ndim > 1 or np.isnan(limits).any():
-        raise invalid_parameter("max_t must be a number, not NaN, or one for each ray.")
+        raise invalid_parameter(
+            "max_t must be one number, or an array with one number for each ray, and must not"
+            " contain NaN."
+        )
     if limits.shape not in ((), (1,), (count,)):
-        raise invalid_parameter(f"There are {count} rays and {len(limits)} of max_t.")
+        raise invalid_parameter(
+            f"max_t has {len(limits)} values, but there are {count} rays; give one value, or one"
+            " for each ray."
+        )
     return np.ascontiguousarray(np.broadcast_to(limits, count))

@@ -113,13 +113,17 @@ def _weights(
 ) -> FloatArray:
     count = len(origins)
     if weights is not None and density is not None:
-        raise invalid_parameter("Give either weights or a density.")
+        raise invalid_parameter("Give weights or density, not both.")
     if density is not None:
-        refusal = invalid_parameter("A density must return numbers.")
+        refusal = invalid_parameter(
+            "The function density must return an array of numbers, one for each ray."
+        )
         given = function_of(density, "density")(origins, directions)
         weights = doubles(given, refusal) / max(count, 1)
-    refusal = invalid_parameter("Weights must be numbers.")
+    refusal = invalid_parameter("weights must be an array of numbers, one for each ray.")
     omega = np.full(count, 1 / max(count, 1)) if weights is None else doubles(weights, refusal)
     if omega.shape != (count,) or not (np.isfinite(omega) & (omega >= 0)).all():
-        raise invalid_parameter(f"Weights must be {count} finite numbers of at least 0.")
+        raise invalid_parameter(
+            f"There must be {count} weights, one for each ray, all of them finite and at least 0."
+        )
     return omega

@@ -40,7 +40,9 @@ def region_of(
 def _way(nodes: StabNodes, node: int) -> list[tuple[int, int]]:
     """Return a node's ancestors, root first, each with the side (-1, 1) that leads to the node."""
     if at_least(0, node, "node") >= len(nodes):
-        raise invalid_parameter(f"There are {len(nodes)} nodes, none is number {shown(node)}.")
+        raise invalid_parameter(
+            f"There is no node {shown(node)}; the tree has nodes 0 to {len(nodes) - 1}."
+        )
     parents = {}
     for side, children in ((-1, nodes.minus), (1, nodes.plus)):
         for parent in np.flatnonzero(children >= 0):

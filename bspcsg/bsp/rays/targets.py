@@ -93,7 +93,7 @@ def facets_from(given: Any) -> RayTargets:
     vertices, faces = interop.own_arrays(*interop.arrays_from(given))
     if faces.size and not (faces.min() >= 0 and faces.max() < len(vertices)):
         bad = np.flatnonzero(((faces < 0) | (faces >= len(vertices))).any(axis=1))
-        message = f"Face {bad[0]} names a vertex that does not exist."
+        message = f"Face {bad[0]} has a vertex index outside 0 to {len(vertices) - 1}."
         raise InvalidMeshError(message, "index_out_of_range", bad[:10].tolist())
     return RayTargets(vertices[faces])
 
@@ -154,7 +154,10 @@ def ray_arrays(
     """
     first, second = vectors(origins, dimension, names[0]), vectors(heads, dimension, names[1])
     if len(first) != len(second) and 1 not in (len(first), len(second)):
-        message = f"There are {len(first)} origins and {len(second)} {names[1].lower()}."
+        message = (
+            f"There are {len(first)} origins but {len(second)} {names[1].lower()}; give equally"
+            " many, or one of either."
+        )
         raise InvalidMeshError(message, "shape")
     first, second = np.broadcast_arrays(first, second)
     return np.ascontiguousarray(first), np.ascontiguousarray(second)

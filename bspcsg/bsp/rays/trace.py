@@ -163,7 +163,9 @@ class StabNodes:
 
     def _checked(self, node: int) -> int:
         if not 0 <= node < len(self):
-            raise invalid_parameter(f"There are {len(self)} nodes, none is number {node}.")
+            raise invalid_parameter(
+                f"There is no node {node}; the trace has nodes 0 to {len(self) - 1}."
+            )
         return node
 
 

@@ -29,7 +29,9 @@ def boundary_arrays(facets: Any) -> tuple[int, FloatArray, IndexArray | None]:
         faces = np.arange(3 * len(array), dtype=np.int64).reshape(-1, 3)
         return 3, np.ascontiguousarray(array.reshape(-1, 3)), faces
     raise InvalidMeshError(
-        f"A boundary has shape (n, 2), (n, 2, 2) or (n, 3, 3), not {array.shape}.", "shape"
+        "A boundary must have shape (n, 2) for intervals, (n, 2, 2) for segments or (n, 3, 3)"
+        f" for triangles, not {array.shape}.",
+        "shape",
     )
 
 
@@ -54,7 +56,10 @@ def segment_rows(segments: FloatArray) -> FloatArray:
 def _numbers(facets: Any) -> FloatArray:
     array = doubles(facets, InvalidMeshError("A boundary must be an array of numbers.", "shape"))
     if array.size == 0:
-        raise invalid_parameter("A boundary without facets is no set; use the empty set instead.")
+        raise invalid_parameter(
+            "The boundary has no facets, so it does not determine a set; use the empty set"
+            " instead, such as Region.empty()."
+        )
     return array
 
 
@@ -66,8 +71,8 @@ def _check_closed(segments: FloatArray) -> None:
     place = int(np.flatnonzero(balance)[0])
     where = np.flatnonzero(index.reshape(-1) == place) // 2
     raise InvalidMeshError(
-        f"The outline is not closed at ({points[place][0]:g}, {points[place][1]:g}): as many"
-        " segments must end there as begin.",
+        f"The outline is not closed at ({points[place][0]:g}, {points[place][1]:g}); as many"
+        " segments must end at this point as begin there.",
         "not_closed",
         [int(k) for k in where],
     )

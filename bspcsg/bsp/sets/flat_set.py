@@ -8,8 +8,8 @@ from ...errors import core_errors
 from .objects import ObjectTree, merge
 from .tree_set import TreeSet, set_of
 
-#: A result's tree is rebuilt if it has more nodes than _MAX_GROWTH times its larger operand, plus
-#: _FREE_NODES.
+#: The tree of a result is rebuilt if it has more nodes than _FREE_NODES plus _MAX_GROWTH times the
+#: nodes of the larger operand's tree.
 _MAX_GROWTH = 4
 _FREE_NODES = 64
 
@@ -33,20 +33,20 @@ class FlatSet(TreeSet):
 
     @property
     def tree(self) -> ObjectTree:
-        """The set's partition tree, with its nodes, cells and pieces of boundary."""
+        """The set as an `ObjectTree`, which gives access to nodes, cells and boundary pieces."""
         return ObjectTree._of(self._tree)
 
     # Set operations
 
     def __invert__(self) -> Self:
-        """Return the complement; its tree shares all nodes."""
+        """Return the complement; its tree shares all nodes with the tree of this set."""
         return self._of((~self.tree)._tree)
 
     def _merged(self, other: TreeSet, op: SetOp) -> Self:
         """Return the result of a set operation, with a rebuilt tree if merging made it too large.
 
-        The cost of rebuilding is amortised, so a chain of n operations stays near-linear in its
-        output.
+        The cost of rebuilding is amortised, so the time of a chain of operations stays near-linear
+        in the size of its results.
         """
         merged = merge(self.tree, other.tree, op)
         base = max(_built_nodes(self), _built_nodes(other))
@@ -70,7 +70,7 @@ class FlatSet(TreeSet):
         return self.tree._size_key()
 
     def split(self, normal: Any, offset: Scalar = 0.0) -> tuple[Self, Self]:
-        """Return the parts on the minus and on the plus side of a hyperplane, as sets."""
+        """Return the parts of the set on the minus and on the plus side of a hyperplane."""
         minus, plus = self.tree.split(normal, offset)
         return self._of(minus._tree), self._of(plus._tree)
 
@@ -91,7 +91,7 @@ class FlatSet(TreeSet):
             return self._of(self._tree.moved(axes, shift))
 
     def __reduce__(self) -> tuple[Any, tuple[type["FlatSet"], bytes]]:
-        """Return the nodes of the tree, exactly, for pickling."""
+        """Pickle the nodes of the tree, exactly."""
         return _restored, (type(self), self._tree.dump())
 
 

@@ -142,14 +142,18 @@ class Intervals(FlatSet):
         """Return the set scaled about 0; a negative factor mirrors it."""
         by = number(factor, "factor")
         if by == 0:
-            raise invalid_parameter("The factor must not be 0.")
+            raise invalid_parameter("factor must not be 0.")
         with np.errstate(over="ignore"):
             return self._placed(np.sort(self.pairs * by, axis=1))
 
     def _placed(self, pairs: FloatArray) -> "Intervals":
         """Return the set with moved ends, on this set's lattice or on another one that fits."""
         if np.isinf(pairs).sum() > np.isinf(self.pairs).sum():
-            raise LimitError("The moved set lies outside the range of doubles.", "too_large")
+            raise LimitError(
+                "The moved or scaled intervals have an end that is too large for doubles; move or"
+                " scale them less.",
+                "too_large",
+            )
         suited = chosen_pitch(None, pairs[np.isfinite(pairs)][:, None])
         # Far from 0, both ends of an interval may round to one double; it is left out.
         there = pairs[pairs[:, 0] < pairs[:, 1]]
@@ -167,7 +171,7 @@ class Intervals(FlatSet):
 
 
 def _pairs(pairs: Any) -> FloatArray:
-    array = doubles(pairs, invalid_parameter("Intervals are pairs of numbers."))
+    array = doubles(pairs, invalid_parameter("Intervals must be pairs of numbers (low, high)."))
     if array.size == 0:
         return np.zeros((0, 2))
     if array.ndim == 1 and len(array) == 2:
@@ -177,7 +181,10 @@ def _pairs(pairs: Any) -> FloatArray:
     wrong = np.flatnonzero(~(array[:, 0] < array[:, 1]))
     if len(wrong):
         low, high = array[wrong[0]]
-        message = f"Interval {wrong[0]} must begin before it ends, but is from {low:g} to {high:g}."
+        message = (
+            f"Interval {wrong[0]} must have a lower end below its upper end, but the ends are"
+            f" {low:g} and {high:g}."
+        )
         raise invalid_parameter(message, wrong.tolist())
     return array
 

@@ -65,7 +65,9 @@ def closed_loops(outlines: Any) -> list[FloatArray]:
         items = list(outlines)
         single = bool(items) and axes_of(items[0][0]) == 0
     except (TypeError, LookupError) as error:
-        raise invalid_parameter("A region is made of outlines, lists of points.") from error
+        raise invalid_parameter(
+            "outlines must be a list of outlines, each of them a list of (x, y) points."
+        ) from error
     whole = outlines if isinstance(outlines, np.ndarray) else items
     return [_loop(item, k) for k, item in enumerate([whole] if single else items)]
 
@@ -86,16 +88,17 @@ def moved_points(factor: transform.Factor, points: FloatArray) -> FloatArray:
 
 def _loop(points: Any, place: int) -> FloatArray:
     array = doubles(
-        points, InvalidMeshError(f"Outline {place} is no list of points.", "shape", [place])
+        points,
+        InvalidMeshError(f"Outline {place} must be a list of (x, y) points.", "shape", [place]),
     )
     if array.ndim != 2 or array.shape[1] != 2 or len(array) < 3:
         raise InvalidMeshError(
-            f"Outline {place} must have shape (n, 2) with n of at least 3, not {array.shape}.",
+            f"Outline {place} must have shape (n, 2) with n at least 3, not {array.shape}.",
             "shape",
             [place],
         )
     if not np.isfinite(array).all():
         raise InvalidMeshError(
-            f"Outline {place} has a coordinate that is not finite.", "non_finite", [place]
+            f"Outline {place} has a coordinate that is not a finite number.", "non_finite", [place]
         )
     return array

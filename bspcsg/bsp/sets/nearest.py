@@ -1,4 +1,4 @@
-"""The nearest points of boundaries, segments and polygons to given points, in doubles."""
+"""The nearest points on boundaries, segments and polygons to given points, in doubles."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -19,12 +19,17 @@ _PAIRS_PER_BATCH = 1 << 20
 
 
 def nearest_on_boundary(tree: "ObjectTree", points: Any) -> tuple[FloatArray, FloatArray]:
-    """Return the nearest boundary points, and the distances (see `ObjectTree.nearest`)."""
+    """Return for each point the nearest boundary point of a set, (k, d), and the distance, (k,)."""
     array = point_rows(points, tree.dimension)
     if not np.isfinite(array).all():
-        raise InvalidMeshError("Points must be finite.", "non_finite")
+        raise InvalidMeshError(
+            "The points have coordinates that are not finite numbers; remove these points.",
+            "non_finite",
+        )
     if tree.is_empty or tree.is_full:
-        raise invalid_parameter("A set without boundary has no nearest boundary point.")
+        raise invalid_parameter(
+            "The set is empty or all of space, so it has no boundary and no nearest boundary point."
+        )
     nearest = _nearest_of(tree, array)
     return nearest, np.sqrt(((nearest - array) ** 2).sum(axis=1))
 
@@ -73,7 +78,7 @@ def _fan(corners: FloatArray) -> FloatArray:
 def _nearest(
     points: FloatArray, pieces: int, candidates: Callable[[FloatArray], FloatArray]
 ) -> FloatArray:
-    """Return for each point its nearest candidate, computed in blocks of points.
+    """Return for each point the nearest of its candidates, computed in blocks of points.
 
     ``candidates(block)`` returns one candidate for each pair of a point and a piece, (b, pieces,
     d).

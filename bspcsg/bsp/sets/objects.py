@@ -1,4 +1,4 @@
-"""`ObjectTree`: a set of points of any dimension as a partition tree with in and out leaves.
+"""`ObjectTree`: a set of points in 1D, 2D or 3D as a partition tree with in and out leaves.
 
 On the line, in the plane and in space, inner nodes divide a convex region by a hyperplane, and
 leaves are inside or outside the set. Set operations merge two trees; nothing is rounded after the
@@ -41,8 +41,8 @@ Set = TypeVar("Set", bound=TreeSet)
 class ObjectTree(TreeSet):
     """A set of points on the line, in the plane or in space as a partition tree; immutable.
 
-    ``==``, ``<=``, ``<``, ``in`` and the like compare sets of points exactly, like those of
-    Python's sets: two trees are equal if they represent the same set, however they divide it.
+    ``==``, ``<=``, ``<``, ``in`` and the like compare sets of points exactly, as Python compares
+    sets: two trees are equal if they represent the same set of points, however they divide it.
 
     Parameters
     ----------
@@ -51,6 +51,7 @@ class ObjectTree(TreeSet):
         left (2D); (n, 3, 3) triangles counterclockwise seen from outside (3D). They may cross,
         overlap and repeat: a point is inside if its winding number satisfies the rule.
     winding : {"positive", "nonzero", "even-odd"}
+        The rule that says which winding numbers are inside.
     pitch : int, optional
         The lattice step is ``10**pitch`` units; by default -9, or another if the coordinates
         require it.
@@ -58,9 +59,9 @@ class ObjectTree(TreeSet):
         The rule that chooses the cuts. "balanced" adds axis-parallel cuts, without which the tree
         of a convex outline is a chain; the other rules cut along facets only (autopartitions).
     seed : int
-        The seed of random orders.
+        The seed of the random order, for the policy "random".
     cuts : sequence of (normal, offset)
-        Hyperplanes to cut along first, in this order, before the cuts of the boundary.
+        Hyperplanes to cut along first, in this order, before cuts along the boundary.
 
     Raises
     ------
@@ -121,9 +122,9 @@ class ObjectTree(TreeSet):
 
     @classmethod
     def from_mesh(cls, mesh: Any, **options: Any) -> Self:
-        """Return the set inside a closed mesh in any form that `Solid.from_mesh` takes.
+        """Return the set inside a closed mesh, given as any object that `Solid.from_mesh` takes.
 
-        Meant for small meshes: an autopartition in space grows with the square of the number of
+        It is meant for small meshes: the number of nodes may grow with the square of the number of
         faces.
 
         Raises
@@ -138,10 +139,10 @@ class ObjectTree(TreeSet):
     def half_space(cls, normal: Any, offset: Scalar = 0.0, *, pitch: int | None = None) -> Self:
         """Return the minus side of a hyperplane: all points x with ``normal . x <= offset``.
 
-        The numbers count as the decimals they are written as. A hyperplane that contains lattice
-        points is exact; another is moved, by at most half a step, to the nearest parallel one that
-        contains some. This applies to all hyperplanes given to trees. (Normals of more than 62 bits
-        in the plane, or 106 in space, are rounded to 61.)
+        Floats are read as their shortest decimals. A hyperplane that contains lattice points is
+        exact; any other is translated, by at most half a step, to the nearest parallel hyperplane
+        that contains lattice points. This applies to all hyperplanes given to trees. (Normals of
+        more than 62 bits in the plane, or 106 in space, are rounded to 61.)
 
         Parameters
         ----------
@@ -149,7 +150,7 @@ class ObjectTree(TreeSet):
             One number for each dimension.
         offset : float
         pitch : int, optional
-            By default -9, or down to -12 if the hyperplane needs it.
+            Exponent of the lattice step; by default -9, or down to -12 if the hyperplane needs it.
         """
         wanted = hyperplane(normal, offset)
         chosen = wanted.pitch if pitch is None else pitch_exponent(pitch)
@@ -166,7 +167,7 @@ class ObjectTree(TreeSet):
     # Set operations
 
     def __invert__(self) -> Self:
-        """Return the complement; its tree shares all nodes."""
+        """Return the complement; its tree shares all nodes with this one."""
         return self._of(self._tree.complement())
 
     def _merged(self, other: TreeSet, op: SetOp) -> Self:
@@ -178,8 +179,8 @@ class ObjectTree(TreeSet):
         """Return the core trees of both sets on the finer of their two lattices."""
         if self.dimension != other.dimension:
             raise invalid_parameter(
-                f"A set of dimension {self.dimension} cannot be combined with one of dimension"
-                f" {other.dimension}."
+                f"A set of dimension {self.dimension} cannot be combined with a set of"
+                f" dimension {other.dimension}; both must have the same dimension."
             )
         # The empty set and the whole space fit on any lattice.
         pitches = [s.pitch for s in (self, other.tree) if not (s.is_empty or s.is_full)]
@@ -203,8 +204,8 @@ class ObjectTree(TreeSet):
 
         Notes
         -----
-        The indices of nodes refer to ``trace.first`` and ``trace.second``, which are the operands
-        on one lattice. ``trace.result`` is the merged tree itself; the operators of regions may
+        Indices of nodes in the trace refer to ``trace.first`` and ``trace.second``, the operands on
+        one lattice. ``trace.result`` is the merged tree itself; the operators of `Region` may
         return another tree of the same set.
         """
         word(SET_OPS, op, "op")
@@ -225,7 +226,7 @@ class ObjectTree(TreeSet):
         try:
             a, b = self._aligned(tree)
         except LimitError:
-            # Measures are exact on any lattice, so different ones prove different sets.
+            # Measures are exact on any lattice, so different measures prove different sets.
             if self._size_key() == tree._size_key():
                 raise
             return False
@@ -236,23 +237,23 @@ class ObjectTree(TreeSet):
         if self.is_bounded:
             return self.dimension, self.measure
         outside = ~self
-        # If set and complement are unbounded, only the dimension is cheap to compare.
+        # If the set and its complement are unbounded, only the dimension is cheap to compare.
         return self.dimension, -outside.measure - 1 if outside.is_bounded else None
 
     # Queries
 
     def nearest(self, points: Any) -> tuple[FloatArray, FloatArray]:
-        """Return the nearest boundary point of each point, and its distance.
+        """Return for each point the nearest boundary point, and its distance.
 
         Parameters
         ----------
         points : (k, d) array_like of float
-            In model units; on the line (k,) will do.
+            In model units; on the line, shape (k,) is allowed.
 
         Returns
         -------
         nearest : (k, d) float64
-            Rounded; of several, the one on the first piece of the boundary.
+            The nearest boundary points, rounded; of several, the one on the first boundary piece.
         distance : (k,) float64
 
         Raises
@@ -263,7 +264,7 @@ class ObjectTree(TreeSet):
         return nearest_on_boundary(self, points)
 
     def boundary(self) -> Pieces:
-        """Return the boundary in convex pieces, with the nodes in whose cuts they lie.
+        """Return the boundary as convex pieces, each with the node in whose cut it lies.
 
         The pieces of an unbounded set end at the border of the lattice.
         """
@@ -271,7 +272,7 @@ class ObjectTree(TreeSet):
             return Pieces(*self._tree.boundary())
 
     def cells(self) -> Pieces:
-        """Return the faces of the leaves that are inside: a decomposition into convex cells.
+        """Return the set divided into convex cells, the inside leaves, each given by its faces.
 
         Raises
         ------
@@ -283,12 +284,12 @@ class ObjectTree(TreeSet):
 
     @property
     def nodes(self) -> NodeTable:
-        """The inner nodes as arrays; none if the tree is a leaf."""
+        """The inner nodes of the tree as arrays; empty if the tree is a single leaf."""
         with core_errors():
             return NodeTable(*self._tree.nodes, tuple(map(tuple, self._tree.hyperplanes())))
 
     def stats(self) -> dict[str, int]:
-        """Return the numbers of inner nodes, leaves and coplanar fragments, and the depth."""
+        """Return the tree's numbers of inner nodes, leaves and fragments, and its depth."""
         return self._tree.stats()
 
     # Division by a hyperplane
@@ -296,7 +297,7 @@ class ObjectTree(TreeSet):
     def partitioned(self, normal: Any, offset: Scalar = 0.0) -> Self:
         """Return the same set as a tree whose root is cut by the given hyperplane.
 
-        A tree of one leaf stays a leaf, since its halves would be equal.
+        A tree of a single leaf stays a leaf, since both halves would be equal.
         """
         row = self._row(normal, offset)
         with core_errors():
@@ -305,7 +306,7 @@ class ObjectTree(TreeSet):
     def split(self, normal: Any, offset: Scalar = 0.0) -> tuple[Self, Self]:
         """Return the parts of the set on the minus and on the plus side of a hyperplane.
 
-        A hyperplane outside the range of the lattice has a bounded set on one side.
+        If the hyperplane is outside the range of the lattice, a bounded set is on one side of it.
         """
         is_above = hyperplane(normal, offset, self.dimension).is_above_lattice(self.pitch)
         if is_above is not None and self.is_bounded:
@@ -317,7 +318,7 @@ class ObjectTree(TreeSet):
         return self._of(minus), self._of(plus)
 
     def split_case(self, normal: Any, offset: Scalar = 0.0) -> SplitCase:
-        """Return how the root's cut and a splitting hyperplane lie to each other.
+        """Return how the cut of the root and a splitting hyperplane lie relative to each other.
 
         Returns
         -------
@@ -330,7 +331,7 @@ class ObjectTree(TreeSet):
 
         Notes
         -----
-        Naylor, Amanatides, Thibault 1990, section 4: the cases of their table.
+        These are the cases of the table in Naylor, Amanatides, Thibault 1990, section 4.
         """
         row = self._row(normal, offset)
         with core_errors():
@@ -342,7 +343,7 @@ class ObjectTree(TreeSet):
     def condensed(self) -> Self:
         """Return the same set as a balanced tree built from its own boundary (1D and 2D).
 
-        This removes cuts that a merged tree does not need. In 3D it returns the tree itself.
+        This removes cuts that a merged tree does not need. In 3D the same tree is returned.
         """
         with core_errors():
             return self._of(self._tree.condensed())
@@ -359,7 +360,7 @@ class ObjectTree(TreeSet):
         return f"{type(self).__name__}({self.dimension}D, {what})"
 
     def __reduce__(self) -> tuple[Any, tuple[type["ObjectTree"], bytes]]:
-        """Return the nodes exactly, without the input facets in them, for pickling."""
+        """Pickle the nodes of the tree, exactly, without the input facets in their cuts."""
         return _restored, (type(self), self._tree.dump())
 
 
@@ -392,8 +393,8 @@ def split_tree(tree: Set, hyperplane: NormalAndOffset) -> tuple[Set, Set]:
 
     See `ObjectTree.split`.
 
-    The third argument in the paper by Naylor et al., the part of the hyperplane inside the root's
-    region, is computed from the other two.
+    In the paper by Naylor et al. there is a third argument, the part of the hyperplane inside the
+    root's region; here it is computed from the tree and the hyperplane.
     """
     set_of(tree, "tree")
     return tree.split(*pairs_of([hyperplane])[0])

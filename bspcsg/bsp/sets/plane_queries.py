@@ -1,4 +1,4 @@
-"""Queries of regions of the plane: outlines, measures, lines; and their common lattice."""
+"""Queries of sets of the plane: outlines, areas, sections by lines, and a common lattice."""
 
 from collections.abc import Sequence
 from contextlib import suppress
@@ -11,7 +11,7 @@ from ..._core import ObjectTree as CoreTree
 from ..._types import FloatArray, Vector
 from ...errors import LimitError, core_errors, invalid_parameter
 from ...geometry.polygon import convex_corners
-from ...parameters import number
+from ...parameters import number, shown
 from .loops import Outline, loop_segments
 from .objects import ObjectTree
 from .pieces import Pieces
@@ -28,7 +28,7 @@ def outlines_of(tree: CoreTree) -> tuple[Outline, ...]:
 
 
 def exact_outlines(tree: CoreTree) -> list[list[tuple[Fraction, Fraction]]]:
-    """Return the corners of the outlines of a set of the plane in model units, not rounded."""
+    """Return the outlines of a set of the plane as lists of exact corners, in model units."""
     with core_errors():
         loops = tree.exact_outlines()
     return [[(Fraction(*x), Fraction(*y)) for x, y in loop] for loop in loops]
@@ -42,29 +42,29 @@ def rounded_area(tree: CoreTree) -> float:
 
 
 def exact_centroid(tree: CoreTree) -> tuple[Fraction, Fraction] | None:
-    """Return the centre of area of a set of the plane, exactly; None for the empty set."""
+    """Return the exact centre of area of a set of the plane, in model units; None if empty."""
     with core_errors():
         area, x, y = (Fraction(*ratio) for ratio in tree.moments())
     return None if area == 0 else (x / area, y / area)
 
 
 def cast_line(tree: CoreTree, origin: Vector, direction: Vector) -> FloatArray:
-    """Return the segments of a line inside a set of the plane, (k, 2) (see `Region.cast`)."""
+    """Return the segments of a line in a set of the plane as pairs of t (see `Region.cast`)."""
     start, along = vector2(origin, "origin"), vector2(direction, "direction")
     if not np.any(along):
-        raise invalid_parameter("The direction must not be zero.")
+        raise invalid_parameter("direction must not be the zero vector.")
     with core_errors():
         points, _, _ = tree.cast(list(start), list(along))
     axis = int(np.abs(along).argmax())
     t = (points[:, axis] - start[axis]) / along[axis]
-    # No finite coordinate is larger than this.
+    # Points beyond this coordinate represent points at infinity.
     border = (2**53 - 2) * 10.0**tree.pitch
     t[np.abs(points).max(axis=1) > border] *= np.inf
     return np.asarray(t.reshape(-1, 2))
 
 
 def convex_parts(cells: Pieces) -> list[FloatArray]:
-    """Return the cells of a set of the plane as convex polygons (see `Region.convex_parts`)."""
+    """Return the cells of a set of the plane as convex polygons, given the cells' edges."""
     parts: list[list[FloatArray]] = []
     for face, owner in enumerate(cells.owner.tolist()):
         if owner == len(parts):
@@ -74,7 +74,7 @@ def convex_parts(cells: Pieces) -> list[FloatArray]:
 
 
 def on_one_lattice(trees: Sequence[ObjectTree]) -> list[CoreTree]:
-    """Return sets of the plane on the finest lattice that holds them and all their corners.
+    """Return sets of the plane on the finest lattice that contains all of their corners.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def on_one_lattice(trees: Sequence[ObjectTree]) -> list[CoreTree]:
 
 
 def _on_lattice(tree: ObjectTree, pitch: int) -> CoreTree:
-    """Return a set on a finer lattice, or on a coarser one that holds all of its corners."""
+    """Return a set on another lattice, which if coarser must contain all corners of the set."""
     if pitch <= tree.pitch or tree.is_empty or tree.is_full:
         return tree._refined(pitch)
     if not tree.is_bounded and (~tree).is_bounded:
@@ -101,8 +101,9 @@ def _on_lattice(tree: ObjectTree, pitch: int) -> CoreTree:
     step = Fraction(10) ** pitch
     if loops is None or any(Fraction(*x) % step for loop in loops for p in loop for x in p):
         message = (
-            "One region does not fit the lattice of 2^53 steps that the corners of another need."
-            f" Round those corners to {float(step):g}, or cut off distant parts."
+            "One region extends beyond the 2^53 steps of the fine lattice that the corners of"
+            f" another region need. Round those corners to multiples of {float(step):g}, or"
+            " cut off distant parts."
         )
         raise LimitError(message, "too_large")
     corners = [np.array([[n / d for n, d in point] for point in loop]) for loop in loops]
@@ -111,9 +112,9 @@ def _on_lattice(tree: ObjectTree, pitch: int) -> CoreTree:
 
 
 def vector2(value: Any, name: str) -> tuple[float, float]:
-    """Return two finite numbers."""
+    """Return a vector of the plane as two floats, or raise an error that names the parameter."""
     try:
         x, y = value
     except (TypeError, ValueError) as error:
-        raise invalid_parameter(f"{name} must have two numbers.") from error
+        raise invalid_parameter(f"{name} must be two numbers, not {shown(value)}.") from error
     return number(x, name), number(y, name)

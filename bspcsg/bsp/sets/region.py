@@ -53,7 +53,7 @@ from .plane_queries import (
 )
 from .tree_set import TreeSet
 
-#: The rules that say which winding numbers count as inside, in the plane.
+#: The rule that says which winding numbers are inside a region of the plane.
 FillRule: TypeAlias = WindingRule | Literal["negative"]
 
 _AXES = {"x": (1.0, 0.0), "y": (0.0, 1.0)}
@@ -61,10 +61,10 @@ _AXES = {"x": (1.0, 0.0), "y": (0.0, 1.0)}
 
 @owning
 class Region(FlatSet):
-    """A polygonal set of the plane.
+    """A set of points of the plane with polygonal boundary.
 
     A point is inside if the winding number of the outlines satisfies the rule; outlines may cross,
-    touch or overlap themselves and each other. The lattice is that of solids: coordinates are
+    touch or overlap themselves and each other. The lattice is as for `Solid`: coordinates are
     snapped to steps of ``10**pitch``, at most 2**53 steps from the origin, and everything else is
     exact. Sets are regularised: points and edges without adjacent area vanish. ``==``, ``<=``,
     ``<``, ``in`` and the like compare sets of points exactly, as for `Solid`. Operations use the
@@ -81,8 +81,9 @@ class Region(FlatSet):
         holes clockwise. Rings of shapely shapes are oriented like this, so the region is the union
         of the polygons; points and lines in collections are ignored.
     winding : {"positive", "nonzero", "even-odd", "negative"}
+        The rule that says which winding numbers are inside.
     pitch : int, optional
-        By default -9, or another if the coordinates require it.
+        Exponent of the lattice step; by default -9, or another if the coordinates require it.
 
     Raises
     ------
@@ -127,7 +128,10 @@ class Region(FlatSet):
         InvalidMeshError
             If the segments do not form closed outlines (`where` lists segments).
         """
-        refusal = invalid_parameter("Segments are pairs of points, of two numbers each.")
+        refusal = invalid_parameter(
+            "Segments must be pairs of points with two numbers each, in an array of shape (n, 2,"
+            " 2)."
+        )
         given = doubles(segments, refusal)
         if given.size % 4:
             raise refusal
@@ -162,7 +166,7 @@ class Region(FlatSet):
     def circle(
         cls, r: Scalar | None = None, segments: int = SEGMENTS, *, d: Scalar | None = None
     ) -> Self:
-        """Return a regular polygon with its corners on a circle about the origin.
+        """Return a circle about the origin as a regular polygon with its corners on that circle.
 
         Parameters
         ----------
@@ -183,7 +187,7 @@ class Region(FlatSet):
         d: Scalar | None = None,
         flats: Scalar | None = None,
     ) -> Self:
-        """Return a regular polygon about the origin, of a radius or of a width across flats.
+        """Return a regular polygon about the origin, given its radius or its width across flats.
 
         Parameters
         ----------
@@ -206,8 +210,8 @@ class Region(FlatSet):
         if flats is None:
             return cls(unit_circle(around) * positive(radius(r, d, "A regular polygon"), "r"))
         if r is not None or d is not None:
-            raise invalid_parameter("Give r, d or flats, and only one of them.")
-        # Every second point of a circle of twice as many, so that axis-parallel sides are exact.
+            raise invalid_parameter("A regular polygon needs exactly one of r, d and flats.")
+        # Every second corner of a polygon with twice as many makes axis-parallel sides exact.
         corners = unit_circle(2 * around)[1::2]
         return cls(corners * (positive(flats, "flats") / 2 / corners[0, 0]))
 
@@ -240,7 +244,7 @@ class Region(FlatSet):
         size, whole = positive(radius(r, d, "A slot"), "r"), positive(length, "length")
         if whole < 2 * size:
             raise invalid_parameter(
-                f"A slot is at least as long as wide: {whole:g} is below {2 * size:g}."
+                f"The length of a slot must be at least its width {2 * size:g}, not {whole:g}."
             )
         steps = -(-sides_around(4, segments, "segments") // 2)
         turned = unit_circle(2 * steps)[: steps + 1]
@@ -255,7 +259,7 @@ class Region(FlatSet):
 
     @classmethod
     def half_plane(cls, normal: Vector, offset: Scalar = 0.0, *, pitch: int | None = None) -> Self:
-        """Return all points x with ``normal . x <= offset`` (see `ObjectTree.half_space`)."""
+        """Return the half-plane of all points x with ``normal . x <= offset``."""
         half = ObjectTree.half_space(vector2(normal, "normal"), offset, pitch=pitch)
         return cls._of(half._tree)
 
@@ -284,7 +288,9 @@ class Region(FlatSet):
         10.0
         """
         if not isinstance(regions, Iterable):
-            raise invalid_parameter(f"regions must be a list of them, not {shown(regions)}.")
+            raise invalid_parameter(
+                f"regions must be a list of Region objects, not {shown(regions)}."
+            )
         parts = [of_kind(Region, part, "Each part") for part in regions]
         if not parts:
             return cls()
@@ -295,7 +301,7 @@ class Region(FlatSet):
     # Set operations
 
     def _merged(self, other: TreeSet, op: SetOp) -> Self:
-        """Return a result by the faster method: a sweep over the boundaries, or merged trees."""
+        """Return the result of a set operation, by sweeping over boundaries or merging trees."""
         try:
             a, b = self.tree._aligned(other)
         except LimitError:
@@ -309,8 +315,8 @@ class Region(FlatSet):
     def outlines(self) -> tuple[Outline, ...]:
         """The boundary as nested simple loops: outer ones counterclockwise, holes clockwise.
 
-        Collinear edges are joined. Loops touch each other only in corners, and if a corner of one
-        lies on another, the other has a corner there, too. The loops depend only on the set.
+        Collinear edges are joined. Loops touch each other only in corners: where two loops touch,
+        both have a corner. The loops depend only on the set of points.
 
         Raises
         ------
@@ -323,15 +329,15 @@ class Region(FlatSet):
 
     @property
     def exact_outlines(self) -> list[list[tuple[Fraction, Fraction]]]:
-        """The corners of the outlines in model units, not rounded."""
+        """The corners (x, y) of each outline as exact fractions, in model units."""
         return exact_outlines(self._tree)
 
     def to_polygons(self) -> list[FloatArray]:
-        """Return the outlines as (n, 2) arrays; ``bspcsg.extrude`` and others take them."""
+        """Return the outlines as a list of (n, 2) float64, as ``bspcsg.extrude`` takes them."""
         return [outline.points for outline in self.outlines]
 
     def decompose(self) -> list["Region"]:
-        """Return the list of connected parts, each with its holes; see `components`.
+        """Return the connected parts of the region, each with its holes, as a list.
 
         Examples
         --------
@@ -351,7 +357,7 @@ class Region(FlatSet):
         return tuple(Region(loops, pitch=self.pitch) for loops in self._parts())
 
     def _parts(self) -> list[list[FloatArray]]:
-        """Return for each connected part its outlines, the outer outline before the holes."""
+        """Return the outlines of each connected part, the outer outline before its holes."""
         parts: dict[int, list[FloatArray]] = {}
         outlines = list(enumerate(self.outlines))
         for k, outline in outlines:
@@ -363,12 +369,13 @@ class Region(FlatSet):
         return list(parts.values())
 
     def convex_parts(self) -> list[FloatArray]:
-        """Return the region divided into convex polygons: the inside leaves of its tree.
+        """Return the region divided into convex polygons, the inside leaves of its partition tree.
 
         Returns
         -------
         list of (n, 2) float64
-            Counterclockwise, in the order of the leaves, rounded.
+            The corners of each polygon, counterclockwise, rounded to doubles; in the order of the
+            leaves.
         """
         return convex_parts(self.tree.cells())
 
@@ -381,7 +388,7 @@ class Region(FlatSet):
         Raises
         ------
         UnboundedError
-            If the region reaches to infinity; so for all measures.
+            If the region reaches to infinity.
         """
         return self.measure
 
@@ -392,7 +399,7 @@ class Region(FlatSet):
 
     @property
     def perimeter(self) -> float:
-        """Length of the boundary in model units, the same as that of the complement.
+        """Length of the boundary in model units; the complement has the same perimeter.
 
         Raises
         ------
@@ -404,7 +411,7 @@ class Region(FlatSet):
 
     @property
     def centroid_exact(self) -> tuple[Fraction, Fraction] | None:
-        """Centre of area (barycentre), exactly; None for the empty set."""
+        """Centre of area (x, y) in model units, as exact fractions; None for the empty set."""
         return exact_centroid(self._tree)
 
     @property
@@ -415,7 +422,7 @@ class Region(FlatSet):
 
     @property
     def bounds(self) -> FloatArray | None:
-        """Lowest and highest coordinates, (2, 2) float64, or None for the empty set."""
+        """The bounding box: lowest, then highest x and y, (2, 2) float64; None if empty."""
         if self.is_empty:
             return None
         points = np.concatenate(self.to_polygons())
@@ -424,7 +431,7 @@ class Region(FlatSet):
     # Questions
 
     def cast(self, origin: Vector, direction: Vector) -> FloatArray:
-        """Return the stretches of a line inside the region.
+        """Return the segments of a line that lie inside the region.
 
         Parameters
         ----------
@@ -434,10 +441,10 @@ class Region(FlatSet):
         Returns
         -------
         (k, 2) float64
-            Entry and exit of each stretch in the order of the line, as multiples t of `direction`
-            from `origin`; infinite if the stretch is. Stretches along the boundary do not count,
-            and a single boundary point separates two stretches. The order is exact, each t is
-            rounded.
+            The parameters t of the start and the end ``origin + t * direction`` of each segment,
+            ascending; infinite at an end where the segment is unbounded. Segments that lie on the
+            boundary do not count, and a single boundary point separates two segments. The order is
+            exact, each t is rounded.
 
         Raises
         ------
@@ -453,7 +460,7 @@ class Region(FlatSet):
     ) -> "Region":
         """Return the region translated by two numbers, one vector, or along named axes.
 
-        The result is exact for whole lattice steps.
+        The result is exact if the numbers are multiples of the lattice step.
 
         Examples
         --------
@@ -508,24 +515,29 @@ class Region(FlatSet):
         return self._placed_about(about, factor)
 
     def transform(self, matrix: Any) -> "Region":
-        """Return the image under an affine map, a (3, 3) or (2, 3) matrix for column vectors.
+        """Return the region's image under an affine map: a (3, 3) or (2, 3) matrix.
+
+        The matrix multiplies column vectors.
 
         Raises
         ------
         InvalidMeshError
-            If the matrix is no invertible affine map.
+            If the matrix is not an invertible affine map.
         UnboundedError
-            If the map is no lattice motion, and the region and its complement are both unbounded.
+            If the map is not a lattice motion, and the region and its complement are unbounded.
         """
-        rows = doubles(matrix, invalid_parameter("A map of the plane is a matrix of numbers."))
+        rows = doubles(matrix, invalid_parameter("matrix must be an array of numbers."))
         if rows.shape not in ((3, 3), (2, 3)) or (len(rows) == 3 and list(rows[2]) != [0, 0, 1]):
-            raise invalid_parameter("A map of the plane is a (3, 3) or (2, 3) affine matrix.")
+            raise invalid_parameter(
+                "matrix must be an affine matrix of the plane, of shape (2, 3), or of shape (3,"
+                " 3) with the last row 0, 0, 1."
+            )
         wide = np.eye(4)
         wide[:2, [0, 1, 3]] = rows[:2]
         return self._placed(transform.matrix_factor(wide))
 
     def _placed_about(self, point: Vector, factor: Factor) -> "Region":
-        """Return the image under an affine map applied about a point, not about the origin."""
+        """Return the region's image under a linear map about a point instead of the origin."""
         x, y = vector2(point, "about")
         placed = self
         for one in reversed(transform.about((x, y, 0.0), (factor,))):
@@ -545,14 +557,15 @@ class Region(FlatSet):
         outside = ~self
         if not outside.is_bounded:
             raise UnboundedError(
-                "This region and its complement both reach to infinity; such a region can only be"
-                " moved by whole lattice steps, quarter turns and mirrors of the axes.",
+                "This region and its complement both reach to infinity, so it can only be"
+                " translated by whole lattice steps, rotated by quarter turns and mirrored at"
+                " the axes. Intersect it with a bounded region first.",
                 "unbounded",
             )
         return ~outside._placed(factor)
 
     def _pitch_for(self, loops: Sequence[FloatArray]) -> int | None:
-        """Return the region's own pitch if its lattice has the range of these points, else None."""
+        """Return the region's pitch if all points lie in the range of its lattice, else None."""
         largest = max((float(np.abs(loop).max()) for loop in loops), default=0.0)
         return self.pitch if largest < (2**53 - 1) * 10.0**self.pitch else None
 
@@ -579,7 +592,8 @@ class Region(FlatSet):
         segments : int
             The number of sides of a full circle, for arcs, at least 3.
         miter_limit : float
-            Mitred corners farther than this multiple of `delta` from the old corner become square.
+            A mitred corner is squared if it is farther from the old corner than this multiple of
+            `delta`.
 
         Raises
         ------
@@ -622,7 +636,7 @@ class Region(FlatSet):
             The radius of the arcs, in model units.
         corners : function, optional
             Takes corners, (n, 2), and returns for each whether to round it. Only corners where the
-            outline bends by more than 30 degrees are rounded; by default all of these.
+            outline bends by more than 30 degrees are rounded; by default all such corners.
         segments : int
             The number of sides of a full circle, at least 4.
 
@@ -657,7 +671,7 @@ class Region(FlatSet):
         size : float
             The distance from the corner to the cut along both edges, in model units.
         corners : function, optional
-            As for `fillet`.
+            Takes corners, (n, 2), and returns for each whether to cut it off, as for `fillet`.
 
         Raises
         ------
@@ -676,7 +690,7 @@ class Region(FlatSet):
         return chamfer_region(self, size, corners)
 
     def hull(self) -> "Region":
-        """Return the convex hull of the region, exactly.
+        """Return the convex hull of the region, computed exactly.
 
         Examples
         --------
@@ -720,9 +734,9 @@ class Region(FlatSet):
     def warp(self, function: Callable[[FloatArray], Any]) -> "Region":
         """Return the region after a function has moved each of its corners.
 
-        Edges stay straight. Inside are the points with a winding number of the moved outlines that
-        is not zero, so that mirror images are correct; a fold that covers a part once in either
-        orientation cancels out.
+        Edges stay straight. A point is inside the result if its winding number in the moved
+        outlines is not zero, so that mirror images are correct; a part that a fold covers once in
+        each orientation has winding number zero and vanishes.
 
         Parameters
         ----------
@@ -782,7 +796,7 @@ class Region(FlatSet):
     def revolve(self, *, angle: Scalar = 360.0, segments: int = SEGMENTS) -> Solid:
         """Return the solid that the region sweeps around z; x is the distance from the axis.
 
-        See `bspcsg.revolve`; empty for an empty region.
+        The parameters are those of `bspcsg.revolve`; an empty region gives an empty solid.
         """
         return revolve(self, angle=angle, segments=segments)
 
@@ -811,7 +825,10 @@ class Region(FlatSet):
         name = file_path(path)
         suffix = os.path.splitext(name)[1].lower()
         if suffix not in (".svg", ".dxf"):
-            message = f"{name}: a region is written as .svg or .dxf."
+            message = (
+                f"{name}: a region cannot be written in this format; choose a file name that ends"
+                " in .svg or .dxf."
+            )
             raise FormatError(message, "unknown_format")
         if suffix == ".svg":
             self.to_svg(path, **options)
@@ -858,14 +875,20 @@ class Region(FlatSet):
 
 def _moved_corners(points: FloatArray, given: Any) -> FloatArray:
     """Return the corners that a function returned, or raise an error if they are invalid."""
-    wrong = invalid_parameter(f"The function must return an array of shape {points.shape}.")
+    wrong = invalid_parameter(
+        "The function must return an array of numbers of the shape that it is given,"
+        f" {points.shape}."
+    )
     moved = doubles(given, wrong)
     if moved.shape != points.shape:
         raise wrong
     bad = np.flatnonzero(~np.isfinite(moved).all(axis=1))
     if len(bad):
         x, y = points[bad[0]].tolist()
-        message = f"The function returns no finite point for ({x:g}, {y:g})."
+        message = (
+            f"The function must return finite coordinates, but does not for the point ({x:g},"
+            f" {y:g})."
+        )
         raise invalid_parameter(message, bad[:20].tolist())
     return moved
 

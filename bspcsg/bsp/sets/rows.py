@@ -18,7 +18,9 @@ def hyperplane(normal: Any, offset: Scalar, dimension: int | None = None) -> exa
     entries = np.atleast_1d(np.asarray(normal, dtype=object)).tolist()
     count = len(entries)
     if dimension is None and not 1 <= count <= 3:
-        raise invalid_parameter("The normal of a hyperplane has one to three numbers.")
+        raise invalid_parameter(
+            f"The normal of a hyperplane must have one to three numbers, not {count}."
+        )
     if dimension not in (None, count):
         raise invalid_parameter(
             f"The hyperplane's normal must have {dimension} numbers, not {count}."
@@ -38,7 +40,9 @@ def hyperplane_rows(cuts: Sequence[NormalAndOffset], dimension: int, pitch: int)
 
 def point_rows(points: Any, dimension: int) -> FloatArray:
     """Return points as a (k, dimension) float64 array, or raise an error for another shape."""
-    array = np.ascontiguousarray(doubles(points, invalid_parameter("Points must be numbers.")))
+    array = np.ascontiguousarray(
+        doubles(points, invalid_parameter("points must be an array of numbers."))
+    )
     if dimension == 1 and array.ndim == 1:
         array = array[:, None]
     if array.size == 0:

@@ -54,7 +54,10 @@ class SphericalRegion(SetOperators):
     def __init__(self, cone: ObjectTree) -> None:
         rows = of_kind(ObjectTree, cone, "cone").nodes.coefficients
         if cone.dimension not in (2, 3) or any(row[-1] for row in rows):
-            raise invalid_parameter("All hyperplanes of a cone go through the origin.")
+            raise invalid_parameter(
+                "cone must be a set of 2 or 3 dimensions whose hyperplanes all pass through the"
+                " origin."
+            )
         self._cone = cone
 
     # Making
@@ -91,12 +94,19 @@ class SphericalRegion(SetOperators):
         """
         whole = [_snapped(corner) for corner in _listed(corners)]
         if len(whole) < 3 or any(len(corner) != 3 for corner in whole):
-            raise invalid_parameter("A polygon has at least three corners in space.")
+            raise invalid_parameter(
+                "A spherical polygon needs at least three corners of three numbers each."
+            )
         sides = [_cross(a, b) for a, b in pairwise([*whole, whole[0]])]
         if any(_dot(side, corner) < 0 for side in sides for corner in whole):
-            raise invalid_parameter("The corners are not convex and counterclockwise.")
+            raise invalid_parameter(
+                "The corners of a spherical polygon must be convex and in counterclockwise order,"
+                " seen from outside."
+            )
         if not any(map(any, sides)):
-            raise invalid_parameter("The corners of a polygon must not all have one direction.")
+            raise invalid_parameter(
+                "The corners of a spherical polygon must not all have the same direction."
+            )
         return cls._inside(side for side in sides if any(side))
 
     @classmethod
@@ -104,7 +114,9 @@ class SphericalRegion(SetOperators):
         """Return all directions of the plane counterclockwise from start to end, vectors (2,)."""
         a, b = _snapped(start), _snapped(end)
         if len(a) != 2 or len(b) != 2:
-            raise invalid_parameter("An arc goes from one direction of the plane to another.")
+            raise invalid_parameter(
+                "start and end of an arc must be directions of the plane, of two numbers each."
+            )
         sides = [[-a[1], a[0]], [b[1], -b[0]]]
         turn = a[0] * b[1] - a[1] * b[0]
         if turn > 0 or (turn == 0 and a[0] * b[0] + a[1] * b[1] < 0):
@@ -188,7 +200,9 @@ class SphericalRegion(SetOperators):
         def side(direction: Any) -> int:
             place = tuple(map(Fraction, _snapped(direction)))
             if len(place) != self.dimension:
-                raise invalid_parameter(f"A direction here has {self.dimension} numbers.")
+                raise invalid_parameter(
+                    f"A direction must have {self.dimension} numbers here, not {len(place)}."
+                )
             seen, pending = set(), [start]
             while pending:
                 row = pending.pop()
@@ -262,7 +276,10 @@ def visible_sky(facets: Any, eye: Any) -> SphericalRegion:
     """
     shapes = doubles(facets, invalid_parameter("Facets must be an array of numbers."))
     if shapes.ndim != 3 or shapes.shape[1:] not in ((2, 2), (3, 3)):
-        raise invalid_parameter(f"Facets must be segments or triangles, not {shapes.shape}.")
+        raise invalid_parameter(
+            "Facets must be segments of shape (n, 2, 2) or triangles of shape (n, 3, 3), not"
+            f" {shapes.shape}."
+        )
     place = exact_point(eye, shapes.shape[2], "eye")
     hidden = [SphericalRegion.empty(len(place))]
     for shape in shapes.tolist():
@@ -309,9 +326,9 @@ def _whole(direction: Any) -> list[int]:
     try:
         exact = [exact_number(entry) for entry in entries]
     except (TypeError, ValueError, OverflowError) as error:
-        raise invalid_parameter("A direction is two or three finite numbers.") from error
+        raise invalid_parameter("A direction must be two or three finite numbers.") from error
     if len(exact) not in (2, 3) or not any(exact):
-        raise invalid_parameter("A direction is two or three numbers, not all of them zero.")
+        raise invalid_parameter("A direction must be two or three numbers that are not all zero.")
     denominator = math.lcm(*(x.denominator for x in exact))
     whole = [int(x * denominator) for x in exact]
     divisor = math.gcd(*whole)

@@ -69,7 +69,9 @@ class SubHyperplane(SetOperators):
     def __init__(self, normal: Any, offset: Scalar = 0.0, part: InnerSet | None = None) -> None:
         wanted = hyperplane(normal, offset)
         if len(wanted.normal) == 1:
-            raise invalid_parameter("A sub-hyperplane lies in the plane or in space.")
+            raise invalid_parameter(
+                "A sub-hyperplane must lie in a space of 2 or 3 dimensions, not 1."
+            )
         self._normal = np.array([float(x) for x in wanted.normal])
         length = float(np.linalg.norm(self._normal))
         self._normal /= length
@@ -78,13 +80,18 @@ class SubHyperplane(SetOperators):
             self._offset = float(wanted.offset) / length
         except OverflowError as error:
             raise LimitError(
-                "The hyperplane lies outside the range of doubles.", "too_large"
+                "The offset of the hyperplane is too large for doubles; choose a hyperplane"
+                " nearer to the origin.",
+                "too_large",
             ) from error
         inner = self.dimension - 1
         whole: InnerSet = Intervals.full() if inner == 1 else Region.full()
         self._part = whole if part is None else _inner(part)
         if self._part.dimension != inner:
-            raise invalid_parameter(f"part must have dimension {inner} in this hyperplane.")
+            raise invalid_parameter(
+                f"part must have dimension {inner}, the dimension of this hyperplane, not"
+                f" {self._part.dimension}."
+            )
 
     # Parts of sets
 
@@ -203,7 +210,11 @@ class SubHyperplane(SetOperators):
             If the part reaches to infinity.
         """
         if not self.is_bounded:
-            raise UnboundedError("The part reaches to infinity and has no pieces.", "unbounded")
+            raise UnboundedError(
+                "This part of a hyperplane reaches to infinity, so it cannot be divided into"
+                " pieces; intersect it with a bounded set first.",
+                "unbounded",
+            )
         if isinstance(self._part, Region):
             return [self._lifted(corners) for corners in self._part.convex_parts()]
         return [self._lifted(pair[:, None]) for pair in self._part.pairs]
@@ -270,11 +281,16 @@ class SubHyperplane(SetOperators):
     def _beside(self, other: "SubHyperplane") -> Any:
         """Return the part of `other`, which lies in this hyperplane, in this one's coordinates."""
         if self.dimension != other.dimension:
-            raise invalid_parameter("The sub-hyperplanes must have one dimension.")
+            raise invalid_parameter(
+                f"The sub-hyperplanes have different dimensions, {self.dimension} and"
+                f" {other.dimension}; they must have the same."
+            )
         same = float(self._normal @ other._normal)
         gap = self._offset - np.sign(same) * other._offset
         if abs(abs(same) - 1) > _SAME or abs(gap) > _SAME * max(1.0, abs(self._offset)):
-            raise invalid_parameter("The sub-hyperplanes must lie in one hyperplane.")
+            raise invalid_parameter(
+                "The sub-hyperplanes lie in different hyperplanes; they must lie in the same."
+            )
         return other._part if same > 0 else other.reversed()._part
 
     # Division and motion
@@ -368,7 +384,7 @@ def _inner(part: Any) -> InnerSet:
 
 def _tree(points: TreeSet) -> ObjectTree:
     if set_of(points, "points").dimension == 1:
-        raise invalid_parameter("A sub-hyperplane lies in the plane or in space.")
+        raise invalid_parameter("A sub-hyperplane must lie in a space of 2 or 3 dimensions, not 1.")
     return points.tree
 
 
@@ -413,7 +429,9 @@ def _lattice_part(
         whole = SubHyperplane(normal, row[-1] / longest * step)
     except OverflowError as error:
         raise LimitError(
-            "The hyperplane lies outside the range of doubles.", "too_large"
+            "The offset of the hyperplane is too large for doubles; choose a hyperplane"
+            " nearer to the origin.",
+            "too_large",
         ) from error
     if pieces is None:
         return whole
@@ -427,14 +445,18 @@ def _lattice_part(
         ]
         return whole._with(Intervals([pair for pair in pairs if pair[0] < pair[1]]))
     if any(np.abs(piece).max() > border for piece in pieces):
-        raise UnboundedError("A part of the plane reaches to infinity.", "unbounded")
+        raise UnboundedError(
+            "The part of the plane inside this set reaches to infinity; intersect the set with a"
+            " bounded one first.",
+            "unbounded",
+        )
     return whole._with(Region(flat, winding="nonzero"))
 
 
 def _affine(matrix: Any, dimension: int) -> tuple[FloatArray, FloatArray]:
     refusal = invalid_parameter(
-        f"A map of {dimension} dimensions is an affine matrix of {dimension} or {dimension + 1}"
-        " rows that can be inverted."
+        f"The matrix must be an invertible affine matrix of {dimension} or {dimension + 1}"
+        f" rows and {dimension + 1} columns."
     )
     rows = doubles(matrix, refusal)
     square = (dimension + 1, dimension + 1)

@@ -1,4 +1,4 @@
-"""`TreeSet`: the base class of sets of points with a partition tree."""
+"""`TreeSet`: the base class of sets of points that are represented by a partition tree."""
 
 from abc import abstractmethod
 from fractions import Fraction
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 class TreeSet(PointSet):
-    """A set of points with a partition tree; an immutable value.
+    """A set of points that a partition tree represents; an immutable value.
 
-    Sets of one dimension can be compared and combined, whatever their class; a result has the first
-    operand's class.
+    Sets of the same dimension can be compared and combined, even if their classes differ; a result
+    has the class of the first operand.
     """
 
     __slots__ = ("_tree",)
@@ -30,18 +30,18 @@ class TreeSet(PointSet):
     @property
     @abstractmethod
     def tree(self) -> "ObjectTree":
-        """The set's partition tree, with its nodes, cells and pieces of boundary."""
+        """The set as an `ObjectTree`, which gives access to nodes, cells and boundary pieces."""
 
     @abstractmethod
     def _merged(self, other: "TreeSet", op: SetOp) -> Self:
-        """Return the result of a set operation on this set and another one."""
+        """Return the result of a set operation on this set and another one of its dimension."""
 
     def __or__(self, other: object) -> Self:
-        """Return the union of both sets."""
+        """Return the union of this set and the other one."""
         return self._merged(other, "union") if isinstance(other, TreeSet) else NotImplemented
 
     def __and__(self, other: object) -> Self:
-        """Return the intersection of both sets."""
+        """Return the intersection of this set and the other one."""
         return self._merged(other, "intersection") if isinstance(other, TreeSet) else NotImplemented
 
     def __sub__(self, other: object) -> Self:
@@ -49,7 +49,7 @@ class TreeSet(PointSet):
         return self._merged(other, "difference") if isinstance(other, TreeSet) else NotImplemented
 
     def __xor__(self, other: object) -> Self:
-        """Return the symmetric difference of both sets."""
+        """Return the symmetric difference of this set and the other one."""
         return self._merged(other, "xor") if isinstance(other, TreeSet) else NotImplemented
 
     @abstractmethod
@@ -57,7 +57,7 @@ class TreeSet(PointSet):
         """Return the parts of the set on the minus and on the plus side of a hyperplane."""
 
     def isdisjoint(self, other: "TreeSet") -> bool:
-        """Return true if the sets have no interior point in common; they may touch."""
+        """Return true if both sets have no interior point in common; they may touch."""
         return (self & set_of(other)).is_empty
 
     def _is_alike(self, other: object) -> bool:
@@ -91,16 +91,16 @@ class TreeSet(PointSet):
 
     @abstractmethod
     def nearest(self, points: Any) -> tuple[FloatArray, FloatArray]:
-        """Return the nearest boundary point of each point, (k, d), and its distance, (k,)."""
+        """Return for each point the nearest boundary point, (k, d), and its distance, (k,)."""
 
     def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
-        """Return what `nearest` returns; deprecated name, since a projection is a shadow."""
+        """Return the result of `nearest`; deprecated name, since a projection is a shadow."""
         deprecated(f"{type(self).__name__}.project", "nearest")
         return self.nearest(points)
 
     @property
     def measure(self) -> Fraction:
-        """The exact length, area or volume of the set in model units, by its dimension.
+        """The exact length, area or volume of the set, in (square, cubic) model units.
 
         Raises
         ------
@@ -112,7 +112,7 @@ class TreeSet(PointSet):
 
     @property
     def dimension(self) -> int:
-        """The dimension of space: 1, 2 or 3."""
+        """The dimension of the space that contains the set: 1, 2 or 3."""
         return self._tree.dimension
 
     @property
@@ -132,12 +132,12 @@ class TreeSet(PointSet):
 
     @property
     def is_bounded(self) -> bool:
-        """True if a bounded box contains the set."""
+        """True if the set does not reach to infinity."""
         return self._tree.is_bounded
 
 
 def set_of(value: object, name: str = "other") -> TreeSet:
-    """Return the value itself if it is a `TreeSet`, or raise an error that names it."""
+    """Return a value if it is a `TreeSet`, else raise an error that names the parameter."""
     if isinstance(value, TreeSet):
         return value
     message = f"{name} must be a Region, Intervals or an ObjectTree, not {shown(value)}."

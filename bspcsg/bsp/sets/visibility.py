@@ -64,7 +64,10 @@ def visibility_polygon(
         turn = _turn(place, a, b)
         if not turn:
             if _between(place, a, b):
-                raise invalid_parameter("The eye lies on a segment.")
+                raise invalid_parameter(
+                    "The eye lies on a segment, so what it sees is not defined; move the eye off"
+                    " the segment."
+                )
             continue
         first, last = (a, b) if turn > 0 else (b, a)
         # The shadow: left of the ray to the first end, right of the ray to the last, behind the

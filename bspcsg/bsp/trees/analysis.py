@@ -365,10 +365,12 @@ def _whole(segments: Any) -> IndexArray:
     array = np.asarray(segments)
     whole: IndexArray = array.astype(np.int64)
     if whole.ndim != 3 or whole.shape[1:] != (2, 2) or not np.array_equal(whole, array):
-        message = "Segments must be whole numbers of shape (n, 2, 2)."
+        message = "segments must be an array of integers of shape (n, 2, 2)."
         raise InvalidMeshError(message, "shape")
     if whole.size and np.abs(whole).max() >= 1 << 25:
-        raise invalid_parameter("Coordinates must be below 2^25 in magnitude.")
+        raise invalid_parameter(
+            "The coordinates of the segments must be below 2^25 in magnitude; scale them down."
+        )
     return whole
 
 

@@ -59,7 +59,7 @@ def pairs_of(cuts: Any) -> list[tuple[Any, Any]]:
     try:
         return [(normal, offset) for normal, offset in cuts]
     except (TypeError, ValueError) as error:
-        message = f"A hyperplane is a pair of a normal and an offset; these are {shown(cuts)}."
+        message = f"Hyperplanes must be a list of pairs (normal, offset), not {shown(cuts)}."
         raise invalid_parameter(message) from error
 
 
@@ -97,8 +97,8 @@ def asked_tree(
             place = range(len(rows))[chosen]
         except (TypeError, IndexError) as error:
             message = (
-                f"A policy returns the place of one of its {len(rows)} candidates, or a pair"
-                f" (normal, offset); not {chosen!r}."
+                f"The policy must return the index of one of its {len(rows)} candidates or a"
+                f" hyperplane (normal, offset), not {chosen!r}."
             )
             raise invalid_parameter(message) from error
         return place, None
@@ -108,5 +108,5 @@ def asked_tree(
 
 def _pair(chosen: tuple[Any, ...]) -> tuple[Any, Any]:
     if len(chosen) != 2:
-        raise invalid_parameter(f"A hyperplane is a pair (normal, offset), not {chosen!r}.")
+        raise invalid_parameter(f"A hyperplane must be a pair (normal, offset), not {chosen!r}.")
     return chosen

@@ -164,7 +164,10 @@ class AttributeTree(Generic[Label]):
         corners = self._corners(facet)
         row = _supporting(corners)
         if any(height(corner, row) for corner in corners):
-            raise InvalidMeshError("The facet's corners are not in one plane.", "non_planar")
+            raise InvalidMeshError(
+                "The corners of the facet do not lie in one plane; divide it into triangles.",
+                "non_planar",
+            )
         grown = self._copy()
         pending: list[_Part] = [(corners, self._root, None, 0)]
         while pending:
@@ -233,7 +236,10 @@ class AttributeTree(Generic[Label]):
         array = doubles(facet, refusal)
         rows, _ = corners_of(array.reshape(1) if self.dimension == 1 else array[None])
         if rows.shape[1] != self.dimension:
-            message = f"The facet has dimension {rows.shape[1]}, the tree {self.dimension}."
+            message = (
+                f"The corners of the facet have {rows.shape[1]} coordinates, but the tree has"
+                f" dimension {self.dimension}."
+            )
             raise InvalidMeshError(message, "shape")
         return [tuple(map(exact_number, _steps(row, self.pitch))) for row in rows]
 
@@ -290,10 +296,10 @@ def _checked_rule(rule: "CutRule[Label]") -> tuple[Label, Label] | None:
         return None
     try:
         if isinstance(rule, (str, bytes)):
-            raise TypeError("a text is no pair")
+            raise TypeError("a string is not a pair of labels")
         minus, plus = rule
     except (TypeError, ValueError) as error:
-        message = f"rule must be 'inherit' or two labels, not {shown(rule)}."
+        message = f"rule must be 'inherit' or a pair of labels (minus, plus), not {shown(rule)}."
         raise invalid_parameter(message) from error
     return minus, plus
 
@@ -324,5 +330,9 @@ def _supporting(corners: Sequence[Corner]) -> tuple[int, ...]:
                 u, v = (k + 1) % 3, (k + 2) % 3
                 normal[k] += a[u] * b[v] - a[v] * b[u]
     if not any(normal):
-        raise InvalidMeshError("The facet has no extent on the lattice.", "degenerate")
+        raise InvalidMeshError(
+            "The facet has no length or area once its corners are rounded to the lattice; leave"
+            " it out, or choose a finer pitch.",
+            "degenerate",
+        )
     return (*normal, sum(n * x for n, x in zip(normal, first, strict=True)))

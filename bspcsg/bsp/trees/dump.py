@@ -54,13 +54,22 @@ def parsed(text: str) -> Parts:
         content = json.loads(text)
         known = content["format"] == _FORMAT and content["version"] in (_FIRST, _SECOND, _VERSION)
     except (ValueError, TypeError, KeyError) as error:
-        raise FormatError("This is not a partition tree in JSON.", "bad_snapshot") from error
+        raise FormatError(
+            "The text is not a stored partition tree: it is no JSON, or lacks format and version.",
+            "bad_snapshot",
+        ) from error
     if not known:
-        message = f"Only versions up to {_VERSION} of the format {_FORMAT!r} can be read."
+        message = (
+            f"The stored tree has the format {content['format']!r} in version"
+            f" {content.get('version')!r}, but only {_FORMAT!r} up to version {_VERSION} is read."
+        )
         raise FormatError(message, "bad_snapshot")
     checksum = content.pop("checksum", None)
     if content["version"] != _FIRST and checksum != _checksum(content):
-        message = "The stored tree was damaged on its way: the checksum does not match."
+        message = (
+            "The stored tree was changed or damaged after it was written: its checksum does not"
+            " match."
+        )
         raise FormatError(message, "bad_snapshot")
     try:
         return _rebuilt(content)
@@ -99,13 +108,13 @@ def _whole(values: Any, columns: int) -> IndexArray:
     """Return integers as an int64 array: (n, columns), or of the given shape if `columns` is 0."""
     array = np.asarray(values if len(values) else np.zeros(0, dtype=np.int64))
     if array.dtype.kind != "i":
-        raise ValueError("numbers that are not whole")
+        raise ValueError("an array has numbers that are not integers")
     integers = np.ascontiguousarray(array, dtype=np.int64)
     if not columns:
         return integers
     rows = integers if integers.size else integers.reshape(0, columns)
     if rows.ndim != 2 or rows.shape[1] != columns:
-        raise ValueError(f"rows that do not have {columns} numbers")
+        raise ValueError(f"an array has rows that do not have {columns} numbers each")
     return rows
 
 
@@ -134,11 +143,14 @@ _MAX_WIDTH_PIXELS = 1 << 20
 def to_svg(tree: "PartitionTree", size: int = 480) -> str:
     """Return a picture of a 2D tree as SVG text, `size` pixels wide."""
     if tree.dimension != 2:
-        raise invalid_parameter("Only trees in the plane are drawn as SVG.")
+        raise invalid_parameter(
+            "Only trees of dimension 2 can be drawn as SVG, and this tree has dimension"
+            f" {tree.dimension}."
+        )
     width = at_least(1, size, "size")
     if width > _MAX_WIDTH_PIXELS:
         raise LimitError(
-            f"size must be {_MAX_WIDTH_PIXELS} at most, not {shown(size)}.", "too_large"
+            f"size must be at most {_MAX_WIDTH_PIXELS} pixels, not {shown(size)}.", "too_large"
         )
     outline = np.asarray(tree.region())
     low, high = outline.min(axis=0), outline.max(axis=0)

@@ -30,7 +30,10 @@ def corners_of(facets: Any) -> Corners:
         If the shape is none of those that `PartitionTree` takes.
     """
     if isinstance(facets, Sequence) and not len(facets):
-        message = "An empty list has no dimension; use an empty array of one of the shapes."
+        message = (
+            "The list of facets is empty, so its dimension is unknown; pass an empty array of"
+            " shape (0,), (0, 2, 2) or (0, 3, 3)."
+        )
         raise InvalidMeshError(message, "shape")
     array = doubles_or_none(facets)
     if array is None:
@@ -40,7 +43,9 @@ def corners_of(facets: Any) -> Corners:
     is_segments = array.ndim == 3 and array.shape[1:] == (2, 2)
     is_polygons = array.ndim == 3 and array.shape[1] >= 3 and array.shape[2] == 3
     if not (is_segments or is_polygons):
-        raise InvalidMeshError(f"Facets must be {_FORMS}; not {array.shape}.", "shape")
+        raise InvalidMeshError(
+            f"Facets must be {_FORMS}, not an array of shape {array.shape}.", "shape"
+        )
     count, corners, dimension = array.shape
     flat = np.ascontiguousarray(array.reshape(-1, dimension))
     return flat, np.arange(count + 1) * corners
@@ -75,7 +80,7 @@ def mesh_of(mesh: Any) -> MeshArrays:
         mesh = mesh.to_mesh()
     vertices, faces = interop.own_arrays(*interop.arrays_from(mesh))
     if faces.size and (faces.min() < 0 or faces.max() >= len(vertices)):
-        message = "A face names a vertex that does not exist."
+        message = f"A face has a vertex index outside 0 to {len(vertices) - 1}."
         raise InvalidMeshError(message, "index_out_of_range")
     return vertices, faces
 
@@ -104,7 +109,10 @@ def box_corners(low: Any, high: Any, dimension: int) -> tuple[list[Fraction], li
     """
     least, most = exact_point(low, dimension, "low"), exact_point(high, dimension, "high")
     if any(start > end for start, end in zip(least, most, strict=True)):
-        message = f"low must not be above high on any axis: {shown(low)} and {shown(high)}."
+        message = (
+            f"low must not be above high along any axis, but low is {shown(low)} and high is"
+            f" {shown(high)}."
+        )
         raise invalid_parameter(message)
     return least, most
 
@@ -117,7 +125,7 @@ def vector_rows(given: Any, dimension: int, name: str) -> FloatArray:
     InvalidParameterError
         If the shape is neither (n, d) nor (d,).
     """
-    array = doubles(given, invalid_parameter(f"{name} must be numbers."))
+    array = doubles(given, invalid_parameter(f"{name} must be an array of numbers."))
     if dimension == 1 and array.ndim <= 1:
         array = array.reshape(-1, 1)
     array = np.atleast_2d(array)

@@ -45,7 +45,10 @@ class Fragments:
     def __getitem__(self, index: int) -> FloatArray:
         """Return the (m, d) corners of one fragment."""
         if not -len(self) <= index < len(self):
-            raise IndexError(f"There are {len(self)} fragments, none is number {index}.")
+            raise IndexError(
+                f"There is no fragment {index}; the tree has {len(self)} fragments, numbered from"
+                " 0."
+            )
         index %= len(self)
         return self.vertices[self.offsets[index] : self.offsets[index + 1]]
 

@@ -33,7 +33,11 @@ def moved_core(
     shift = _steps(offset, core.dimension, core.pitch)
     largest = int(np.abs(corners).max(initial=0)) * scale + int(np.abs(shift).max())
     if largest >= _REACH:
-        raise LimitError("The moved tree does not fit the lattice.", "too_large")
+        raise LimitError(
+            "The moved tree extends beyond the lattice of 2^53 steps; move it less, or build it"
+            " with a coarser pitch.",
+            "too_large",
+        )
     own = [_moved_row(row, matrix, shift, scale) for row in core.own()]
     cuts = core.nodes()["cut"].copy()
     for cut in cuts:
@@ -51,7 +55,10 @@ def moved_core(
 
 def _rotation(axes: Sequence[int] | None, dimension: int) -> IndexArray:
     """Return the matrix of a signed permutation of the axes that is no mirror image."""
-    message = f"The axes must be those from 1 to {dimension}, each once, with a sign."
+    message = (
+        f"axes must contain each number from 1 to {dimension} exactly once, with a plus or minus"
+        " sign."
+    )
     try:
         given = list(range(1, dimension + 1)) if axes is None else list(map(index, axes))
     except TypeError as error:
@@ -62,20 +69,27 @@ def _rotation(axes: Sequence[int] | None, dimension: int) -> IndexArray:
     for row, axis in enumerate(given):
         matrix[row, abs(axis) - 1] = 1 if axis > 0 else -1
     if round(float(np.linalg.det(matrix))) != 1:
-        raise invalid_parameter(f"The axes {tuple(given)} are a mirror image, no rotation.")
+        raise invalid_parameter(
+            f"axes={tuple(given)} is a reflection, but must be a rotation; change the sign of one"
+            " axis."
+        )
     return matrix
 
 
 def _steps(offset: Any, dimension: int, pitch: int) -> IndexArray:
     if offset is None:
         return np.zeros(dimension, dtype=np.int64)
-    refusal = invalid_parameter(f"The offset must be {dimension} finite numbers.")
+    refusal = invalid_parameter(f"offset must be {dimension} finite numbers.")
     given = np.atleast_1d(doubles(offset, refusal))
     if given.shape != (dimension,) or not np.isfinite(given).all():
         raise refusal
     steps = [round(exact_number(x) / Fraction(10) ** pitch) for x in given.tolist()]
     if max(map(abs, steps)) >= _REACH:
-        raise LimitError("The moved tree does not fit the lattice.", "too_large")
+        raise LimitError(
+            "The moved tree extends beyond the lattice of 2^53 steps; move it less, or build it"
+            " with a coarser pitch.",
+            "too_large",
+        )
     return np.array(steps, dtype=np.int64)
 
 

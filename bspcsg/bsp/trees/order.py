@@ -1,4 +1,4 @@
-"""Traversals of a partition tree: back to front, by distance, and plain ones."""
+"""Traversals of a partition tree: in painter's order, by distance, pre-, in- and postorder."""
 
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Literal
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 def back_to_front(tree: "PartitionTree", eye: Any, direction: Any) -> Fragments:
-    """Return the fragments so that none hides one that comes after it."""
+    """Return the tree's fragments in an order in which none hides a later one: farthest first."""
     return tree.fragments.take(_painted(tree, eye, direction))
 
 
 def front_to_back(tree: "PartitionTree", eye: Any, direction: Any) -> Fragments:
-    """Return the fragments in the reverse order of `back_to_front`."""
+    """Return the tree's fragments, nearest first: no fragment hides an earlier one."""
     return tree.fragments.take(_painted(tree, eye, direction)[::-1])
 
 
@@ -36,7 +36,7 @@ def _painted(tree: "PartitionTree", eye: Any, direction: Any) -> IndexArray:
 
 def _viewpoint(tree: "PartitionTree", eye: Any, direction: Any) -> tuple[list[float], bool]:
     if (eye is None) == (direction is None):
-        raise invalid_parameter("Give either an eye or a direction.")
+        raise invalid_parameter("Give exactly one of eye and direction.")
     at_infinity = eye is None
     name = "direction" if at_infinity else "eye"
     refusal = invalid_parameter(f"The {name} must be {tree.dimension} numbers.")
@@ -44,19 +44,19 @@ def _viewpoint(tree: "PartitionTree", eye: Any, direction: Any) -> tuple[list[fl
     if given.shape != (tree.dimension,):
         message = f"The {name} must have {tree.dimension} coordinates, not {given.shape}."
         raise invalid_parameter(message)
-    # A viewer who looks along a direction is infinitely far away in the opposite direction.
+    # The eye of a parallel projection is infinitely far away, opposite to the direction of view.
     full: FloatArray = np.zeros(3)
     full[: tree.dimension] = -given if at_infinity else given
     return full.tolist(), at_infinity
 
 
 def near_to_far(tree: "PartitionTree", eye: Any, direction: Any) -> Iterator[Node | Leaf]:
-    """Yield nodes and leaves from near to far: near side, node, far side."""
+    """Yield nodes and leaves by distance: child on the eye's side, node, other child."""
     return _by_distance(tree, _sides(tree, eye, direction))
 
 
 def far_to_near(tree: "PartitionTree", eye: Any, direction: Any) -> Iterator[Node | Leaf]:
-    """Yield nodes and leaves in the reverse order of `near_to_far`."""
+    """Yield nodes and leaves from far to near: far child, node, child on the eye's side."""
     return _by_distance(tree, -_sides(tree, eye, direction), ties_minus_first=False)
 
 
@@ -79,7 +79,7 @@ def _by_distance(
 
 
 def walk(tree: "PartitionTree", order: Literal["pre", "in", "post"]) -> Iterator[Node | Leaf]:
-    """Yield all nodes and leaves, minus before plus; a node before, between or after both."""
+    """Yield all nodes and leaves, minus child first; "in": a node between its two children."""
     orders = ("pre", "in", "post")
     place = orders.index(word(orders, order, "order"))
 
@@ -94,7 +94,7 @@ def walk(tree: "PartitionTree", order: Literal["pre", "in", "post"]) -> Iterator
 def _traversed(
     tree: "PartitionTree", arranged: Callable[[Node], Sequence[Node | Leaf]]
 ) -> Iterator[Node | Leaf]:
-    """Yield nodes and leaves, given the order of each node and its two children."""
+    """Yield all nodes and leaves; `arranged` returns the order of a node and its two children."""
     pending: list[tuple[Node | Leaf, bool]] = [(tree.root or Leaf(tree, None, "minus"), False)]
     while pending:
         place, opened = pending.pop()
@@ -105,9 +105,11 @@ def _traversed(
 
 
 def visit(tree: "PartitionTree", visitor: Visitor, order: Literal["pre", "in", "post"]) -> None:
-    """Call ``visitor.node(node)`` or ``visitor.leaf(leaf)`` for each, in an order of `walk`."""
+    """Call ``visitor.node(node)`` or ``visitor.leaf(leaf)`` for each, in the order given."""
     if not (hasattr(visitor, "node") and hasattr(visitor, "leaf")):
-        raise invalid_parameter(f"visitor must have node() and leaf(), not {shown(visitor)}.")
+        raise invalid_parameter(
+            f"visitor must be an object with methods node() and leaf(), not {shown(visitor)}."
+        )
     for place in walk(tree, order):
         if isinstance(place, Leaf):
             visitor.leaf(place)

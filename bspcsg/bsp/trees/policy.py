@@ -55,7 +55,7 @@ def checked_policy(policy: Any) -> Policy:
             known: Policy = name
             return known
     names = ", ".join(get_args(Policy))
-    message = f"Unknown policy {shown(policy)}; there are {names}, or a callable."
+    message = f"Unknown policy {shown(policy)}; known are {names}, or pass a function."
     raise invalid_parameter(message)
 
 

@@ -31,19 +31,19 @@ from .trace import Construction, PointTrace, RayCosts, RayTrace, division, point
 if TYPE_CHECKING:
     from ..._core import NodeArrays
 
-#: The default margin of regions around the box of the facets, as a fraction of its largest extent.
+#: The default distance by which regions exceed the facets' box, as a fraction of its extent.
 MARGIN = 0.05
 
-#: Notebooks draw trees with at most this many nodes, which takes one second and two megabytes.
+#: Notebooks draw trees with at most this many nodes; such a picture takes a second and 2 MB.
 _MAX_NODES_DRAWN = 10_000
 
 
 class PartitionTree:
     """A binary space partition tree over points, segments or polygons.
 
-    Each node v has a hyperplane H(v), the coplanar set S(v) of fragments that lie in it, and two
-    subtrees over the fragments on its minus (inside) and plus side. Every leaf is an empty region.
-    Immutable; safe to share between threads.
+    Each node v has a hyperplane H(v), the coplanar set S(v) of fragments (parts of facets) that lie
+    in H(v), and two subtrees over the fragments on the minus (inside) and the plus side of H(v).
+    Every leaf is a region without facets. Immutable; safe to share between threads.
 
     Parameters
     ----------
@@ -53,11 +53,11 @@ class PartitionTree:
         They may cross, touch, overlap and repeat. An array without facets gives a tree without
         nodes.
     policy : str or callable
-        The rule whose hyperplane divides a region, see `bspcsg.bsp.trees.policy`. A callable takes
-        a `Choice`, which has the candidates and their counts, and returns the index of a candidate,
-        or a hyperplane (normal, offset).
+        The rule that chooses the facet whose hyperplane divides a region (see
+        `bspcsg.bsp.trees.policy`). A callable takes a `Choice`, which has the candidates and their
+        counts, and returns the index of a candidate, or a hyperplane (normal, offset).
     seed : int
-        For the policy "random".
+        The seed of the random order, for the policy "random".
     top : int
         Regions with more facets than this are divided by axis-parallel hyperplanes; 0 for never.
         Use about 16 for surfaces: the autopartition of a convex body is a chain.
@@ -67,8 +67,8 @@ class PartitionTree:
         From 0 (least splits) to 1 (balance), for the policy "weighted".
     cuts : sequence of (normal, offset)
         Hyperplanes given by the caller, ``normal · x = offset`` in model units, with the minus side
-        where the product is smaller. In each region the first of them with pieces on both sides is
-        used before the policy. They are snapped as by `ObjectTree.half_space`.
+        where the product is smaller. In each region, the first of these cuts with pieces on both
+        sides is used before the policy. Cuts are snapped as by `ObjectTree.half_space`.
     pitch : int, optional
         The lattice step is ``10**pitch`` units. By default -9, or another if the size requires it.
     non_planar : {"error", "triangulate"}
@@ -146,7 +146,7 @@ class PartitionTree:
     def from_core(
         cls, core: FragmentTree, lenience: tuple[bool, bool], margin: float | None = None
     ) -> "PartitionTree":
-        """Return the tree around an object of the core (for the modules of this package)."""
+        """Wrap a tree of the compiled core (for the modules of this package)."""
         tree = cls.__new__(cls)
         tree._set(core, lenience, margin)
         return tree
@@ -164,7 +164,7 @@ class PartitionTree:
         mesh : object
             A `Solid`, a pair (vertices, faces), or anything else that `Solid.from_mesh` takes.
         policy, top, **options
-            As for `PartitionTree`.
+            Parameters of `PartitionTree`.
         """
         return cls(mesh_triangles(mesh), policy, top=top, **{"degenerate": "drop", **options})
 
@@ -172,8 +172,8 @@ class PartitionTree:
     def perfect(cls, facets: Any, **options: Any) -> "PartitionTree | None":
         """Return a tree whose cuts lie in facets' hyperplanes and split no facet, or None.
 
-        None means that there is no such tree. The search over sets of facets is exhaustive, for at
-        most 24 convex pieces: the problem is NP-hard.
+        None means that there is no such tree: the search is exhaustive. The problem is NP-hard, so
+        at most 24 convex pieces are allowed.
 
         Parameters
         ----------
@@ -205,8 +205,8 @@ class PartitionTree:
         Raises
         ------
         FormatError
-            If there are too many or too few cuts, or a facet is not in the region that it is to
-            cut.
+            If there are too many or too few cuts, or a cut names a facet outside the region that it
+            should cut.
         """
         rows = _cut_rows(cuts)
         corners, offsets = self.core.lattice()
@@ -228,7 +228,7 @@ class PartitionTree:
         return self.core.pitch
 
     def __len__(self) -> int:
-        """Return the number of inner nodes."""
+        """Return the number of inner nodes of the tree."""
         return len(self.core)
 
     @cached_property
@@ -246,7 +246,7 @@ class PartitionTree:
 
     @cached_property
     def fragments(self) -> Fragments:
-        """The fragments of all coplanar sets, node by node in preorder; read-only."""
+        """The fragments of the coplanar sets of all nodes, in preorder of the nodes; read-only."""
         with core_errors():
             fragments = Fragments(*self.core.fragments())
         _seal(vars(fragments))
@@ -254,31 +254,30 @@ class PartitionTree:
 
     @cached_property
     def own_hyperplanes(self) -> tuple[tuple[int, ...], ...]:
-        """The hyperplanes that neither a facet nor an axis gave, each as integers (*n, c).
+        """The cuts that come neither from a facet nor from an axis, each as integers (*n, c).
 
-        The points x of such a hyperplane have n·x = c, with x in lattice steps.
-
+        The hyperplane consists of the points x with n·x = c, with x in lattice steps.
         """
         return tuple(tuple(row) for row in self.core.own())
 
     @property
     def root(self) -> Node | None:
-        """The root, None if there are no facets."""
+        """The root node of the tree, None if there are no facets."""
         return Node(self, 0) if len(self) else None
 
     @property
     def nodes(self) -> tuple[Node, ...]:
-        """All inner nodes in preorder, minus before plus."""
+        """All inner nodes in preorder: a node, its minus subtree, its plus subtree."""
         return tuple(Node(self, index) for index in range(len(self)))
 
     @property
     def splits(self) -> IndexArray:
-        """The cuts of fragments, (k, 2) int64: the node that cut and the facet that was cut."""
+        """The splits of fragments, (k, 2) int64: the node whose cut split, and the facet split."""
         return self.core.splits()
 
     @cached_property
     def margin(self) -> float:
-        """The distance by which regions exceed the box of the facets, in model units."""
+        """The distance by which regions may exceed the box of the facets, in model units."""
         if self._margin is not None:
             return self._margin
         corners, _ = self.core.lattice()
@@ -290,14 +289,14 @@ class PartitionTree:
     def region(self, of: Node | Leaf | None = None, margin: float | None = None) -> RegionShape:
         """Return the region of a node or leaf, by default of the root, clipped to a box.
 
-        The box is that of the facets, enlarged by the margin.
+        The box is the bounding box of the facets, enlarged by the margin on all sides.
 
         Parameters
         ----------
         of : Node or Leaf, optional
         margin : float, optional
-            The distance by which the box exceeds the facets, in model units; by default the tree's
-            own.
+            The distance by which the box exceeds the facets, in model units; by default the
+            `margin` of the tree.
 
         Returns
         -------
@@ -317,7 +316,7 @@ class PartitionTree:
     # Traversals
 
     def back_to_front(self, *, eye: Any = None, direction: Any = None) -> Fragments:
-        """Return the fragments so that none hides one that comes after it.
+        """Return the fragments in painter's order: none hides a later one from the eye.
 
         Parameters
         ----------
@@ -329,13 +328,14 @@ class PartitionTree:
         Returns
         -------
         Fragments
-            Farthest first. Where the eye lies in a node's hyperplane, its fragments are seen
-            edge-on and neither side hides the other; the plus side comes first.
+            Farthest first. If the eye lies in the hyperplane of a node, the node's fragments are
+            seen edge-on and neither side hides the other; the plus side then comes first.
 
         Raises
         ------
         InvalidParameterError
-            If not exactly one of the two is given, one is not finite, or the direction is zero.
+            If not exactly one of eye and direction is given, a coordinate is not finite, or the
+            direction is zero.
 
         Notes
         -----
@@ -345,29 +345,29 @@ class PartitionTree:
         return back_to_front(self, eye, direction)
 
     def front_to_back(self, *, eye: Any = None, direction: Any = None) -> Fragments:
-        """Return the reverse of `back_to_front`: the nearest fragments first."""
+        """Return the fragments, nearest first: the reverse order of `back_to_front`."""
         return front_to_back(self, eye, direction)
 
     def near_to_far(self, *, eye: Any = None, direction: Any = None) -> Iterator[Node | Leaf]:
-        """Yield nodes and leaves from near to far: near side, node, far side."""
+        """Yield nodes and leaves by distance: child on the eye's side, node, other child."""
         return near_to_far(self, eye, direction)
 
     def far_to_near(self, *, eye: Any = None, direction: Any = None) -> Iterator[Node | Leaf]:
-        """Yield nodes and leaves in the reverse order of `near_to_far`."""
+        """Yield nodes and leaves from far to near: far child, node, child on the eye's side."""
         return far_to_near(self, eye, direction)
 
     def walk(self, order: Literal["pre", "in", "post"] = "pre") -> Iterator[Node | Leaf]:
-        """Yield all nodes and leaves, minus before plus; a node before, between or after both."""
+        """Yield all nodes and leaves, minus child first; "in": a node between its two children."""
         return walk(self, order)
 
     def visit(self, visitor: Visitor, order: Literal["pre", "in", "post"] = "pre") -> None:
-        """Call ``visitor.node(node)`` or ``visitor.leaf(leaf)`` for each, in an order of `walk`."""
+        """Call ``visitor.node(node)`` or ``visitor.leaf(leaf)`` for each, in the order given."""
         visit(self, visitor, order)
 
     # Traces
 
     def trace(self) -> Construction:
-        """Return the trace of the construction: the cut of each region, its reason, and the pieces.
+        """Return a trace of the construction: each region's cut, its reason, and where pieces went.
 
         The construction is repeated, as the tree itself keeps no trace. If the tree was made by a
         callable, read from a file or inserted into, the reason of its cuts is "given".
@@ -398,12 +398,12 @@ class PartitionTree:
         return self.trace_point(point).end
 
     def test_ray(self, origins: Any, directions: Any) -> RayCosts:
-        """Return the first facet on each ray, and the numbers of nodes and facets on its path.
+        """Return the first facet that each ray meets, and the nodes and facets visited until then.
 
         At each node the ray visits the child on the side of its origin, then the pieces in the
-        hyperplane, then the other child, until there is a hit. Facets are closed sets; of several
-        facets at one point the hit is the one that this order visits first, and in one node the
-        first of the input.
+        hyperplane, then the other child, until there is a hit. Facets are closed sets. If several
+        facets meet at the hit point, the hit is the facet visited first, and within one node the
+        first in the input.
 
         Parameters
         ----------
@@ -420,10 +420,13 @@ class PartitionTree:
             return RayCosts(*self.core.cast(first, second))
 
     def trace_ray(self, origin: Any, direction: Any) -> RayTrace:
-        """Return the path of one ray step by step, in the order of `test_ray`."""
+        """Return the path of one ray through the tree, step by step, as `test_ray` follows it."""
         first, second = self._rays(origin, direction)
         if len(first) != 1:
-            raise invalid_parameter("A trace is that of one ray.")
+            raise invalid_parameter(
+                f"A trace is made for one ray only, but there are {len(first)} rays; pass one"
+                " origin and one direction."
+            )
         with core_errors():
             hit, rows = self.core.ray_events(_filled(first[0]), _filled(second[0]))
         if hit is None:
@@ -434,7 +437,10 @@ class PartitionTree:
         first = vector_rows(origins, self.dimension, "Origins")
         second = vector_rows(directions, self.dimension, "Directions")
         if len(first) != len(second) and 1 not in (len(first), len(second)):
-            raise invalid_parameter(f"There are {len(first)} origins and {len(second)} directions.")
+            raise invalid_parameter(
+                f"There are {len(first)} origins but {len(second)} directions; give equally many,"
+                " or one of either."
+            )
         first, second = np.broadcast_arrays(first, second)
         return np.ascontiguousarray(first), np.ascontiguousarray(second)
 
@@ -449,20 +455,23 @@ class PartitionTree:
         sample: int = 8,
         alpha: float = 0.5,
     ) -> "PartitionTree":
-        """Return the tree over more facets: all nodes stay, and empty regions are divided further.
+        """Return the tree with more facets: all nodes stay, and its leaves are divided further.
 
-        New facets are cut by the hyperplanes of the nodes; the policy chooses which of the new
-        facets in an empty region divides it.
+        New facets are cut by the hyperplanes of the old nodes; the policy chooses which of the new
+        facets in a leaf divides it.
 
         Parameters
         ----------
         facets, policy, seed, sample, alpha
-            As for `PartitionTree`; facets have the tree's dimension, are snapped to its lattice,
-            and are numbered after its facets.
+            As for `PartitionTree`. New facets must have the tree's dimension, are snapped to its
+            lattice, and are numbered after the old facets.
         """
         corners, offsets = corners_of(facets)
         if corners.shape[1] != self.dimension:
-            message = f"The tree has dimension {self.dimension}, the facets {corners.shape[1]}."
+            message = (
+                f"The facets have dimension {corners.shape[1]}, but the tree has dimension"
+                f" {self.dimension}."
+            )
             raise invalid_parameter(message)
         options = core_options(seed, sample, alpha, 0, self.pitch)
         name = checked_policy(policy)
@@ -479,7 +488,7 @@ class PartitionTree:
         return self.from_core(core, self.lenience, self._margin)
 
     def leaf_form(self) -> LeafForm:
-        """Return the tree in leaf form, as in lecture notes: a leaf stores at most one fragment."""
+        """Return the tree in leaf form, in which each leaf stores at most one fragment."""
         return leaf_form(self)
 
     def moved(
@@ -503,7 +512,7 @@ class PartitionTree:
         Raises
         ------
         InvalidParameterError
-            If the axes are no rotation, or the factor is not positive.
+            If the axes are not a rotation, or the scale is not positive.
         LimitError
             If the image does not fit the lattice.
         """
@@ -514,7 +523,7 @@ class PartitionTree:
     # Quality
 
     def stats(self) -> Stats:
-        """Return the numbers of nodes, leaves, fragments and splits, the depths and the balance."""
+        """Return the tree's numbers of nodes, leaves, fragments and splits, depths and balance."""
         return stats(self)
 
     def cost(self, query: Query = "point", margin: float | None = None) -> float:
@@ -524,12 +533,12 @@ class PartitionTree:
     # Files
 
     def to_json(self) -> str:
-        """Return facets and cuts exactly, as JSON text that `from_json` reads."""
+        """Return the tree's facets and cuts, exactly, as JSON text that `from_json` reads."""
         return to_json(self)
 
     @classmethod
     def from_json(cls, text: str) -> "PartitionTree":
-        """Return the tree from the JSON text that `to_json` wrote, by repeating its cuts.
+        """Rebuild a tree from the JSON text of `to_json`, by repeating the cuts.
 
         Raises
         ------
@@ -574,7 +583,7 @@ class PartitionTree:
     # As a value
 
     def __eq__(self, other: object) -> bool:
-        """Return true if both trees have the same facets, lattice and cuts."""
+        """Return true if both trees have the same facets on the same lattice, and the same cuts."""
         if not isinstance(other, PartitionTree):
             return NotImplemented
         mine, theirs = self.core.lattice(), other.core.lattice()
@@ -616,7 +625,7 @@ def _restored(kind: type[PartitionTree], parts: Any, margin: float | None) -> Pa
 
 
 def _cut_rows(cuts: Any) -> IndexArray:
-    message = "Cuts are rows of two whole numbers, one for each node."
+    message = "cuts must be an integer array of shape (n, 2), with one row for each node."
     rows = doubles(cuts, invalid_parameter(message))
     if rows.size % 2 or not (np.isfinite(rows) & (rows == np.trunc(rows))).all():
         raise invalid_parameter(message)
@@ -637,11 +646,13 @@ def _place(of: Node | Leaf | None) -> tuple[int | None, int]:
     if isinstance(of, Node):
         return of.index, 0
     if not isinstance(of, Leaf):
-        raise invalid_parameter(f"region takes a node or a leaf, not {shown(of)}.")
+        raise invalid_parameter(
+            f"The argument of region must be a Node or a Leaf, not {shown(of)}."
+        )
     sides: dict[Side, int] = {"minus": -1, "plus": 1}
     return (None, 0) if of.parent is None else (of.parent.index, sides[of.side])
 
 
 def _filled(values: FloatArray) -> list[float]:
-    """Return a vector of one to three coordinates as three, filled up with zeros."""
+    """Return a vector of one to three coordinates as three, with zeros at the end."""
     return [*values.tolist(), 0.0, 0.0][:3]

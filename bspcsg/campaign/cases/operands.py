@@ -56,7 +56,10 @@ def _used(mesh: MeshArrays) -> FloatArray:
     """Return the vertices that belong to a face, (n, 3)."""
     used: FloatArray = mesh[0][np.unique(mesh[1])]
     if len(used) == 0:
-        raise InvalidMeshError("There are no faces to place.", "empty_mesh")
+        raise InvalidMeshError(
+            "The operand has no faces, so it cannot be placed in a pose; choose a mesh with faces.",
+            "empty_mesh",
+        )
     return used
 
 

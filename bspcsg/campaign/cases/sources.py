@@ -83,7 +83,10 @@ def _kind_of(path: Path, meshes: list[Path], scripts: list[Path], cases: list[Pa
         if suffix in suffixes:
             return kind
     known = ", ".join(sorted({*FORMATS, *_SCRIPTS, _CASES}))
-    raise FormatError(f"{path}: the name must end in one of {known}.", "unknown_format")
+    raise FormatError(
+        f"{path}: the file has no known suffix; its name must end in one of {known}.",
+        "unknown_format",
+    )
 
 
 def cases_of(inputs: CaseInputs, operations: Sequence[str], *draws: Draw) -> list[Case]:
@@ -216,7 +219,7 @@ def _operations_in(entry: dict[str, Any]) -> Iterable[str]:
     operations = [given] if isinstance(given, str) else list(given)
     for op in operations:
         if op not in SET_OPS:
-            raise ValueError(f"unknown operation {op!r}; one of {', '.join(SET_OPS)}")
+            raise ValueError(f"unknown operation {op!r}; known are {', '.join(SET_OPS)}")
     return operations
 
 
@@ -232,17 +235,24 @@ def _listed_operands(path: Path, entry: dict[str, Any]) -> Iterator[Operand]:
 def _listed_operand(path: Path, name: str, values: dict[str, Any]) -> Operand:
     pose = values.get("pose")
     if pose is not None and np.shape(pose) != (3, 4):
-        raise ValueError(f"the pose of operand {name} is not three rows of four numbers")
+        raise ValueError(
+            f"the pose of operand {name} must be a matrix of three rows of four numbers"
+        )
     if "file" in values:
         file = path.parent / values["file"]
         return Operand(name, str(file), _readable(digest_of, file), pose)
     mesh = {"vertices": values["vertices"], "faces": values["faces"]}
     for part in mesh.values():
         if np.shape(np.array(part, dtype=np.float64))[1:] != (3,):
-            raise ValueError(f"operand {name} needs vertices and faces of three numbers each")
+            raise ValueError(
+                f"the vertices and faces of operand {name} must be lists of three numbers each"
+            )
     return Operand(name, None, digest_of_mesh(mesh), pose, mesh)
 
 
 def _malformed(path: Path, reason: str) -> FormatError:
-    message = f"{path}: this is no file of cases ({reason}). Such a file looks like {_EXAMPLE}"
+    message = (
+        f"{path}: the file is not a valid list of cases ({reason}). A valid one looks like"
+        f" {_EXAMPLE}"
+    )
     return FormatError(message, "malformed")

@@ -38,7 +38,9 @@ def ask_openscad(question: Question) -> EngineAnswer:
     """
     count = sum(len(mesh.faces) for mesh in question.operands)
     if count > _MAX_TRIANGLES:
-        raise NoOpinionError(f"{count} triangles are too many for its exact engine")
+        raise NoOpinionError(
+            f"its exact engine takes at most {_MAX_TRIANGLES} triangles, not {count}"
+        )
     with tempfile.TemporaryDirectory(prefix="bspcsg-") as name:
         script = Path(name, "question.csg")
         script.write_text(_as_script(question), encoding="utf-8")
@@ -95,7 +97,7 @@ def _written(target: Path, done: "subprocess.CompletedProcess[str]") -> Mesh:
         return mesh_of(np.zeros((0, 3)), np.zeros((0, 3)))
     if done.returncode != 0 or not target.is_file():
         lines = [line.strip() for line in done.stderr.splitlines() if line.strip()]
-        raise NoOpinionError(f"it failed: {(lines or ['no word'])[-1]}")
+        raise NoOpinionError(f"it failed: {(lines or ['no message'])[-1]}")
     try:
         raw = read(target)
     except BspcsgError as error:

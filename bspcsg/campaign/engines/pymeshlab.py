@@ -25,7 +25,7 @@ def ask_pymeshlab(question: Question) -> EngineAnswer:
         If pymeshlab is not installed, fails, crashes or takes too long.
     """
     if any(len(mesh.faces) == 0 for mesh in question.operands):
-        raise NoOpinionError("it takes no empty operands")
+        raise NoOpinionError("it does not accept empty operands")
     with tempfile.TemporaryDirectory(prefix="bspcsg-") as name:
         folder = Path(name)
         _put_operands(folder, question)
@@ -59,5 +59,5 @@ def _asked_child(folder: Path, timeout: float) -> dict[str, str]:
     if done.returncode == _MISSING and "missing" in said:
         raise NoOpinionError(f"it could not be loaded: {said['missing']}")
     if done.returncode != 0 or not said:
-        raise NoOpinionError(f"its process ended with {done.returncode}")
+        raise NoOpinionError(f"its process ended with exit code {done.returncode}")
     return said

@@ -53,7 +53,7 @@ def require(engines: Sequence[str]) -> None:
     """
     for engine in engines:
         if not is_installed(engine):
-            raise missing_part(engine, "to compare with", ENGINES[engine])
+            raise missing_part(engine, "for comparisons", ENGINES[engine])
 
 
 def opinion(engine: str, question: Question) -> OracleRecord:
@@ -87,7 +87,9 @@ def crossings_opinion(question: Question, seed: int = 0) -> OracleRecord:
     agreeing, settled = count_agreeing(
         question.program, question.operands, question.ours, points.tolist()
     )
-    record = _silent(f"{agreeing} of {settled} points are where they should be")
+    record = _silent(
+        f"{agreeing} of {settled} test points are correctly classified as inside or outside"
+    )
     record["name"], record["version"] = "crossing counts", __version__
     record["agrees"] = agreeing == settled if settled else None
     record["seconds"] = round(time.perf_counter() - began, 4)

@@ -32,7 +32,9 @@ def ruled(
     """
     verdict, reason = report.verdict, report.reason
     if identity is not None and not identity["holds"]:
-        return str(Verdict.SUBJECT_FAILED), f"volumes do not add up: {identity['equation']}"
+        return str(
+            Verdict.SUBJECT_FAILED
+        ), f"the volumes violate the identity {identity['equation']}"
     if verdict is Verdict.SUBJECT_FAILED:
         return str(verdict), reason
     counts = [other for other in others if other["name"] == "crossing counts"]
@@ -54,20 +56,26 @@ def _weighed(
     against = [engine for engine in engines if engine["agrees"] is False]
     if verdict is Verdict.DISAGREE:
         if for_us and not against:
-            said = f"{_and(for_us)} finds our set, so manifold3d stands alone"
+            said = f"{_and(for_us)} agrees with bspcsg, so only manifold3d differs"
             return str(Verdict.ORACLE_FAILED), _joined(reason, said)
-        alone = "bspcsg stands alone" if against else "nobody else could tell who is right"
+        alone = (
+            "all other engines differ from bspcsg"
+            if against
+            else "no other engine could decide which result is right"
+        )
         return str(verdict), _joined(reason, alone)
     if not against:
-        said = f"{_and(for_us)} finds our set" if for_us and reason else ""
+        said = f"{_and(for_us)} agrees with bspcsg" if for_us and reason else ""
         return str(verdict), _joined(reason, said)
     said = "; ".join(f"{engine['name']} {engine['says']}" for engine in against)
     if verdict in (Verdict.ORACLE_FAILED, Verdict.ORACLE_REFUSED) and not counted:
         return str(Verdict.DISAGREE), _joined(reason, said)
     if verdict in (Verdict.ORACLE_FAILED, Verdict.ORACLE_REFUSED):
-        return str(Verdict.ORACLE_FAILED), _joined(reason, said, "crossing counts support ours")
+        return str(Verdict.ORACLE_FAILED), _joined(
+            reason, said, "crossing counts confirm the result of bspcsg"
+        )
     names = _and([engine["name"] for engine in against])
-    return str(verdict), _joined(reason, said, f"{names} stands alone")
+    return str(verdict), _joined(reason, said, f"only {names} differs")
 
 
 def _joined(*parts: str) -> str:

@@ -172,8 +172,8 @@ class Child:
 
 def _how(code: int | None) -> str:
     if code is not None and code < 0:
-        return f"the process was ended by {signal.Signals(-code).name}"
-    return f"the process ended with {code}"
+        return f"the process was ended by the signal {signal.Signals(-code).name}"
+    return f"the process ended with exit code {code}"
 
 
 def _listen(process: "subprocess.Popen[str]", lines: "queue.SimpleQueue[str]") -> None:

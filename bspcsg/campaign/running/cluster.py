@@ -108,8 +108,8 @@ class Cluster:
                 looked = now
                 seen = now if client.nthreads() else seen
             if now - seen >= _TIMEOUT:
-                message = f"{self._scheduler}: the scheduler there has no workers (any more)."
-                advice = "Start some, and go on with --results FILE --resume."
+                message = f"{self._scheduler}: this scheduler has no workers."
+                advice = "Start Dask workers, and continue with --results FILE --resume."
                 raise MissingPartError(f"{message} {advice}", "no_workers")
 
     def _client(self) -> Any:
@@ -121,7 +121,10 @@ class Cluster:
         try:
             return client(**place, timeout=_TIMEOUT, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
-            message = f"{self._scheduler}: no scheduler answers there ({error})."
+            message = (
+                f"{self._scheduler}: no Dask scheduler answers at this address ({error}); start"
+                " one, or correct --scheduler."
+            )
             raise MissingPartError(message, "no_scheduler") from error
 
 

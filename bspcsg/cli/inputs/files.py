@@ -33,7 +33,7 @@ STREAM = "-"
 _ANY = ".ply"
 
 #: Advice in the error about a mesh that is not closed.
-ON_INVALID = "  --on-invalid repair fills it; --on-invalid warn goes on without it."
+ON_INVALID = "  --on-invalid repair closes the mesh; --on-invalid warn leaves it out."
 
 
 @dataclass(frozen=True)
@@ -80,14 +80,19 @@ class Inputs:
         from ...formats.registry import FORMATS
 
         if sum(str(path) == STREAM for path in paths) > 1:
-            raise click.UsageError("standard input can be read only once; name “-” once.")
+            raise click.UsageError("standard input can be read only once; give “-” only once.")
         for path in paths:
             if str(path) == STREAM and not self.suffix:
-                raise click.UsageError("to read standard input, say its format: --from stl.")
+                raise click.UsageError(
+                    "to read standard input, give its format, such as --from stl."
+                )
             if self.is_script(path) and self.suffix_of(path) != path.suffix.lower():
                 self._refuse_programs(path)
             if not path.suffix and path.is_dir():
-                message = f"{path}: this is a folder; name the files in it, as in {path / '*.stl'}."
+                message = (
+                    f"{path}: this is a folder, and a file is needed; name the files in it, as in"
+                    f" {path / '*.stl'}."
+                )
                 raise FormatError(message, "unreadable")
             if self.suffix_of(path) not in FORMATS and not self.is_script(path):
                 if not path.suffix and not path.exists():
@@ -98,7 +103,10 @@ class Inputs:
     def _refuse_programs(self, path: Path) -> None:
         """Raise a usage error if ``--from`` names a language whose scripts need a file suffix."""
         if self.suffix not in STREAMED:
-            message = f"{shown(path)}: {self.suffix} scripts are run by name; save it to a file."
+            message = (
+                f"{shown(path)}: {self.suffix} scripts cannot be read from standard input or a"
+                f" file without suffix; save the script as a {self.suffix} file."
+            )
             raise click.UsageError(message)
 
     def tell_units(self, pairs: Iterable[tuple[Path, "Target"]]) -> None:
@@ -115,7 +123,7 @@ class Inputs:
         if unknown and self.unit is None:
             more = f" and {len(unknown) - 1} more have" if len(unknown) > 1 else " has"
             self.out.note(
-                f"{shown(unknown[0])}{more} no unit; mm assumed (say --unit in to change)"
+                f"{shown(unknown[0])}{more} no length unit, so mm is assumed; --unit in changes it"
             )
 
     def suffix_of(self, path: Path) -> str:
@@ -204,7 +212,7 @@ class Inputs:
     def _left_out(self, error: InvalidMeshError) -> "Solid":
         from ...solid.solid import Solid
 
-        self.out.warning(f"{error.message} It is left out.")
+        self.out.warning(f"{error.message} This file is left out.")
         return Solid.empty()
 
     def _repaired(self, raw: "RawMesh", path: Path) -> "Solid":
@@ -215,13 +223,16 @@ class Inputs:
             solid = self._solid_of(made.mesh, path)
         except InvalidMeshError as error:
             message = (
-                f"{error.message}\n  A repair did not close it; {repair_command(path)} tells more."
+                f"{error.message}\n  The automatic repair could not close the mesh;"
+                f" {repair_command(path)} shows why."
             )
             raise InvalidMeshError(message, error.code, error.where) from error
         counts = f"{counted(len(raw.faces), 'triangle')} became {len(made.mesh.faces)}"
-        turned = f", {made.turned} of them turned round" if made.turned else ""
-        strays = f"; {counted(made.dropped, 'stray triangle')} dropped" if made.dropped else ""
-        self.out.warning(f"{shown(path)} was not closed and is repaired: {counts}{turned}{strays}.")
+        turned = f", {made.turned} of them with reversed orientation" if made.turned else ""
+        strays = f"; {counted(made.dropped, 'stray triangle')} removed" if made.dropped else ""
+        self.out.warning(
+            f"{shown(path)} was not closed and was repaired: {counts}{turned}{strays}."
+        )
         self.tell(path, made.lost)
         return solid
 
@@ -285,9 +296,14 @@ class Target:
         from ...formats.files import form_of
 
         if self.is_stream and not self.suffix:
-            raise click.UsageError("to write to standard output, say the format: --to stl.")
+            raise click.UsageError(
+                "to write to standard output, give the format, such as --to stl."
+            )
         if self.is_stream and as_json:
-            raise click.UsageError("--json and a mesh cannot both go to standard output.")
+            raise click.UsageError(
+                "--json and a mesh cannot both go to standard output; give -o a file name, or"
+                " leave out --json."
+            )
         named = self.path.suffix == self.suffix
         form_of(self.path if named else f"{self.path}{self.suffix}", self.text)
         refuse_unwritable(self.path, self.overwrite)
@@ -356,7 +372,9 @@ def put(
         write_file(path, chunks, prove)
         return
     if sys.stdout.isatty():
-        raise click.UsageError("this is no text for a terminal; use a pipe, or -o FILE.")
+        raise click.UsageError(
+            "mesh data is not written to a terminal; redirect the output, or give -o FILE."
+        )
     if prove is not None:
         chunks = [b"".join(chunks)]
         prove(io.BytesIO(chunks[0]))
@@ -392,7 +410,7 @@ def _decoded(data: bytes, name: str) -> str:
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError as error:
-        message = f"{name}: this is no text: byte {error.start} is no UTF-8."
+        message = f"{name}: the file is not UTF-8 text: byte {error.start} cannot be decoded."
         raise FormatError(message, "syntax", [error.start]) from error
 
 
@@ -404,7 +422,7 @@ def refuse_unwritable(path: Path, overwrite: bool = True) -> None:
     if str(path) == STREAM:
         return
     if not overwrite and os.path.lexists(path) and not is_dropped(path):
-        message = f"{path}: this file is there already; --overwrite replaces it."
+        message = f"{path}: this file exists already; --overwrite replaces it."
         raise FormatError(message, "unwritable")
     refuse_folder(path)
 
@@ -415,7 +433,7 @@ def refuse_folder(path: Path) -> None:
         return
     folder = path.parent
     if not folder.is_dir() or not os.access(folder, os.W_OK):
-        message = f"{path}: there is no folder {folder} that can be written to."
+        message = f"{path}: the folder {folder} does not exist or is not writable."
         raise FormatError(message, "unwritable")
 
 
@@ -424,7 +442,7 @@ def make_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        message = f"{folder}: cannot make this folder: {error.strerror}."
+        message = f"{folder}: cannot create this folder: {error.strerror}."
         raise FormatError(message, "unwritable") from error
 
 
@@ -442,8 +460,8 @@ def refuse_inputs(file: Path, targets: Iterable[Path], inputs: Sequence[Path]) -
     """Raise a usage error if one of the outputs `targets` of a file would replace an input."""
     for number, where in enumerate(targets, 1):
         if not is_dropped(where) and is_among(where, inputs):
-            message = f"part {number} of {shown(file)} would be written to {where}, which is an"
-            raise click.UsageError(f"{message} input, too.")
+            message = f"part {number} of {shown(file)} would overwrite {where}, which is also an"
+            raise click.UsageError(f"{message} input; choose another output.")
 
 
 def shown(path: Path) -> str:

@@ -20,6 +20,8 @@ def as_length(context: click.Context, option: click.Parameter, value: str | None
     except ValueError:
         length = math.nan
     if not 0 <= length < math.inf:
-        wanted = f"a number and maybe a unit ({', '.join(MILLIMETRES)}), as in 0.01mm"
-        raise click.BadParameter(f"{value!r} is no length; it takes {wanted}.", context, option)
+        wanted = (
+            f"a number of at least 0 and optionally a unit ({', '.join(MILLIMETRES)}), as in 0.01mm"
+        )
+        raise click.BadParameter(f"{value!r} is not a length; give {wanted}.", context, option)
     return length

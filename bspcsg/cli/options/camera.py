@@ -32,7 +32,7 @@ def _as_point(
         return None
     found = finite_numbers(value, 3)
     if found is None:
-        message = f"{value!r} is no point; it takes three numbers x,y,z, as in 10,-20,15."
+        message = f"{value!r} is not a point; give three numbers x,y,z, as in 10,-20,15."
         raise click.BadParameter(message, context, option)
     return found
 
@@ -97,11 +97,16 @@ def refuse_contradictions(settings: dict[str, Any]) -> None:
     given = ["eye"] if settings["eye"] is not None else []
     view = settings["view"] != "iso"
     if angles and (given or view):
-        raise click.UsageError(f"--{angles[0]} does not go with {'--eye' if given else '--view'}.")
+        raise click.UsageError(
+            f"--{angles[0]} cannot be combined with {'--eye' if given else '--view'}; leave one"
+            " out."
+        )
     if given and view:
-        raise click.UsageError("--view does not go with --eye.")
+        raise click.UsageError("--view cannot be combined with --eye; leave one out.")
     if settings["aim"] is not None and not given:
-        raise click.UsageError("--target goes with --eye only.")
+        raise click.UsageError(
+            "--target needs --eye; give the viewer's position with --eye, or leave out --target."
+        )
 
 
 def camera_of(

@@ -16,7 +16,9 @@ def as_engines(
     for name in names:
         if name not in ENGINES:
             known = ", ".join(ENGINES)
-            raise click.BadParameter(f"{name!r} is none of {known}.", context, option)
+            raise click.BadParameter(
+                f"{name!r} is not a known engine; choose from {known}.", context, option
+            )
     return names
 
 
@@ -29,7 +31,7 @@ def as_bytes(context: click.Context, option: click.Parameter, value: str) -> int
     except ValueError:
         size = -1.0
     if not 0 <= size < float("inf"):
-        message = f"{value!r} is no size; it takes a number of bytes, as in 4G or 500M."
+        message = f"{value!r} is not a memory size; give a number of bytes, as in 4G or 500M."
         raise click.BadParameter(message, context, option)
     return int(size) or None
 
@@ -42,7 +44,7 @@ def as_shard(
         return None
     number, _, count = value.partition("/")
     if not (number.isdecimal() and count.isdecimal() and 1 <= int(number) <= int(count)):
-        message = f"{value!r} is no shard; it takes its number and how many there are, as in 2/8."
+        message = f"{value!r} is not a shard; give its number and the number of shards, as in 2/8."
         raise click.BadParameter(message, context, option)
     return int(number), int(count)
 
@@ -61,7 +63,10 @@ def _pose(context: click.Context, option: click.Parameter, value: str) -> tuple[
     name, colon, number = value.partition(":")
     if name not in POSES or (colon and not number.isdecimal()):
         known = ", ".join(POSES)
-        message = f"{value!r} is no pose; it takes one of {known}, or one and a number: random:17."
+        message = (
+            f"{value!r} is not a pose; give one of {known}, or one with the number of a draw, as"
+            " in random:17."
+        )
         raise click.BadParameter(message, context, option)
     return name, int(number) if colon else None
 
@@ -69,6 +74,6 @@ def _pose(context: click.Context, option: click.Parameter, value: str) -> tuple[
 def as_keep(context: click.Context, option: click.Parameter, value: str) -> str:
     """Return the value of ``--keep-meshes``, checked: a word or the number of cases to store."""
     if value not in ("interesting", "all", "none") and not value.isdecimal():
-        message = f"{value!r} is none of interesting, all, none, or a number."
+        message = f"{value!r} is not valid here; give interesting, all, none, or a number."
         raise click.BadParameter(message, context, option)
     return value

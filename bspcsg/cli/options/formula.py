@@ -81,10 +81,12 @@ def parse(text: str) -> Formula:
         If the text is no formula; the error has the column.
     """
     if not text.strip():
-        raise FormulaError("the formula is empty.", 0)
+        raise FormulaError(
+            "the formula is empty; give file names joined by operators, as in 'a.stl - b.stl'.", 0
+        )
     parser = _Parser(_tokens(text))
     found = parser.level(0, 0)
-    parser.expect("end", "an operator or the end")
+    parser.expect("end", "an operator or the end of the formula")
     return found
 
 
@@ -144,9 +146,9 @@ def _tokens(text: str) -> list[_Token]:
         elif letter in "\"'":
             end = text.find(letter, at + 1)
             if end < 0:
-                raise FormulaError("this quote is never closed.", at)
+                raise FormulaError("this quotation mark has no closing mark.", at)
             if end == at + 1:
-                raise FormulaError("there is no name between these quotes.", at)
+                raise FormulaError("the file name between these quotation marks is empty.", at)
             tokens.append(_Token("file", text[at + 1 : end], at))
             at = end + 1
         elif letter in _ENDS + _SIGNS:
@@ -196,7 +198,9 @@ class _Parser:
     def _operand(self, depth: int) -> Formula:
         token = self._peek()
         if depth > _MAX_DEPTH:
-            raise FormulaError("this lies too deep in parentheses.", token.column)
+            raise FormulaError(
+                f"parentheses are nested deeper than {_MAX_DEPTH} levels here.", token.column
+            )
         if token.kind == "~":
             self._take()
             return NamedOperation("complement", (self._operand(depth + 1),))

@@ -94,7 +94,7 @@ def files_of(
                 skipped[path.suffix.lower()] += 1
     if not files:
         only = f", only {_counted(skipped)}" if skipped else ""
-        raise FormatError(f"{values[0]}: there is no mesh{only}.", "unreadable")
+        raise FormatError(f"{values[0]}: no mesh file was found{only}.", "unreadable")
     return files
 
 
@@ -132,7 +132,9 @@ def _counted(skipped: Counter[str]) -> str:
     )
     total = skipped.total()
     return (
-        f"{total} {'file that is no mesh' if total == 1 else 'files that are no meshes'}: {kinds}"
+        f"{total}"
+        f" {('file that is not a mesh' if total == 1 else 'files that are not meshes')}:"
+        f" {kinds}"
     )
 
 
@@ -158,6 +160,9 @@ def _only_match(context: click.Context, option: click.Parameter, value: Path | N
         return value
     found = matches(value)
     if len(found) > 1:
-        message = f"{value} matches {len(found)} files; name one of them, as {found[0]}."
+        message = (
+            f"{value} matches {len(found)} files, but only one is allowed here; name one of them,"
+            f" such as {found[0]}."
+        )
         raise click.UsageError(message, context)
     return found[0]

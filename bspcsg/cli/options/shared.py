@@ -63,7 +63,7 @@ class FilePath(click.Path):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Convert a text to a path; the empty text is an error, not the current folder."""
         if value == "":
-            self.fail("the name is empty, as of a shell variable that is not set.", param, ctx)
+            self.fail("the file name is empty; perhaps a shell variable is not set.", param, ctx)
         return super().convert(value, param, ctx)
 
 
@@ -80,7 +80,7 @@ class FiniteRange(click.FloatRange):
         """Convert a text to a number; an infinite one or NaN is an error."""
         number = float(super().convert(value, param, ctx))
         if not math.isfinite(number):
-            self.fail(f"{number} is not finite.", param, ctx)
+            self.fail(f"{number} is not a finite number.", param, ctx)
         return number
 
 
@@ -166,7 +166,9 @@ def _as_suffix(context: click.Context, option: click.Parameter, value: str | Non
     suffix = f".{value.lower().lstrip('.')}"
     if suffix not in FORMATS:
         known = ", ".join(name[1:] for name in sorted(FORMATS))
-        raise click.BadParameter(f"{value!r} is no format; known are {known}.", context, option)
+        raise click.BadParameter(
+            f"{value!r} is not a known format; known are {known}.", context, option
+        )
     return suffix
 
 
@@ -373,7 +375,7 @@ def numbers(what: str, names: str, example: str) -> Callable[..., tuple[float, .
             wanted = (
                 f"{spoken} numbers {names}, {zeros} all 0, as in {example}; x, y and z are axes"
             )
-            raise click.BadParameter(f"{value!r} is no {what}; it takes {wanted}.", context, option)
+            raise click.BadParameter(f"{value!r} is not a {what}; give {wanted}.", context, option)
         return found
 
     return as_numbers

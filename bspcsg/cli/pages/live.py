@@ -71,7 +71,10 @@ class LiveServer(ThreadingHTTPServer):
         try:
             super().__init__((_HERE, port), _Handler)
         except OSError as error:
-            message = f"port {port}: cannot listen here: {error.strerror}; leave out --port."
+            message = (
+                f"port {port}: the server cannot use this port ({error.strerror}); leave out"
+                " --port to use a free one."
+            )
             raise FormatError(message, "unwritable") from error
         self.site = site
         self.places = threading.BoundedSemaphore(_MAX_CONCURRENT_REQUESTS)
@@ -102,7 +105,11 @@ class _Handler(BaseHTTPRequestHandler):
         """Answer a request with the page at its path, or “/changes” with the state of the site."""
         host = urlsplit(f"//{self.headers.get('Host', '')}").hostname
         if host not in _OWN_NAMES:
-            self._send(HTTPStatus.FORBIDDEN, "This server is for its own machine.", "plain")
+            self._send(
+                HTTPStatus.FORBIDDEN,
+                "This server only answers requests from the machine on which it runs.",
+                "plain",
+            )
             return
         path = urlsplit(self.path).path
         with self.server.places:
@@ -112,7 +119,7 @@ class _Handler(BaseHTTPRequestHandler):
             with self.server.making:
                 page = self.server.site.page(path)
         if page is None:
-            self._send(HTTPStatus.NOT_FOUND, "There is no such page.", "plain")
+            self._send(HTTPStatus.NOT_FOUND, "This page does not exist.", "plain")
         else:
             self._send(HTTPStatus.OK, page, "html")
 

@@ -26,7 +26,7 @@ def layers_of(
     for path in files:
         layers, unit = _layers_of(inputs, path, section)
         if not any(len(layer.faces) for layer in layers):
-            inputs.out.warning(f"{shown(path)}: there is nothing in it to be seen.")
+            inputs.out.warning(f"{shown(path)}: the file has no triangles to show.")
         found.append((path, layers))
         units.add(unit)
     several = len(found) > 1

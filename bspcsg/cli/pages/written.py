@@ -33,7 +33,10 @@ def refuse_page(path: Path, *others: str) -> None:
         return
     if path.suffix.lower() not in (*_SUFFIXES, *others):
         known = " or ".join([", ".join([".html", *others[:-1]]), *others[-1:]])
-        raise FormatError(f"{shown(path)}: the name must end in {known}.", "unknown_format")
+        raise FormatError(
+            f"{shown(path)}: the format is unknown; the output name must end in {known}.",
+            "unknown_format",
+        )
     refuse_folder(path)
 
 

@@ -49,7 +49,9 @@ def _as_engines(
     for name in asked:
         if name not in ENGINES:
             known = ", ".join(list(ENGINES)[1:])
-            raise click.BadParameter(f"{name!r} is no engine; known are {known}.", context, option)
+            raise click.BadParameter(
+                f"{name!r} is not a known engine; known are {known}.", context, option
+            )
         if name not in installed():
             raise click.BadParameter(
                 f"{name} is not installed: pip install {name}", context, option
@@ -70,7 +72,9 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
 
     for name in value:
         if name not in CASES:
-            raise click.BadParameter(f"{name!r} is no case; see --list.", context, option)
+            raise click.BadParameter(
+                f"{name!r} is not a known case; --list shows all cases.", context, option
+            )
     return list(dict.fromkeys(value))
 
 
@@ -218,7 +222,7 @@ def _kept(path: Path | None) -> list[dict[str, Any]]:
     from ...bench.cases import CASES
 
     if path is None:
-        raise click.UsageError("--continue needs -o FILE, the record that it continues.")
+        raise click.UsageError("--continue needs -o FILE, the record that is to be continued.")
     if not path.exists():
         return []
     found = records.read(path)
@@ -226,7 +230,10 @@ def _kept(path: Path | None) -> list[dict[str, Any]]:
         other = records.other_place(found)
         rows = [row for row in found["cases"] if row["case"] in CASES]
     if other:
-        message = f"{path}: this record is from {other}; measure it again without --continue."
+        message = (
+            f"{path}: this record was measured with {other}, so it cannot be continued; measure"
+            " again without --continue."
+        )
         raise FormatError(message, "unreadable")
     return rows
 
@@ -244,7 +251,7 @@ def _dense(cases: list[str]) -> list[str]:
     found = [name for name in cases if name in CLIFFS]
     if not found:
         raise click.UsageError(
-            "--cliffs leaves none of these cases; --cliffs --list names its own."
+            "none of these cases belongs to --cliffs; --cliffs --list shows its cases."
         )
     return found
 
@@ -253,12 +260,14 @@ def _refuse_early(given: dict[str, Any]) -> None:
     """Raise errors about output files and the core's file before anything is measured."""
     for path in (given["record_path"], given["plot_path"]):
         if path and str(path) == STREAM:
-            raise click.UsageError("-o and --plot take names of files, not streams; --json prints.")
+            raise click.UsageError(
+                "-o and --plot need the name of a file, not “-”; --json prints the record."
+            )
         if path:
             refuse_folder(path)
     core: Path | None = given["core"]
     if core and not core.exists():
-        raise FormatError(f"{core}: there is no such build of the core.", "unreadable")
+        raise FormatError(f"{core}: the compiled core for --core does not exist.", "unreadable")
 
 
 @contextmanager
@@ -269,7 +278,7 @@ def _whole_record(source: Path | None) -> Iterator[None]:
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
         if source is None:
             raise
-        message = f"{source}: this record is damaged; measure it again."
+        message = f"{source}: this record of measurements is damaged; measure again."
         raise FormatError(message, "malformed") from error
 
 

@@ -135,13 +135,15 @@ class _Checking:
 
     def _refuse_early(self) -> None:
         if self._thin is not None and not self._is_page:
-            raise click.UsageError("--thin marks walls in a page; say -o check.html too.")
+            raise click.UsageError("--thin marks thin walls in an HTML page; add -o check.html.")
         for path in self._targets:
             if str(path) == STREAM:
-                raise click.UsageError("-o takes the name of a file; --json prints the document.")
+                raise click.UsageError(
+                    "-o needs the name of a file, not “-”; --json prints the document."
+                )
             refuse_page(path, _JSON, _JUNIT)
             if is_among(path, self._files) and not is_dropped(path):
-                raise click.UsageError(f"-o would overwrite {path}, which is to be read.")
+                raise click.UsageError(f"-o would overwrite the input {path}; choose another name.")
 
     def _page(self) -> "CheckPage | None":
         if not self._is_page:

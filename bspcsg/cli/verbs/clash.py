@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ...assembly.tree import Assembly
 
 #: The end of messages about missing operands: the second form in which they can be given.
-_ONE = ", or the name of one mesh or .csg file with several objects, all of them closed."
+_ONE = ", or one mesh or .csg file that contains several closed objects."
 
 _EPILOG = """\b
 Examples:
@@ -82,11 +82,16 @@ def _objects(inputs: Inputs, path: Path) -> "Assembly":
     options = {} if is_script else {"winding": inputs.winding, "pitch": inputs.pitch}
     suffix = inputs.suffix_of(path)
     if suffix == ".json" and path.suffix.lower() != suffix:
-        message = f"{shown(path)}: clash reads one script in JSON by its name, ending in .json."
+        message = (
+            f"{shown(path)}: clash reads a script in JSON only from a file whose name ends in"
+            " .json; save it there."
+        )
         raise click.UsageError(message)
     whole = load_as(path, suffix, **options)
     if len(whole) < 2:
-        raise click.UsageError(f"{shown(path)} is one object; clash needs two files{_ONE}")
+        raise click.UsageError(
+            f"{shown(path)} contains one object only; clash needs two files{_ONE}"
+        )
     says_unit = not is_script and FORMATS[suffix].unit
     return whole if inputs.unit is None or says_unit else whole.scale(MILLIMETRES[inputs.unit])
 

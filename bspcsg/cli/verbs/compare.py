@@ -70,7 +70,9 @@ def compare(
 
     tol = tolerance or 0.0
     if tol and not samples:
-        raise click.UsageError("--tolerance needs distances, so --samples must be above 0.")
+        raise click.UsageError(
+            "--tolerance needs sample points to measure distances, so --samples must be above 0."
+        )
     set_threads(given["threads"])
     out = Output.of(given)
     inputs = Inputs.of(out, given)

@@ -100,8 +100,10 @@ class _Conversion:
 
         known = FORMATS.get(target.suffix.lower())
         if self._settings["to_unit"] is not None and known is not None and known.unit:
-            said = f"{target.suffix.removeprefix('.').upper()} files state their unit"
-            raise click.UsageError(f"--to-unit: {said}, and need no other.")
+            said = f"{target.suffix.removeprefix('.').upper()} files have a fixed or stored unit"
+            raise click.UsageError(
+                f"--to-unit: {said}, so no other can be given; leave out --to-unit."
+            )
 
     def _converted(self, path: Path, target: Target) -> tuple[dict[str, Any], int]:
         """Convert one file; return its JSON document and the exit code."""
@@ -151,7 +153,10 @@ class _Conversion:
         solid = self._inputs.as_solid(raw, path)
         simple = solid.simplify(self._settings["tolerance"])
         if simple is solid:
-            self._out.note(f"{shown(path)}: nothing to simplify within the tolerance")
+            self._out.note(
+                f"{shown(path)}: no edge or triangle is small enough to be simplified within the"
+                " tolerance"
+            )
             return raw
         mesh = simple.normalized().to_mesh()
         self._inputs.tell(path, simple.normalized().findings)

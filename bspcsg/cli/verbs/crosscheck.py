@@ -176,11 +176,16 @@ class _Campaign:
         self._paths, self._settings = paths, settings
         self._out = Output.of(settings)
         if settings["resume"] and settings["results"] is None:
-            raise click.UsageError("--resume needs the file to go on with: --results r.jsonl.")
+            raise click.UsageError(
+                "--resume needs the results file to continue, such as --results r.jsonl."
+            )
         if settings["retry"] and not settings["resume"]:
-            raise click.UsageError("--retry-crashed is for --resume.")
+            raise click.UsageError("--retry-crashed can only be used with --resume.")
         if settings["poses"] and any(number is not None for _, number in settings["pose"]):
-            raise click.UsageError("--poses draws many; --pose NAME:NUMBER is one draw.")
+            raise click.UsageError(
+                "--poses draws many random poses and cannot be combined with --pose NAME:NUMBER,"
+                " which is one of them; leave one out."
+            )
 
     def run(self) -> int:
         from ...campaign.judging.opinions import require
@@ -203,15 +208,22 @@ class _Campaign:
             if path is None:
                 continue
             if str(path) == STREAM:
-                raise click.UsageError(f"--{name} takes the name of a file, not a stream.")
+                raise click.UsageError(f"--{name} needs the name of a file, not “-”.")
             refuse_folder(path)
             if is_among(path, self._paths):
-                raise click.UsageError(f"--{name} would overwrite {path}, which is to be read.")
+                raise click.UsageError(
+                    f"--{name} would overwrite the input {path}; choose another name."
+                )
             other = written.setdefault(path.resolve(), name)
             if other != name and not is_dropped(path):
-                raise click.UsageError(f"--{name} would overwrite {path}, which --{other} writes.")
+                raise click.UsageError(
+                    f"--{name} would overwrite {path}, which --{other} also writes; choose"
+                    " different names."
+                )
         if Path(STREAM) in self._paths:
-            raise click.UsageError("crosscheck reads files, not standard input.")
+            raise click.UsageError(
+                "crosscheck cannot read standard input; give the names of files."
+            )
 
     def _answering(self) -> "Answering":
         from ...campaign.running.cluster import Cluster
@@ -257,7 +269,7 @@ class _Campaign:
         if self._settings["only"] is not None:
             cases = [one for one in cases if fnmatch.fnmatchcase(one.name, self._settings["only"])]
             if not cases:
-                raise click.UsageError(f"no case is called {self._settings['only']}.")
+                raise click.UsageError(f"no case has a name that matches {self._settings['only']}.")
         if self._settings["shard"] is not None:
             number, count = self._settings["shard"]
             cases = cases[number - 1 :: count]
@@ -282,13 +294,15 @@ class _Campaign:
             self._out.detail(f"{shown(path)}: left out: {found[path]['refused']}")
         if bad:
             words = (
-                "file left out that is no solid"
+                "file left out because it is not a solid"
                 if len(bad) == 1
-                else ("files left out that are no solids")
+                else ("files left out because they are not solids")
             )
             self._out.note(f"{len(bad)} {words}")
         if large:
-            self._out.note(f"{counted(len(large), 'file')} left out with over {most} triangles")
+            self._out.note(
+                f"{counted(len(large), 'file')} left out because of more than {most} triangles"
+            )
         out = {*bad, *large}
         return replace(inputs, meshes=tuple(path for path in inputs.meshes if path not in out))
 
@@ -317,7 +331,9 @@ class _Campaign:
         )
         done = len(cases) - len(plan.open_cases)
         if done:
-            self._out.note(f"{counted(done, 'case')} of {len(cases)} known from {shown(results)}")
+            self._out.note(
+                f"{counted(done, 'case')} of {len(cases)} already finished in {shown(results)}"
+            )
         with Journal(results) if results else nullcontext() as journal:
             if journal is not None:
                 journal.append(header)
@@ -382,7 +398,8 @@ class _Campaign:
             self._out.note(f"refused: {reason.rstrip('.')}.")
         if len(reasons) > _MAX_REASONS_LISTED:
             self._out.note(
-                f"refused for other reasons as well ({len(reasons)} in all); -v tells them"
+                f"operands were refused for {len(reasons)} different reasons in all; -v prints"
+                " every one"
             )
 
     def _text(self, records: "Sequence[CaseRecord]") -> str:

@@ -169,4 +169,4 @@ def _text(parts: list[_Part]) -> str:
 def _advice(part: _Part) -> str:
     """Return a text on a missing or incomplete part, with the command that installs it."""
     state = "incomplete" if part.found else "missing"
-    return f"{part.name} is {state}, needed for {part.purpose}. Try:\n  {part.remedy}"
+    return f"{part.name} is {state}; it is needed for {part.purpose}. Try:\n  {part.remedy}"

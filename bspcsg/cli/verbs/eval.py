@@ -76,7 +76,9 @@ class _Evaluation(Job):
         except BspcsgError as error:
             if error.code != "unreadable" or not any(sign in file.name for sign in "+-"):
                 raise
-            advice = "Put blanks around + and - if they are no part of the name."
+            advice = (
+                "Put blanks around + and - if they are operators and not part of the file name."
+            )
             message = _pointed(self._text, f"{error.message} {advice}", file.column)
             raise type(error)(message, error.code, error.where) from error
 

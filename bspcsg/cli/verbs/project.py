@@ -39,7 +39,10 @@ class _Projection(Drawing):
     def drawn(self) -> tuple[bytes, str, dict[str, Any]]:
         region = self.inputs.solid(self.file).project()
         if region.is_empty:
-            message = f"{shown(self.file)}: it is empty, so nothing was written."
+            message = (
+                f"{shown(self.file)}: the solid is empty, so its projection is empty and nothing"
+                " was written."
+            )
             raise output.EmptyResultError(message, "empty_result")
         holes = sum(outline.is_hole for outline in region.outlines)
         count = len(region.outlines)

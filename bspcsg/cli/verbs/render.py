@@ -35,7 +35,8 @@ _STYLES = ("shaded", "hidden", "edges")
 _TRANSPARENT = "none"
 
 _TEXTURES = (
-    "of its texture a face shows one colour, that in its middle; bspcsg view shows all of it."
+    "each face is drawn in one colour, that of its texture in the middle of the face; bspcsg"
+    " view shows the full texture."
 )
 
 #: The largest and the default number of pictures of one turn, in a GIF.
@@ -55,7 +56,9 @@ def _as_size(context: click.Context, option: click.Parameter, value: str) -> tup
     words = value.lower().split("x")
     if len(words) != 2 or not all(word.isdecimal() for word in words):
         wanted = "width and height in pixels, as in 800x600"
-        raise click.BadParameter(f"{value!r} is no size; it takes {wanted}.", context, option)
+        raise click.BadParameter(
+            f"{value!r} is not a picture size; give {wanted}.", context, option
+        )
     try:
         return checked_size([int(word) for word in words])
     except BspcsgError as error:
@@ -181,11 +184,13 @@ class _Rendering(Drawing):
         if self.suffix != ".gif":
             for name in ("frames", "seconds"):
                 if is_given(name):
-                    raise click.UsageError(f"--{name} is for a GIF only.")
+                    raise click.UsageError(
+                        f"--{name} can only be used when the output is a .gif file."
+                    )
         elif settings["seconds"] > _MAX_FRAME_SECONDS * settings["frames"]:
             message = (
-                f"--seconds: a GIF shows a picture for {_MAX_FRAME_SECONDS} s at most;"
-                " say more --frames."
+                f"--seconds: each frame of a GIF can last at most {_MAX_FRAME_SECONDS} s;"
+                " raise --frames, or lower --seconds."
             )
             raise click.UsageError(message)
         self._files = files

@@ -119,7 +119,7 @@ class _Repairing:
         raw = self._inputs.raw(path)
         self._inputs.tell(path, raw.findings)
         if len(raw.faces) == 0:
-            message = f"{shown(path)}: there is nothing in it, so nothing was written."
+            message = f"{shown(path)}: no triangles are left, so nothing was written."
             raise output.EmptyResultError(message, "empty_result")
         before = examine(raw)
         limits = {name: self._settings[name] for name in ("weld", "max_hole", "timeout")}
@@ -130,7 +130,7 @@ class _Repairing:
         for finding in lost:
             self._out.finding(shown(target.path), finding)
         for step, reason in made.failed.items():
-            self._out.warning(f"{shown(path)}: the step {step} could not be taken: {reason}")
+            self._out.warning(f"{shown(path)}: the repair step {step} failed: {reason}")
         if not self._out.as_json:
             text = _text if self._is_single else _line
             self._out.result(text(before.found, after, made, target), {})
@@ -152,7 +152,7 @@ class _Repairing:
         steps = [step.strip() for step in self._settings["steps"].split(",") if step.strip()]
         for step in steps:
             if step not in STEPS:
-                message = f"--steps: {step!r} is no step; there are {', '.join(STEPS)}."
+                message = f"--steps: {step!r} is not a repair step; known are {', '.join(STEPS)}."
                 raise click.UsageError(message)
         if not steps:
             raise click.UsageError(f"--steps needs at least one of {', '.join(STEPS)}.")
@@ -164,17 +164,17 @@ def _text(before: "Diagnosis", after: "Diagnosis", made: "Repair", target: Targe
     rows = [(name, *pair) for name, *pair in _rows(before, after)]
     lines = [table_text(("", "before", "after"), rows, right=("before", "after"))]
     if made.turned:
-        lines.append(f"{counted(made.turned, 'triangle')} faced inwards and were turned round.")
+        lines.append(f"{counted(made.turned, 'triangle')} faced inwards and were reversed.")
     if made.dropped:
-        lines.append(f"Dropped {counted(made.dropped, 'triangle')} of stray fragments.")
+        lines.append(f"Removed {counted(made.dropped, 'triangle')} of stray fragments.")
     return "\n".join([*lines, f"{shown(target.path)}: {_verdict(after)}"])
 
 
 def _line(before: "Diagnosis", after: "Diagnosis", made: "Repair", target: Target) -> str:
     """Return one line on a repair: the output, the verdict, and the changes of triangles."""
     words = [f"{counted(before.triangles, 'triangle')} became {grouped(after.triangles)}"]
-    words += [f"{grouped(made.turned)} turned round"] if made.turned else []
-    words += [f"{grouped(made.dropped)} stray ones dropped"] if made.dropped else []
+    words += [f"{grouped(made.turned)} reversed"] if made.turned else []
+    words += [f"{grouped(made.dropped)} stray ones removed"] if made.dropped else []
     return f"{shown(target.path)}: {_verdict(after)}; {', '.join(words)}"
 
 

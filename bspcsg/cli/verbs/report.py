@@ -119,18 +119,24 @@ class _Reporting:
         if self._form is None:
             known = ", ".join(_SUFFIXES)
             if self._is_stream:
-                raise click.UsageError("to write to standard output, say the form: --format md.")
+                raise click.UsageError(
+                    "to write to standard output, give the format, such as --format md."
+                )
             message = (
-                f"{shown(self._target)}: the name must end in one of {known}; or say --format."
+                f"{shown(self._target)}: the format is unknown; the output name must end in"
+                f" one of {known}, or give --format."
             )
             raise FormatError(message, "unknown_format")
         if self._is_stream and self._out.as_json:
-            raise click.UsageError("--json and a report cannot both go to standard output.")
+            raise click.UsageError(
+                "--json and a report cannot both go to standard output; give -o a file name, or"
+                " leave out --json."
+            )
         if self._is_stream:
             return
         refuse_folder(self._target)
         if is_among(self._target, self._files):
-            message = f"the report would overwrite {self._target}, which is to be read."
+            message = f"the report would overwrite the input {self._target}; choose another name."
             raise click.UsageError(message)
 
     def _text(self, results: "Results") -> str:

@@ -55,7 +55,9 @@ def _as_texts(
     for given in values:
         name, equals, text = given.partition("=")
         if not equals or not name.removeprefix("$").isidentifier():
-            raise click.BadParameter(f"{given!r} is not NAME=VALUE.", context, option)
+            raise click.BadParameter(
+                f"{given!r} is not of the form NAME=VALUE, as in width=12.5.", context, option
+            )
         texts[name] = text
     return texts
 
@@ -70,7 +72,7 @@ def _value(text: str) -> Any:
         if _is_plain_word(text):
             return text
         wanted = "a number, text, true, false or [list]"
-        message = f"{text!r} is no value; it takes {wanted}."
+        message = f"{text!r} is not a value; give {wanted}."
         raise click.BadParameter(message, param_hint="-D") from None
 
 
@@ -180,9 +182,11 @@ def run(
     rights, and its output goes to standard error.
     """
     if target is None and not shows:
-        raise click.UsageError("say where the solid goes: -o part.stl; or look at it: --view.")
+        raise click.UsageError(
+            "no output is given; write the solid with -o part.stl, or show it with --view."
+        )
     if not shows and is_given("port"):
-        raise click.UsageError("--port goes with --view only.")
+        raise click.UsageError("--port can only be used with --view.")
 
     def job() -> Job:
         return _Run(script, target=NOWHERE if target is None else target, **given)
@@ -190,7 +194,7 @@ def run(
     if not watches and not shows:
         return job().run()
     if str(script) == STREAM:
-        raise click.UsageError("--watch and --view are for files, not for standard input.")
+        raise click.UsageError("--watch and --view need a script file, not standard input.")
     return Watching(script, job, Output.of(given), watches).run(port if shows else None, opens)
 
 
@@ -213,7 +217,10 @@ class _Run(Job):
     def refuse_inputs(self) -> None:
         if self._suffix not in SUFFIXES:
             known = ", ".join(SUFFIXES)
-            message = f"{shown(self._script)}: this is no script; known are {known}."
+            message = (
+                f"{shown(self._script)}: the file is not a script; its name must end in one of"
+                f" {known}."
+            )
             raise FormatError(message, "unknown_format")
         self._refuse_options()
         value = _python_value if self._suffix == ".py" else _value
@@ -224,7 +231,9 @@ class _Run(Job):
         for name, useless in _NOT_FOR.items():
             if self._suffix in useless and is_given(name):
                 option = _SPELLED.get(name, f"--{name.replace('_', '-')}")
-                raise click.UsageError(f"{option} is not for {self._suffix} files.")
+                raise click.UsageError(
+                    f"{option} cannot be used with {self._suffix} files; leave it out."
+                )
 
     def combined(self) -> "Solid":
         given = {"timeout": self.settings["timeout"], "defines": self._defines}

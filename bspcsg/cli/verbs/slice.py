@@ -28,7 +28,7 @@ def _as_finite(
 ) -> float | None:
     """Return a number unchanged; raise a usage error if it is infinite or NaN."""
     if value is not None and not math.isfinite(value):
-        raise click.BadParameter(f"{value} is not finite.", context, option)
+        raise click.BadParameter(f"{value} is not a finite number.", context, option)
     return value
 
 
@@ -116,9 +116,14 @@ def _plane(
 ) -> tuple[tuple[float, ...], float]:
     """Return normal and offset of the plane that the options describe."""
     if (height is None) == (normal is None):
-        raise click.UsageError("say where to cut: either --z HEIGHT or --normal NX,NY,NZ.")
+        raise click.UsageError(
+            "the cutting plane is missing, or given twice; give either --z HEIGHT or --normal"
+            " NX,NY,NZ."
+        )
     if height is None:
         return normal or _UPWARDS, offset or 0.0
     if offset is not None:
-        raise click.UsageError("--offset goes with --normal; --z is a height already.")
+        raise click.UsageError(
+            "--offset can only be used with --normal; with --z, the height is the offset already."
+        )
     return _UPWARDS, height

@@ -83,9 +83,11 @@ def split(context: click.Context, /, files: tuple[Path, ...], target: Path, **gi
     after plates.stl. Without a %, this is added before the suffix.
     """
     if given["plane"] and given["cutter"]:
-        raise click.UsageError("--plane and --by exclude each other.")
+        raise click.UsageError("--plane and --by cannot be combined; give one of them.")
     if str(target) == "-":
-        raise click.UsageError("several files cannot go to standard output; give -o a name.")
+        raise click.UsageError(
+            "several parts cannot be written to standard output; give -o a file name with %."
+        )
     by_name = len(files) > 1 or context.info_name == _FORMER
     return _Splitting(files, target, by_name, given).run()
 
@@ -121,7 +123,9 @@ class _Splitting:
         found = [self._parts(file) for file in self._files]
         failed = [one.file for one in found if "subject failed" in one.verdicts]
         for file in failed:
-            self._out.result(f"{shown(file)}: not written; check: subject failed", {})
+            self._out.result(
+                f"{shown(file)}: not written, because the check of the parts failed", {}
+            )
         if failed:
             return output.FOUND
         self._write(found)
@@ -136,7 +140,10 @@ class _Splitting:
     def _refuse_early(self) -> None:
         names = [self._target(file, 1).path for file in self._files]
         if len(set(names)) < len(names) and not is_dropped(self._pattern):
-            raise click.UsageError("two of the files have one name, and so would their parts.")
+            raise click.UsageError(
+                "two of the input files have the same name, so their parts would overwrite each"
+                " other; split them separately."
+            )
         for file in self._files:
             self._target(file, 1).refuse_early()
         self._inputs.refuse_early(self._read())
@@ -178,8 +185,8 @@ class _Splitting:
     def _refuse_less_than(self, least: int, file: Path, meshes: "list[Mesh]") -> None:
         if len(meshes) >= least:
             return
-        what = "there is nothing in it" if least == 1 else "all of it lies on one side"
-        message = f"{shown(file)}: {what}, so nothing was split and nothing was written."
+        what = "the solid is empty" if least == 1 else "the whole solid lies on one side of the cut"
+        message = f"{shown(file)}: {what}, so nothing was written."
         raise output.EmptyResultError(message, "empty_result")
 
     def _write(self, found: list[_Parts]) -> None:

@@ -88,7 +88,10 @@ class _Showing:
         self._form = form or _form_of(target)
         self._out = Output.of(settings)
         if form and target is None and settings["as_json"]:
-            raise click.UsageError("--json and a tree cannot both go to standard output.")
+            raise click.UsageError(
+                "--json and a tree cannot both go to standard output; give -o a file name, or"
+                " leave out --json."
+            )
 
     @property
     def _to_file(self) -> bool:
@@ -112,11 +115,14 @@ class _Showing:
             return _from_stream(self._source)
         suffix = self._file.suffix.lower()
         if suffix not in _READ:
-            message = f"{shown(self._file)}: this is no tree; known are {', '.join(_READ)}."
+            message = (
+                f"{shown(self._file)}: the file is not a script with a tree; its name must end in"
+                f" one of {', '.join(_READ)}."
+            )
             raise FormatError(message, "unknown_format")
         timeout = self._settings["timeout"]
         if timeout is not None and suffix != ".scad":
-            raise click.UsageError(f"--timeout is not for {suffix} files.")
+            raise click.UsageError(f"--timeout cannot be used with {suffix} files; leave it out.")
         return read_tree(self._file, **({} if timeout is None else {"timeout": timeout}))
 
     def _write(self, text: str) -> None:
@@ -152,7 +158,10 @@ def _form_of(target: Path | None) -> str:
     suffix = target.suffix.lower()
     if suffix not in _FORMS:
         known = ", ".join(_FORMS)
-        message = f"{shown(target)}: the name must end in one of {known}, or say --to."
+        message = (
+            f"{shown(target)}: the format is unknown; the output name must end in one of {known},"
+            " or give --to."
+        )
         raise FormatError(message, "unknown_format")
     return _FORMS[suffix]
 

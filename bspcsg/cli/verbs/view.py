@@ -90,7 +90,9 @@ class _Viewing:
         target = self._target or temporary_page(stem)
         size = write_page(target, page)
         if size > _MAX_QUICK_PAGE_BYTES:
-            self._out.note(f"the page has {size / 1e6:.0f} MB; browsers take a while for it.")
+            self._out.note(
+                f"the page has {size / 1000000.0:.0f} MB, so it opens slowly in a browser."
+            )
         opens = self._settings["opens"] and not is_dropped(target)
         is_open = opens and self._opened(target.resolve().as_uri())
         self._tell(target, layers, size, is_open)
@@ -132,13 +134,15 @@ class _Viewing:
     def _refuse_early(self) -> None:
         serves = self._settings["live"] or self._folder is not None
         if serves and self._target is not None:
-            raise click.UsageError("a page that is served follows its files; leave out -o.")
+            raise click.UsageError(
+                "a page that is served live is not written to a file; leave out -o."
+            )
         if not serves and is_given("port"):
-            raise click.UsageError("--port goes with --live, or with a folder.")
+            raise click.UsageError("--port can only be used with --live or a folder.")
         if self._folder is not None:
             return
         if self._settings["live"] and any(str(path) == STREAM for path in self._files):
-            raise click.UsageError("--live is for files, not for standard input.")
+            raise click.UsageError("--live needs files, not standard input.")
         if self._target is not None:
             refuse_page(self._target)
         self._inputs.refuse_early(self._files)

@@ -138,7 +138,7 @@ def _flat(entities: Iterator[Any], lost: LeftOut) -> Iterator[Any]:
         entity, is_placed = next(waiting[-1], (None, False))
         left -= len(waiting) > 1
         if left < 0:
-            raise ValueError("its blocks hold too much")
+            raise ValueError(f"its nested blocks contain more than {MAX_BLOCK_ENTITIES} entities")
         if entity is None:
             waiting.pop()
         elif not is_placed or (entity.dxftype() == "INSERT" and len(waiting) > _MAX_BLOCK_DEPTH):

@@ -74,7 +74,9 @@ def _tell_of_unused(
     """Warn of arguments that a file of this type ignores, unless they have default values."""
     for name, nothing in _ASKING_NOTHING.items():
         if name not in used and arguments.value(name) not in (None, nothing):
-            run.warn(owner, f"its {name} does not count for such a file, all of which is read")
+            run.warn(
+                owner, f"its {name} is ignored for this file format, whose files are read whole"
+            )
 
 
 def drawing_of(owner: Node, arguments: Arguments, run: Evaluation) -> Region:
@@ -86,7 +88,10 @@ def drawing_of(owner: Node, arguments: Arguments, run: Evaluation) -> Region:
 def _svg(path: Path, owner: Node, arguments: Arguments, run: Evaluation) -> Region:
     dpi = arguments.number("dpi", _DEFAULT_DPI)
     if dpi < _MIN_DPI:
-        run.warn(owner, f"its dpi must be {_MIN_DPI:g} or more; it is {_DEFAULT_DPI:g} instead")
+        run.warn(
+            owner,
+            f"its dpi must be at least {_MIN_DPI:g}, not {dpi:g}; {_DEFAULT_DPI:g} is used instead",
+        )
         dpi = _DEFAULT_DPI
     lost = LeftOut()
     region = svg_region(path, dpi, arguments.flag("center"), lost)
@@ -130,13 +135,15 @@ def _path(arguments: Arguments, run: Evaluation) -> Path:
     # Refuse forbidden files first, so that the error does not reveal whether they exist.
     if name and "\0" not in name and not _is_allowed(path, run):
         message = (
-            f"the file “{name}” lies outside the script's folder; --allow-path DIR (in Python,"
-            " allow_paths) names further folders that may be read."
+            f"the file “{name}” lies outside the script's folder and is not read; allow its"
+            " folder with --allow-path DIR, or allow_paths in Python."
         )
         raise arguments.error(message, "forbidden_path")
     # A name that is too long for any file counts as a missing file.
     if not name or not os.path.isfile(path):
-        message = f"there is no file “{name}”; names are relative to the script's folder."
+        message = (
+            f"the file “{name}” does not exist; file names are relative to the script's folder."
+        )
         raise arguments.error(message, "missing_file")
     return path
 

@@ -81,7 +81,7 @@ def _font(owner: Node, arguments: Arguments, run: Evaluation) -> FontFile:
     try:
         return font_file(name, paths=False)
     except InvalidParameterError:
-        run.warn(owner, f"the font “{name}” is not there; {FAMILY} stands in for it")
+        run.warn(owner, f"the font “{name}” is not installed; {FAMILY} is used instead")
         return stand_in(name)
 
 
@@ -94,7 +94,9 @@ def _choice(
         return default
     if word in get_args(known):
         return word
-    run.warn(owner, f"its {name} “{word}” is none of {', '.join(get_args(known))}")
+    run.warn(
+        owner, f"its {name} “{word}” is unknown and ignored; known are {', '.join(get_args(known))}"
+    )
     return default
 
 

@@ -28,7 +28,9 @@ def multmatrix(owner: Node, children: list[Geometry], run: Evaluation) -> Geomet
     arguments = run.arguments(owner)
     matrix = _matrix(arguments)
     if matrix is None:
-        run.warn(owner, "its matrix is not finite; it is left out")
+        run.warn(
+            owner, "its matrix has an entry that is not a finite number; this node is left out"
+        )
         return None
     return _moved(owner, body, polished_matrix(matrix) if run.polish else matrix, run)
 
@@ -37,7 +39,10 @@ def _moved(owner: Node, body: Geometry, matrix: FloatArray, run: Evaluation) -> 
     if body is None or np.array_equal(matrix, np.eye(4)):
         return body
     if determinant_sign(_flat_map(matrix) if isinstance(body, Region) else matrix) == 0:
-        run.warn(owner, "its matrix flattens its children; it is left out")
+        run.warn(
+            owner,
+            "its matrix has determinant 0 and would flatten its children; this node is left out",
+        )
         return None
     if isinstance(body, Region):
         return body.transform(matrix[:2, [0, 1, 3]])
@@ -116,5 +121,8 @@ def _factors(sizes: Sequence[float], auto: Sequence[bool], old: Sequence[float])
     chosen = zip(sizes, auto, factors, strict=True)
     result = [leader if new == 0 and follows else own for new, follows, own in chosen]
     if not all(map(math.isfinite, result)):
-        raise invalid_parameter("the new size is too many times the old one.")
+        raise invalid_parameter(
+            "the new size is too large a multiple of the old size for doubles; choose a smaller"
+            " new size."
+        )
     return result

@@ -91,14 +91,14 @@ class Evaluation:
         """Return the children that are not solids; warn if a solid is ignored."""
         figures: list[Geometry] = [child for child in children if not isinstance(child, Solid)]
         if len(figures) < len(children):
-            self.warn(owner, "its children that are solids are ignored")
+            self.warn(owner, "its 3D children are ignored, because it takes 2D children only")
         return figures
 
     def solids(self, owner: Node, children: list[Geometry]) -> list[Geometry]:
         """Return the children that are not plane figures; warn if a plane figure is ignored."""
         solids: list[Geometry] = [child for child in children if not isinstance(child, Region)]
         if len(solids) < len(children):
-            self.warn(owner, "its children that are plane figures are ignored")
+            self.warn(owner, "its 2D children are ignored, because it takes 3D children only")
         return solids
 
     def parts_of(self, figure: Region) -> list[Region]:
@@ -138,9 +138,9 @@ class Evaluation:
                 raise
             if self.on_invalid == "repair":
                 made = repair(RawMesh(vertices, faces)).mesh
-                self.warn(node, f"{error.message} It is repaired.")
+                self.warn(node, f"{error.message} This mesh is repaired.")
                 return Solid(made.vertices, made.faces, winding="nonzero")
-            self.warn(node, f"{error.message} It is left out.")
+            self.warn(node, f"{error.message} This mesh is left out.")
             return None
 
     def _loose(self, vertices: Any, faces: Any) -> Solid:
@@ -162,8 +162,10 @@ class Evaluation:
         if not solids or not regions:
             return solids, regions
         flat = isinstance(there[0], Region)
-        left_out = "solids" if flat else "plane figures"
-        self.warn(node, f"its children are of 2D and 3D; the {left_out} among them are ignored")
+        left_out = "3D" if flat else "2D"
+        self.warn(
+            node, f"its children are partly 2D and partly 3D; the {left_out} children are ignored"
+        )
         return ([], regions) if flat else (solids, [])
 
 

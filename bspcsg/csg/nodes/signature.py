@@ -37,16 +37,19 @@ class Signature:
         given = Counter(name for name in names if name is not None)
         for name, count in given.items():
             if name not in _EVERYWHERE and name not in self.order and name not in self.named:
-                yield f"it knows no argument “{name}”, which does not count; {self._known()}"
+                yield f"it has no argument “{name}”, so this argument is ignored; {self._known()}"
             elif count > 1:
-                yield f"its {name} is given {count} times; the last one counts"
+                yield f"its {name} is given {count} times; the last value is used"
         if None in names:
             count = names.count(None)
-            yield f"{count} of its arguments without a name do not count; {self._known()}"
+            yield (
+                f"{count} of its unnamed arguments are ignored, because there are too many;"
+                f" {self._known()}"
+            )
         values = dict(zip(names, (argument.value for argument in node.arguments), strict=True))
         for name, others in self.beside:
             if _asks(values.get(name)) and all(_asks(values.get(other)) for other in others):
-                yield f"its {name} does not count beside {' and '.join(others)}"
+                yield f"its {name} is ignored in favour of {' and '.join(others)}"
 
     def _names(self, arguments: tuple[Argument, ...]) -> list[str | None]:
         """Return the names of arguments; None for positional arguments that exceed `order`."""
@@ -55,7 +58,7 @@ class Signature:
 
     def _known(self) -> str:
         known = (*self.order, *self.named)
-        return f"known: {', '.join(known)}" if known else "it takes none"
+        return f"its arguments are {', '.join(known)}" if known else "it has no arguments"
 
 
 def _asks(value: Value) -> bool:

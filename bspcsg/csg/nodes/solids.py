@@ -108,7 +108,11 @@ def polyhedron(owner: Node, children: list[Geometry], run: Evaluation) -> Geomet
         # Open edges on one line may cancel each other; OpenSCAD omits such meshes, too.
         count = _open_edges(triangles)
         if count:
-            run.warn(owner, f"its faces do not close: {count} edges are open. It is left out.")
+            run.warn(
+                owner,
+                f"its faces do not form a closed surface: {count} edges are open. This node is"
+                " left out.",
+            )
             return Solid.empty()
     return run.closed_solid(owner, vertices, triangles[proper])
 

@@ -148,7 +148,10 @@ def rotate_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Ge
         return Solid.empty()
     (left, _), (right, _) = bounds.tolist()
     if left < 0 < right:
-        message = f"its children must not cross the axis: x runs from {left:g} to {right:g}."
+        message = (
+            "its 2D children must lie on one side of the rotation axis x = 0, but extend from x ="
+            f" {left:g} to {right:g}."
+        )
         raise arguments.error(message)
     around = arguments.sides(Fineness.of(arguments).fragments(max(right, -left)), "this turn")
     segments = max(int(around * abs(angle) / 360), least_segments(angle))
@@ -183,12 +186,14 @@ def roof(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     method = arguments.text("method", "voronoi")
     if method not in ("voronoi", "straight"):
         run.warn(
-            owner, f"its method “{method}” is none of voronoi, straight; it is voronoi instead"
+            owner,
+            f"its method “{method}” is unknown (known are voronoi and straight); voronoi is"
+            " used instead",
         )
     if method != "straight" and not roofs.is_convex(figure):
         message = (
-            "method “voronoi” is not supported where corners point inwards, for its roofs are"
-            " curved there; method “straight” is."
+            "method “voronoi” is not supported for figures with concave corners, where its"
+            " roof would be curved; use method “straight”."
         )
         raise arguments.error(message, "unsupported")
     return roofs.roof(figure)

@@ -61,7 +61,7 @@ class Arguments:
         """Return an argument that must be a number from -1e100 to 1e100."""
         value = self._given(name, default)
         if not is_number(value) or not _is_usable(value):
-            raise self._wrong(name, "a number within ±1e100", value)
+            raise self._wrong(name, "a number from -1e100 to 1e100", value)
         return float(value)
 
     def flag(self, name: str, default: bool = False) -> bool:
@@ -75,7 +75,7 @@ class Arguments:
         """Return an argument that must be a text."""
         value = self._given(name, default)
         if not isinstance(value, str):
-            raise self._wrong(name, "a text", value)
+            raise self._wrong(name, "a string", value)
         return value
 
     def vector(
@@ -86,7 +86,7 @@ class Arguments:
         if is_number(value):
             value = (value,) * size
         if not isinstance(value, tuple) or len(value) < size or not _all_usable(value[:size]):
-            raise self._wrong(name, f"{size} numbers within ±1e100", value)
+            raise self._wrong(name, f"{size} numbers from -1e100 to 1e100", value)
         return tuple(float(entry) for entry in value[:size])
 
     def padded(self, name: str, size: int) -> tuple[float, ...]:
@@ -103,7 +103,9 @@ class Arguments:
             raise self._wrong(name, "a list of points", value)
         for number, point in enumerate(value):
             if not isinstance(point, tuple) or len(point) != size or not _all_usable(point):
-                raise self._wrong(f"{name}[{number}]", f"{size} numbers within ±1e100", point)
+                raise self._wrong(
+                    f"{name}[{number}]", f"{size} numbers from -1e100 to 1e100", point
+                )
         return list(value)
 
     def index_lists(self, name: str, count: int, *, single: bool = False) -> list[list[int]]:
@@ -115,12 +117,12 @@ class Arguments:
         if single and isinstance(value, tuple) and value and is_number(value[0]):
             value = (value,)
         if not isinstance(value, tuple):
-            raise self._wrong(name, "a list of lists of point numbers", value)
+            raise self._wrong(name, "a list of lists of point indices", value)
         return [self._indices(f"{name}[{k}]", entry, count) for k, entry in enumerate(value)]
 
     def _indices(self, name: str, value: Any, count: int) -> list[int]:
         if not isinstance(value, tuple):
-            raise self._wrong(name, "a list of point numbers", value)
+            raise self._wrong(name, "a list of point indices", value)
         is_whole = _FLOAT.issuperset(map(type, value)) and all(map(float.is_integer, value))
         if value and not (is_whole and min(value) >= 0 and max(value) < count):
             raise self._wrong(name, f"whole numbers from 0 to {count - 1}", value)
@@ -129,21 +131,27 @@ class Arguments:
     def limited(self, count: float, what: str) -> int:
         """Return a number of corners; raise an error if it exceeds `MAX_CORNERS`."""
         if not count <= MAX_CORNERS:
-            message = f"{what} would take more than {MAX_CORNERS:,} corners."
+            message = (
+                f"{what} would have more than {MAX_CORNERS:,} corners, the largest number that is"
+                " allowed."
+            )
             raise self.error(message, "too_large")
         return int(count)
 
     def sides(self, count: float, what: str) -> int:
         """Return a number of sides of a circle; raise an error if it exceeds `MAX_SEGMENTS`."""
         if not count <= MAX_SEGMENTS:
-            message = f"{what} would have more than {MAX_SEGMENTS:,} sides."
+            message = (
+                f"{what} would have more than {MAX_SEGMENTS:,} sides, the largest number that is"
+                " allowed."
+            )
             raise self.error(message, "too_large")
         return int(count)
 
     def _given(self, name: str, default: Any) -> Any:
         value = self._values.get(name)
         if value is None and default is None:
-            raise self.error(f"{name} is missing.", "missing_argument")
+            raise self.error(f"the required argument {name} is missing.", "missing_argument")
         return default if value is None else value
 
     def _wrong(self, name: str, expected: str, value: Any) -> FormatError:

@@ -57,11 +57,18 @@ def from_json(text: str, name: str = "<json>", folder: str | Path | None = None)
     try:
         data = json.loads(text_value(text, "text").removeprefix("\ufeff"))
     except (ValueError, RecursionError) as error:
-        raise FormatError(f"{name}: this is no JSON: {error}.", "syntax") from error
+        raise FormatError(f"{name}: the file is not valid JSON: {error}.", "syntax") from error
     if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise FormatError(f"{name}: expected an object with the format “{FORMAT}”.", "syntax")
+        raise FormatError(
+            f"{name}: the JSON is not a stored tree: it must be an object whose “format” is"
+            f" “{FORMAT}”.",
+            "syntax",
+        )
     if data.get("version") != VERSION:
-        message = f"{name}: version {data.get('version')!r} is not known, only {VERSION}."
+        message = (
+            f"{name}: the tree has version {data.get('version')!r}, but only version {VERSION} can"
+            " be read."
+        )
         raise FormatError(message, "syntax")
     nodes = _nodes(data.get("nodes"), "nodes", name, 1)
     return CsgTree(nodes, name, place)
@@ -69,7 +76,10 @@ def from_json(text: str, name: str = "<json>", folder: str | Path | None = None)
 
 def _node_data(node: Node, depth: int, name: str) -> dict[str, Any]:
     if depth > MAX_NODE_DEPTH:
-        message = f"{name}: nodes nest deeper than {MAX_NODE_DEPTH}; write .csg instead of JSON."
+        message = (
+            f"{name}: nodes are nested deeper than {MAX_NODE_DEPTH} levels; write .csg instead of"
+            " JSON."
+        )
         raise FormatError(message, "too_deep")
     data: dict[str, Any] = {"node": node.name}
     if node.modifiers:
@@ -98,7 +108,9 @@ def _nodes(data: Any, where: str, name: str, depth: int) -> tuple[Node, ...]:
     if not isinstance(data, list):
         raise _wrong(name, where, "a list of nodes")
     if data and depth > MAX_NODE_DEPTH:
-        raise FormatError(f"{name}: nodes nest deeper than {MAX_NODE_DEPTH}.", "too_deep")
+        raise FormatError(
+            f"{name}: nodes are nested deeper than {MAX_NODE_DEPTH} levels.", "too_deep"
+        )
     return tuple(_node(entry, f"{where}[{k}]", name, depth) for k, entry in enumerate(data))
 
 
@@ -107,7 +119,7 @@ def _node(data: Any, where: str, name: str, depth: int) -> Node:
         raise _wrong(name, where, "a node with a name")
     modifiers = data.get("modifiers", "")
     if not isinstance(modifiers, str) or set(modifiers) - set("#%!*"):
-        raise _wrong(name, f"{where}.modifiers", "some of # % ! *")
+        raise _wrong(name, f"{where}.modifiers", "a string of the characters # % ! *")
     arguments = data.get("arguments", [])
     if not isinstance(arguments, list):
         raise _wrong(name, f"{where}.arguments", "a list of arguments")
@@ -121,7 +133,7 @@ def _argument(data: Any, where: str, name: str) -> Argument:
     if not isinstance(data, dict) or "value" not in data or not (named is None or is_name(named)):
         raise _wrong(name, where, "an argument with a value")
     if named in WORDS:
-        raise _wrong(name, f"{where}.name", f"a name, and {named} is a value")
+        raise _wrong(name, f"{where}.name", f"a name, but {named} is a reserved value")
     return Argument(named, _value(data["value"], f"{where}.value", name, 1))
 
 
@@ -136,7 +148,7 @@ def _value(data: Any, where: str, name: str, depth: int) -> Value:
         return data
     if isinstance(data, (int, float)) and math.isfinite(number := _double(data)):
         return number
-    raise _wrong(name, where, "a number, text, true, false, null or array")
+    raise _wrong(name, where, "a number, string, true, false, null or array")
 
 
 def _is_text(data: Any) -> TypeGuard[str]:

@@ -88,7 +88,7 @@ class _Parser:
     def value(self) -> Value:
         found = self._value()
         if self._next.kind != "end":
-            raise self._error(f"expected the end, found {self._next}.")
+            raise self._error(f"expected the end after the value, found {self._next}.")
         return found
 
     def nodes(self) -> tuple[Node, ...]:
@@ -178,7 +178,7 @@ class _Parser:
                 self._take()
                 vectors.append([])
                 if len(vectors) > MAX_VECTOR_DEPTH:
-                    raise self._error(f"vectors are nested deeper than {MAX_VECTOR_DEPTH}.")
+                    raise self._error(f"vectors are nested deeper than {MAX_VECTOR_DEPTH} levels.")
                 if self._next.text != "]":
                     continue
                 value = self._end_of(vectors)
@@ -227,7 +227,7 @@ class _Parser:
     def _number(self, word: Token) -> float:
         value = float(word.text)
         if math.isinf(value):
-            raise self._error(f"the number {word} is too large.", word)
+            raise self._error(f"the number {word} is too large for a double.", word)
         return value
 
     def _expect(self, mark: str, where: str) -> None:

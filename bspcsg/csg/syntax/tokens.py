@@ -125,7 +125,7 @@ def _numbers(found: list[Any], deepest: int) -> Numbers:
             raise ValueError("too large")
         return tuple(found)
     if kinds != {list}:
-        raise ValueError("no vector of numbers, or of vectors")
+        raise ValueError("not a vector of numbers or vectors")
     return tuple([_numbers(one, deepest - 1) for one in found])
 
 
@@ -133,11 +133,13 @@ def _unreadable(script: Script, position: int) -> Exception:
     place = script.places().at(position)
     rest = script.text[position : position + 2]
     if rest.startswith('"'):
-        return script.error(place, "this text has no closing quote.")
+        return script.error(place, "this string has no closing quotation mark.")
     if rest == "/*":
-        return script.error(place, "this comment has no end.")
+        return script.error(place, "this comment has no closing */.")
     word = re.match(r"[\w.]+|.", script.text[position:], re.DOTALL)
-    return script.error(place, f"cannot read {Token('mark', word.group() if word else rest, 0)}.")
+    return script.error(
+        place, f"unexpected characters {Token('mark', word.group() if word else rest, 0)}."
+    )
 
 
 def unquoted(text: str) -> str:

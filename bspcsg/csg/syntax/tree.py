@@ -71,8 +71,8 @@ def _plain(value: Any, depth: int = 0) -> "Value":
         if isinstance(value, Real):
             return float(value)
     raise invalid_parameter(
-        "A value in a script is a number, a text, true, false, None or a vector of these, within"
-        f" each other up to {MAX_VECTOR_DEPTH} times, not {shown(value)}."
+        "A value in a script must be a number, string, bool, None or a vector of these,"
+        f" nested at most {MAX_VECTOR_DEPTH} levels, not {shown(value)}."
     )
 
 
@@ -113,7 +113,10 @@ class Argument:
 
     def __post_init__(self) -> None:
         if self.name is not None and (not is_name(self.name) or self.name in WORDS):
-            raise invalid_parameter(f"{shown(self.name)} cannot be the name of an argument.")
+            raise invalid_parameter(
+                f"{shown(self.name)} is not a valid argument name; use letters, digits and"
+                " underscores, and no reserved word."
+            )
         object.__setattr__(self, "value", _plain(self.value))
 
     def __eq__(self, other: object) -> bool:
@@ -161,9 +164,14 @@ class Node:
 
     def __post_init__(self) -> None:
         if not is_name(self.name):
-            raise invalid_parameter(f"{shown(self.name)} cannot be the name of a node.")
+            raise invalid_parameter(
+                f"{shown(self.name)} is not a valid node name; use letters, digits and underscores."
+            )
         if not isinstance(self.modifiers, str) or set(self.modifiers) - set("#%!*"):
-            raise invalid_parameter(f"Modifiers are some of # % ! *, not {shown(self.modifiers)}.")
+            raise invalid_parameter(
+                "modifiers must be a string of the characters # % ! *, not"
+                f" {shown(self.modifiers)}."
+            )
         object.__setattr__(self, "arguments", _parts(Argument, self.arguments, "Arguments"))
         object.__setattr__(self, "children", _parts(Node, self.children, "Children"))
 

@@ -33,7 +33,7 @@ def stored(container: Container, number: int) -> Values:
     kind = np.dtype(COMPONENTS[sparse["indices"]["componentType"]])
     places = _rows(container, sparse["indices"], sparse["count"], 1, kind).ravel()
     if len(places) and not 0 <= places.min() <= places.max() < count:
-        raise IndexError(f"accessor {number} replaces an element that does not exist")
+        raise IndexError(f"accessor {number} has a sparse index outside its {count} elements")
     replaced = values.copy()
     replaced[places] = _rows(container, sparse["values"], sparse["count"], width, item)
     return replaced

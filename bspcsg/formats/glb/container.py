@@ -32,7 +32,7 @@ _LOOKS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "EXT_
 
 #: Extensions that compress data, and the advice on decompressing it.
 _PACKINGS = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
-_UNPACK = " “gltf-transform copy in.glb out.glb” unpacks it."
+_UNPACK = " “gltf-transform copy in.glb out.glb” removes the compression."
 
 #: Names, in messages, of vertex attributes that are not read, by the first letters of their keys.
 _ATTRIBUTES = {
@@ -85,26 +85,30 @@ def container_of(source: Source) -> Container:
         raise
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError) as error:
         reason = f"{type(error).__name__}: {error}"
-        raise source.error(f"the description in this GLB is not valid ({reason}).") from None
+        raise source.error(f"the JSON chunk of this GLB is not valid ({reason}).") from None
 
 
 def _chunks(source: Source) -> tuple[dict[str, Any], bytes]:
     """Return the parsed JSON chunk and the bytes of the binary chunk of a GLB file."""
     data = source.data
     if len(data) < _HEADER + 8 or data[:4] != _MAGIC:
-        raise source.error("this is no GLB: it does not begin with “glTF”.")
+        raise source.error("the file is not a GLB: it does not begin with “glTF”.")
     version, length = (int.from_bytes(data[at : at + 4], "little") for at in (4, 8))
     if version != 2:
-        raise source.error(f"this is GLB of version {version}; only version 2 can be read.")
+        raise source.error(f"the file is GLB of version {version}, but only version 2 can be read.")
     if length > len(data):
-        message = f"the file has {len(data)} bytes, but its header promises {length}."
+        message = f"the file is incomplete: it has {len(data)} bytes, but its header says {length}."
         raise source.error(message, "truncated", offset=len(data))
     found: dict[bytes, bytes] = {}
     at = _HEADER
     while at + 8 <= length:
         size, kind = int.from_bytes(data[at : at + 4], "little"), data[at + 4 : at + 8]
         if at + 8 + size > length:
-            raise source.error("a chunk reaches beyond the end.", "truncated", offset=at)
+            raise source.error(
+                "a chunk extends beyond the end of the file, so the file is incomplete.",
+                "truncated",
+                offset=at,
+            )
         found.setdefault(kind, data[at + 8 : at + 8 + size])
         at += 8 + size
     return _parsed(source, found.get(_JSON, b"")), found.get(_BINARY, b"")
@@ -114,9 +118,9 @@ def _parsed(source: Source, chunk: bytes) -> dict[str, Any]:
     try:
         tree = json.loads(chunk)
     except (ValueError, RecursionError) as error:
-        raise source.error(f"the description in this GLB is no JSON: {error}.") from None
+        raise source.error(f"the JSON chunk of this GLB is not valid JSON: {error}.") from None
     if not isinstance(tree, dict):
-        raise source.error("the description in this GLB is no JSON object.")
+        raise source.error("the JSON chunk of this GLB is not a JSON object.")
     return tree
 
 
@@ -141,16 +145,24 @@ class _Claims:
         """Raise a `FormatError` if the description has an error that would break decoding."""
         for extension in self._tree.get("extensionsRequired", []):
             if extension not in _READ and not extension.startswith(_LOOKS):
-                message = f"the file needs the extension {extension}, which cannot be read here."
+                message = (
+                    f"the file requires the glTF extension {extension}, which is not supported."
+                )
                 raise self._source.error(message + _way_out(extension), "unsupported")
         for number, buffer in enumerate(self._tree.get("buffers", [])):
             if "uri" in buffer:
                 is_text = str(buffer["uri"]).startswith("data:")
-                where = "as text in the description" if is_text else "in another file"
-                message = f"data lies {where}; a GLB is read only if its binary chunk has all data."
+                where = "as text in the JSON chunk" if is_text else "in another file"
+                message = (
+                    f"the mesh data are stored {where}, which is not supported; pack all data into"
+                    " the binary chunk of the GLB."
+                )
                 raise self._source.error(message, "unsupported")
             if number > 0 or not 0 <= buffer["byteLength"] <= self._held:
-                message = f"buffer {number} promises more than the {self._held} bytes of data."
+                message = (
+                    f"buffer {number} needs more bytes than the {self._held} bytes of the binary"
+                    " chunk."
+                )
                 raise self._source.error(message, "truncated")
         for number, accessor in enumerate(self._tree.get("accessors", [])):
             self._check_accessor(number, accessor)
@@ -160,7 +172,10 @@ class _Claims:
         """Return entry `index` of the list `kind`; a negative or too large index is an error."""
         entries: list[dict[str, Any]] = self._tree.get(kind, [])
         if type(index) is not int or not 0 <= index < len(entries):
-            message = f"the description refers to {kind} {index}, but has only {len(entries)}."
+            message = (
+                f"the JSON chunk refers to entry {index} of “{kind}”, which has only"
+                f" {len(entries)} entries."
+            )
             raise self._source.error(message, "index_out_of_range")
         return entries[index]
 
@@ -172,7 +187,10 @@ class _Claims:
         if "sparse" in accessor:
             sparse = accessor["sparse"]
             if sparse["count"] > count:
-                message = f"accessor {number} replaces more elements than it has."
+                message = (
+                    f"accessor {number} has more sparse values ({sparse['count']}) than elements"
+                    f" ({count})."
+                )
                 raise self._source.error(message)
             places = sparse["indices"]
             self._check_elements(number, places, sparse["count"], _bytes_of(places, "SCALAR"))
@@ -185,13 +203,22 @@ class _Claims:
         offset, stride = told.get("byteOffset", 0), view.get("byteStride") or element
         needed = offset + max(count - 1, 0) * stride + (count and element)
         if min(start, length, offset, stride, count) < 0 or start + length > self._held:
-            message = f"accessor {number} lies outside the {self._held} bytes of data."
+            message = (
+                f"accessor {number} refers to bytes outside the {self._held} bytes of the binary"
+                " chunk."
+            )
             raise self._source.error(message, "truncated")
         if stride < element:
-            message = f"the elements of accessor {number} overlap: {stride} bytes from one to next."
+            message = (
+                f"the elements of accessor {number} overlap: the stride is {stride} bytes, but"
+                f" each element has {element}."
+            )
             raise self._source.error(message)
         if needed > length:
-            message = f"accessor {number} promises {count} elements, more than its data hold."
+            message = (
+                f"accessor {number} has {count} elements according to its count, but its buffer"
+                " view has bytes for fewer."
+            )
             raise self._source.error(message, "truncated")
 
     def _used(self, number: Any) -> dict[str, Any]:
@@ -203,12 +230,15 @@ class _Claims:
             # An accessor has no buffer view if an extension has compressed its data, too.
             used = self._tree.get("extensionsUsed", [])
             packing = next((one for one in used if one in _PACKINGS), "")
-            message = f"accessor {number} has no data that can be read here."
+            message = f"accessor {number} has no data that can be read; they may be compressed."
             raise self._source.error(message + _way_out(packing), "unsupported")
         zeros = accessor["count"] * _bytes_of(accessor)
         if not 0 <= zeros <= self._held:
             # Zeros take no bytes in the file, so its length does not limit their number.
-            message = f"accessor {number} has {zeros} bytes of zeros, more than the file has data."
+            message = (
+                f"accessor {number} has no data and stands for {zeros} bytes of zeros, more than"
+                " the whole binary chunk."
+            )
             raise self._source.error(message, "too_large")
         return accessor
 
@@ -221,18 +251,29 @@ class _Claims:
         for number, node in enumerate(nodes):
             for child in node.get("children", []):
                 if child < 0 or parents[child] != -1:
-                    raise self._source.error(f"node {child} has several parents.", "too_large")
+                    raise self._source.error(
+                        f"node {child} has several parents, or a negative index; each node may"
+                        " have one parent.",
+                        "too_large",
+                    )
                 parents[child] = number
         for number in range(len(nodes)):
             steps, above = 0, number
             while (above := parents[above]) != -1:
                 steps += 1
                 if steps > _MAX_NODE_DEPTH:
-                    message = "the nodes are nested too deeply, or in a cycle."
+                    message = (
+                        f"the nodes are nested deeper than {_MAX_NODE_DEPTH} levels, or form a"
+                        " cycle."
+                    )
                     raise self._source.error(message, "too_large")
         shown = sum(self._triangles_of(node) for node in nodes)
         if shown > _MAX_TRIANGLES:
-            raise self._source.error("the nodes show too many triangles.", "too_large")
+            raise self._source.error(
+                f"the nodes contain {shown} triangles in all, more than the limit of"
+                f" {_MAX_TRIANGLES}.",
+                "too_large",
+            )
 
     def _triangles_of(self, node: dict[str, Any]) -> int:
         if "mesh" not in node:
@@ -260,7 +301,10 @@ class _Claims:
             return 1
         counts = {self._used(accessor)["count"] for accessor in told.values()}
         if len(counts) != 1:
-            raise ValueError("the instances of a mesh have not one place each")
+            raise ValueError(
+                "the instancing attributes of a node (TRANSLATION, ROTATION, SCALE) have"
+                " different lengths"
+            )
         return int(counts.pop())
 
 
@@ -323,7 +367,10 @@ def _passed_by(tree: dict[str, Any]) -> tuple[Finding, ...]:
     nowhere = [primitive for primitive in primitives if _is_nowhere(primitive)]
     modes = [one.get("mode", TRIANGLES) for one in primitives if not _is_nowhere(one)]
     lines = sum(mode not in (TRIANGLES, STRIP, FAN) for mode in modes)
-    told = ((lines, "groups of points or lines"), (len(nowhere), "primitives without positions"))
+    told = (
+        (lines, "groups of points or lines"),
+        (len(nowhere), "primitives without vertex positions"),
+    )
     return tuple(
         Finding("ignored", "warning", f"{count} {what} were ignored.", (), count)
         for count, what in told

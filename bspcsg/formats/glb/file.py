@@ -88,12 +88,15 @@ def _moved(vertices: FloatArray, matrix: FloatArray) -> FloatArray:
 def _hidden(count: int) -> tuple[Finding, ...]:
     if not count:
         return ()
-    message = f"{count} meshes outside the scene were ignored."
+    message = f"{count} meshes that are not part of the scene were ignored."
     return (Finding("ignored", "warning", message, (), count),)
 
 
 def _unit() -> Finding:
-    message = "GLB is in metres with y upwards; it was converted to millimetres with z upwards."
+    message = (
+        "GLB uses metres with the y axis up; coordinates were converted to millimetres with the z"
+        " axis up."
+    )
     return Finding("unit", "note", message, (), 1)
 
 
@@ -106,7 +109,14 @@ def most_bytes(mesh: Mesh | RawMesh) -> int:
 def beyond(mesh: Mesh | RawMesh) -> str:
     """Return why a mesh is too large for GLB, or an empty string if it fits."""
     is_beyond = most_bytes(mesh) > np.iinfo(np.uint32).max
-    return "too many triangles for GLB; write 3MF." if is_beyond else ""
+    return (
+        (
+            "the mesh has too many triangles for GLB, whose size is limited to 4 GiB; write 3MF"
+            " instead."
+        )
+        if is_beyond
+        else ""
+    )
 
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
@@ -314,5 +324,8 @@ def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
     OverflowError
         If a coordinate is beyond single precision.
     """
-    message = "GLB is in metres with y upwards; the model was taken as millimetres with z upwards."
+    message = (
+        "GLB uses metres with the y axis up; the model was assumed to be in millimetres with the"
+        " z axis up, and converted."
+    )
     return Finding("unit", "note", message, (), 1), *single.losses(mesh, "GLB")

@@ -89,7 +89,7 @@ def _visited(tree: dict[str, Any], nodes: list[dict[str, Any]]) -> Iterator[tupl
     while waiting:
         number, outer = waiting.pop()
         if number in seen or not 0 <= number < len(nodes):
-            raise IndexError(f"node {number} is shown twice or does not exist")
+            raise IndexError(f"node {number} does not exist, or occurs twice in the scene")
         seen.add(number)
         matrix = outer @ local_matrix(nodes[number])
         yield number, matrix
@@ -125,7 +125,10 @@ def places_of(container: Container, node: dict[str, Any]) -> FloatArray:
         if key in told:
             values = fractions(stored(container, told[key])).astype(np.float64)
         if values.shape[1] != len(usual):
-            raise ValueError(f"the {key} of instances has {values.shape[1]} numbers each")
+            raise ValueError(
+                f"the instancing attribute {key} has {values.shape[1]} numbers for each instance"
+                f" instead of {len(usual)}"
+            )
         given.append(values)
     return _matrices(*given)
 
@@ -204,7 +207,9 @@ def _positions(container: Container, accessor: int) -> SingleArray:
 def _check_kind(container: Container, number: int, shape: str, kinds: tuple[str, ...]) -> None:
     accessor = container.tree["accessors"][number]
     if accessor["type"] != shape or COMPONENTS[accessor["componentType"]][1:] not in kinds:
-        raise ValueError(f"accessor {number} is of no type that is meant for its use")
+        raise ValueError(
+            f"accessor {number} has a type or component type that glTF does not allow for its use"
+        )
 
 
 def _faces(container: Container, primitive: dict[str, Any], count: int, mode: int) -> IndexArray:
@@ -213,7 +218,7 @@ def _faces(container: Container, primitive: dict[str, Any], count: int, mode: in
         _check_kind(container, primitive["indices"], "SCALAR", _INDICES)
         corners = stored(container, primitive["indices"]).ravel().astype(np.int64)
     if len(corners) and not 0 <= corners.min() <= corners.max() < count:
-        raise IndexError("a triangle names a vertex that does not exist")
+        raise IndexError(f"a triangle has a vertex index outside 0 to {count - 1}")
     if mode == TRIANGLES:
         return corners.reshape(-1, 3)
     second, third = corners[1:-1], corners[2:]

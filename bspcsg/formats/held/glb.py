@@ -13,5 +13,5 @@ def objects(file: BinaryIO) -> list[StoredMesh]:
     """Return the meshes of the nodes as stored; raise an error if a matrix is not `TO_METRES`."""
     found, hidden = shown(container_of(Source("file", file.read())))
     if hidden or any((one.matrix != TO_METRES).any() for one in found):
-        raise ValueError("a node is not where it should be")
+        raise ValueError("a node has another transform than the one written")
     return [StoredMesh(one.vertices, one.faces, one.name) for one in found]

@@ -105,7 +105,7 @@ class Rows:
     def check_last(self) -> None:
         """Raise a `ValueError` unless the file ends after the last row."""
         if size_of(self._file) != self.end:
-            raise ValueError(f"it has not the {self.end} bytes that its header tells of")
+            raise ValueError(f"its length is not the {self.end} bytes that follow from its header")
 
     def are(self, expected: npt.NDArray[Any]) -> bool:
         """Say whether the rows equal the rows of `expected` bit by bit."""
@@ -181,7 +181,7 @@ def piece(file: BinaryIO, start: int, count: int) -> bytes:
     file.seek(start)
     data = file.read(count)
     if len(data) != count:
-        raise ValueError(f"it ends at byte {start + len(data)}")
+        raise ValueError(f"it ends too early, at byte {start + len(data)}")
     return data
 
 

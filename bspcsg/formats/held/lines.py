@@ -54,7 +54,7 @@ class Lines:
     def check_last(self) -> None:
         """Raise a `ValueError` unless the file ends after the last line."""
         if size_of(self._file) != self.end():
-            raise ValueError("something follows its last line")
+            raise ValueError("there is data after its last line")
 
     def are(self, expected: npt.NDArray[Any]) -> bool:
         """Say whether the numbers in the lines equal the rows of `expected`."""
@@ -77,7 +77,7 @@ class Lines:
         while left:
             text, count = _first_lines(text_at(self._file, at, _BYTES_PER_READ), left)
             if not count:
-                raise ValueError(f"it ends at byte {at}")
+                raise ValueError(f"it ends too early, at byte {at}")
             yield text
             at, left = at + len(text), left - count
 

@@ -25,7 +25,9 @@ def binary_stl(file: BinaryIO) -> list[StoredMesh]:
     data = file.read()
     count = int.from_bytes(data[80:84], "little")
     if len(data) != 84 + 50 * count:
-        raise ValueError(f"it has {len(data)} bytes, which are not {count} triangles")
+        raise ValueError(
+            f"its length of {len(data)} bytes does not fit the {count} triangles of its header"
+        )
     records = np.frombuffer(data, np.dtype("12<f4,<u2"), count, 84)["f0"]
     return [StoredMesh(records[:, 3:].reshape(-1, 3))]
 
@@ -39,7 +41,7 @@ def text_stl(file: BinaryIO) -> list[StoredMesh]:
         end = data.index(b"endsolid ", head)
         at = data.index(b"\n", end) + 1
         if after(b"endsolid ", data[end : at - 1]) != name:
-            raise ValueError("a solid ends by another name")
+            raise ValueError("the name after “endsolid” differs from the name after “solid”")
         rows = rows_of(data[head:end], _FACET)
         found.append(StoredMesh(rows[:, 3:].reshape(-1, 3), None, name))
     return found
@@ -74,7 +76,7 @@ def obj(file: BinaryIO) -> list[StoredMesh] | list[StoredRows]:
 def _lines(data: bytes, start: int, end: int, read: Reader) -> Lines:
     """Return the lines between two byte offsets; raise an error if the last has no line break."""
     if start < end and data[end - 1 : end] != b"\n":
-        raise ValueError(f"it ends within a line at byte {end}")
+        raise ValueError(f"its last line is incomplete, at byte {end}")
     return Lines(io.BytesIO(data), lambda: start, data.count(b"\n", start, end), read)
 
 
@@ -114,7 +116,7 @@ def binary_ply(file: BinaryIO) -> list[StoredRows]:
     """Return the only object of a binary PLY, a list of one."""
     head = _PLY.match(header_of(file))
     if head is None:
-        raise ValueError("its header is another one")
+        raise ValueError("its header differs from the one written")
     vertices = Rows(file, head.end(), "3<f8", int(head[1]))
     faces = _Faces(file, vertices.end, "u1,3<i4", int(head[2]))
     return [_complete(StoredRows(vertices, faces, ends=True))]
@@ -129,7 +131,7 @@ class _Faces(Rows):
     def numbers(self, block: slice) -> npt.NDArray[Any]:
         records = super().numbers(block)
         if not (records["f0"] == 3).all():
-            raise ValueError("a face has not three corners")
+            raise ValueError("a face does not have three corners")
         corners: npt.NDArray[Any] = records["f1"]
         return corners
 
@@ -137,7 +139,7 @@ class _Faces(Rows):
 def _table(file: BinaryIO, head: re.Match[bytes] | None) -> StoredRows:
     """Return the vertices and faces in the lines after the header `head`, which counts them."""
     if head is None:
-        raise ValueError("its header is another one")
+        raise ValueError("its header differs from the one written")
     vertices = Lines(file, head.end, int(head[1]), _bare_points)
     faces = Lines(file, vertices.end, int(head[2]), _counted_faces)
     return _complete(StoredRows(vertices, faces, ends=True))

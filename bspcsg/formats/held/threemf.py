@@ -17,7 +17,7 @@ def archive(file: BinaryIO) -> list[StoredMesh]:
     items = b"".join(b'<item objectid="%d"/>\n' % (number + 1) for number in range(len(found)))
     end = b"</resources>\n<build>\n" + items + b"</build>\n</model>\n"
     if model[at:] != end:
-        raise ValueError("its build does not name each object once")
+        raise ValueError("its build section does not list each object exactly once")
     return found
 
 
@@ -48,13 +48,13 @@ def _objects(model: bytes) -> Iterator[StoredMesh]:
         end = model.index(closing, middle)
         told = ElementTree.fromstring(model[at:start] + b"</object>").attrib
         if told.get("id") != str(number) or told.get("type") != "model":
-            raise ValueError(f"its object {number} is another one")
+            raise ValueError(f"its object {number} has another number or type than the one written")
         vertices = rows_of(model[start + len(opening) : middle], _VERTEX)
         faces = whole_rows_of(model[middle + len(between) : end], _TRIANGLE)
         yield StoredMesh(vertices, faces, told.get("name", ""))
         at = end + len(closing)
     if not model.startswith(b"</resources>", at):
-        raise ValueError(f"something else follows its object {number}")
+        raise ValueError(f"unexpected data follows its object {number}")
 
 
 _VERTEX, _TRIANGLE = b'<vertex x="#" y="#" z="#"/>\n', b'<triangle v1="#" v2="#" v3="#"/>\n'

@@ -30,25 +30,25 @@ def legacy(file: BinaryIO) -> list[StoredRows]:
         return []
     head = _HEAD.match(start)
     if head is None:
-        raise ValueError("its header is another one")
+        raise ValueError("its header differs from the one written")
     vertices = Rows(file, head.end(), "3>f8", int(head[1]))
     cells = _CELLS.match(text_at(file, vertices.end))
     if cells is None:
-        raise ValueError("something else follows its points")
+        raise ValueError("unexpected data follows its points")
     count = int(cells[1]) - 1
     offsets = Rows(file, vertices.end + cells.end(), ">i8", count + 1)
     at = _behind(b"\nCONNECTIVITY vtktypeint64\n", file, offsets.end)
     faces = Rows(file, at, "3>i8", count)
     kinds = Rows(file, _behind(b"\nCELL_TYPES %d\n" % count, file, faces.end), ">i4", count)
     if _behind(b"\n", file, kinds.end) != size_of(file) or int(cells[2]) != 3 * count:
-        raise ValueError(f"its {count} cells are not all it holds")
+        raise ValueError(f"there is data after its {count} cells, or their size is wrong")
     _check_triangles(offsets, kinds)
     return [StoredRows(vertices, faces)]
 
 
 def _behind(key: bytes, file: BinaryIO, at: int) -> int:
     if piece(file, at, len(key)) != key:
-        raise ValueError(f"“{key.decode().strip()}” is not where it should be")
+        raise ValueError(f"the keyword “{key.decode().strip()}” is missing at byte {at}")
     return at + len(key)
 
 
@@ -57,11 +57,11 @@ def _check_triangles(offsets: Rows, kinds: Rows) -> None:
     for block in blocks(len(offsets), ROWS_PER_FILE_BLOCK):
         rows = np.arange(*block.indices(len(offsets)), dtype=np.int64)
         if not offsets.hold(block, 3 * rows[:, None]):
-            raise ValueError("a cell has not three corners")
+            raise ValueError("a cell does not have three corners")
     for block in blocks(len(kinds), ROWS_PER_FILE_BLOCK):
         data = kinds.data(block)
         if data != _KIND * (len(data) // len(_KIND)):
-            raise ValueError("a cell is no triangle")
+            raise ValueError("a cell is not a triangle")
 
 
 _GRID = re.compile(
@@ -88,16 +88,16 @@ def xml(file: BinaryIO) -> list[StoredMesh]:
         return []
     grid = _GRID.match(data)
     if grid is None:
-        raise ValueError("its header is another one")
+        raise ValueError("its header differs from the one written")
     points, count = int(grid[2]), int(grid[3])
     arrays = _arrays(file, data, grid.end(), "<" if grid[1] == b"Little" else ">")
     vertices, faces, offsets, kinds = arrays
     if [len(vertices), len(faces), len(kinds)] != [3 * points, 3 * count, count]:
-        raise ValueError("its arrays are not as long as it says")
+        raise ValueError("its arrays do not have the lengths that its header says")
     if not np.array_equal(offsets, np.arange(3, 3 * count + 1, 3)):
-        raise ValueError("a cell has not three corners")
+        raise ValueError("a cell does not have three corners")
     if (kinds != _TRIANGLE).any():
-        raise ValueError("a cell is no triangle")
+        raise ValueError("a cell is not a triangle")
     return [StoredMesh(vertices.reshape(-1, 3), faces.reshape(-1, 3))]
 
 
@@ -113,7 +113,7 @@ def _arrays(file: BinaryIO, data: bytes, at: int, order: str) -> list[npt.NDArra
         found.append(np.frombuffer(_unpacked(data[start:end], order), order + kind))
         at = end + len(_END_OF_ARRAY)
     if _behind(_END, file, at) != len(data):
-        raise ValueError("there is data after the end of the arrays")
+        raise ValueError("there is data after the end of its arrays")
     return found
 
 
@@ -128,7 +128,9 @@ def _unpacked(text: bytes, order: str) -> bytes:
         pieces.append(zlib.decompress(packed[at : at + length]))
         at += length
     if at != len(packed) or [len(one) for one in pieces] != [*[size] * (count - 1), last]:
-        raise ValueError("the pieces of an array are not as long as it says")
+        raise ValueError(
+            "the compressed blocks of an array do not have the lengths that its header says"
+        )
     return b"".join(pieces)
 
 

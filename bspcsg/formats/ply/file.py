@@ -27,7 +27,7 @@ _FACES, _STRIPS = "face", "tristrips"
 
 _Line: TypeAlias = tuple[int, list[bytes]]
 
-_LISTS_OF_VERTICES = "vertices with list properties cannot be read."
+_LISTS_OF_VERTICES = "the vertices have list properties, which are not supported."
 
 
 @dataclass
@@ -76,9 +76,13 @@ def read(source: Source) -> RawMesh:
     else:
         rest = _read_binary(source, header, header.order, found)
     if found.vertices is None:
-        raise source.error("this PLY has no vertices with x, y and z.", line=header.lines)
+        raise source.error(
+            "the PLY has no element “vertex” with the properties x, y and z.", line=header.lines
+        )
     if found.polygons is None or found.polygon_error is None:
-        raise source.error("this PLY has no face lists.", line=header.lines)
+        raise source.error(
+            "the PLY has no element “face” with a list of vertex indices.", line=header.lines
+        )
     faces, said = _triangles_and_attributes(
         found, found.polygons, found.vertices, found.polygon_error
     )
@@ -90,7 +94,7 @@ def read(source: Source) -> RawMesh:
 def _no_statements(header: Header) -> tuple[Finding, ...]:
     if not header.unknown:
         return ()
-    message = f"{len(header.unknown)} lines of the header are no statements, and were ignored."
+    message = f"{len(header.unknown)} lines of the header have no PLY keyword and were ignored."
     return (Finding("ignored", "warning", message, header.unknown[:1], len(header.unknown)),)
 
 
@@ -151,7 +155,10 @@ def _face_column(source: Source, header: Header, element: Element) -> int | None
     if column is None or element.properties[column].count is None:
         return None
     if element.properties[column].item.kind == "f":
-        raise source.error("vertex numbers must be of a whole-number type.", line=header.lines)
+        raise source.error(
+            "the list of vertex indices must have an integer type, not float or double.",
+            line=header.lines,
+        )
     return column
 
 
@@ -201,7 +208,8 @@ def _read_lines(
         start += element.number
         if len(block) < element.number:
             message = (
-                f"the file ends after {len(block)} of {element.number} “{element.name}” lines."
+                f"the file is incomplete: it has {len(block)} of the {element.number} lines of"
+                f" the element “{element.name}”."
             )
             last = lines[-1][0] if lines else header.lines
             raise source.error(message, "truncated", line=last)
@@ -226,7 +234,10 @@ def _text_vertices(
     width = len(element.properties)
     for number, words in block:
         if len(words) != width:
-            message = f"a vertex has {width} properties, but this line has {len(words)} numbers."
+            message = (
+                f"each vertex has {width} properties according to the header, but this line has"
+                f" {len(words)} numbers."
+            )
             raise source.error(message, line=number)
     rows = [[words[x], words[y], words[z]] for _, words in block]
     return source.coordinates(rows, [number for number, _ in block])
@@ -299,7 +310,7 @@ def _text_numbers(
         numbers = [float(word) if kind.kind == "f" else integral(word) for word in words]
         return np.array(numbers, dtype=kind)
     except (ValueError, OverflowError):
-        message = f"the properties of these lines are no numbers of type {kind}."
+        message = f"a property here is not a number of the type {kind} that the header says."
         raise source.error(message, line=block[0][0]) from None
 
 
@@ -320,7 +331,10 @@ def _text_list(
         if at != len(words):
             raise ValueError
     except (ValueError, IndexError):
-        message = f"expected a face as the header describes it, found {quoted(b' '.join(words))}."
+        message = (
+            "expected a face with the properties that the header lists, found"
+            f" {quoted(b' '.join(words))}."
+        )
         raise source.error(message, line=number) from None
     return wanted
 
@@ -362,7 +376,10 @@ def _read_records(source: Source, order: Order, element: Element, start: int, fo
     end = start + record.itemsize * element.number
     if end > len(source.data):
         held = (len(source.data) - start) // record.itemsize
-        message = f"the file ends in “{element.name}” {held} of {element.number}."
+        message = (
+            f"the file is incomplete: it ends in item {held} of {element.number} of the element"
+            f" “{element.name}”."
+        )
         raise source.error(message, "truncated", offset=len(source.data))
     axes = _axes(element)
     if element.name == "vertex" and axes:
@@ -423,7 +440,11 @@ def _type_of(values: Values) -> str:
 def beyond(mesh: Mesh | RawMesh) -> str:
     """Return why a mesh is too large for PLY, or an empty string if it fits."""
     is_beyond = len(mesh.vertices) > np.iinfo(np.int32).max
-    return "too many vertices for PLY; write OBJ." if is_beyond else ""
+    return (
+        "the mesh has more than 2^31 - 1 vertices, too many for PLY; write OBJ instead."
+        if is_beyond
+        else ""
+    )
 
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:

@@ -114,7 +114,9 @@ def read_header(source: Source) -> Header:
         key = words[0] if words else "comment"
         if number == 1:
             if key.lower() != "ply":
-                raise source.error(f"this is no PLY: it begins with {quoted(line)}.", line=1)
+                raise source.error(
+                    f"the file is not a PLY mesh: it begins with {quoted(line)}.", line=1
+                )
         elif key == "end_header":
             break
         elif key == "format":
@@ -128,12 +130,20 @@ def read_header(source: Source) -> Header:
         elif key in ("comment", "obj_info"):
             continue
         elif get_close_matches(key.lower(), _KEYS, cutoff=_ALIKE):
-            raise source.error(f"expected a header line, found {quoted(line)}.", line=number)
+            raise source.error(
+                "expected a header line (format, element, property or end_header), found"
+                f" {quoted(line)}.",
+                line=number,
+            )
         else:
             unknown.append(number)
     if form is None or form not in _FORMS:
         named = quoted((form or "").encode("latin-1"))
-        raise source.error(f"the header names no known form, but {named}.", line=number)
+        raise source.error(
+            f"the header has the format {named}, but must have ascii, binary_little_endian or"
+            " binary_big_endian.",
+            line=number,
+        )
     return Header(_FORMS[form], elements, end, number, tuple(pictures), tuple(unknown))
 
 
@@ -146,16 +156,22 @@ def _line(source: Source, start: int, number: int) -> tuple[bytes, int]:
         return data[start:carriage], carriage + 1
     if stop < 0:
         if number == 0:
-            raise source.error(f"this is no PLY: it begins with {quoted(data[:16])}.", line=1)
-        raise source.error("the file ends within its header.", "truncated", line=number)
+            raise source.error(
+                f"the file is not a PLY mesh: it begins with {quoted(data[:16])}.", line=1
+            )
+        raise source.error(
+            "the file is incomplete: its header has no “end_header”.", "truncated", line=number
+        )
     return data[start:stop], stop + 1
 
 
 def _element(source: Source, line: int, words: list[str], others: list[Element]) -> Element:
     if len(words) != 3 or not words[2].isdecimal() or len(words[2]) > 18:
-        raise source.error("expected “element NAME NUMBER”.", line=line)
+        raise source.error(
+            f"expected “element NAME COUNT”, found {quoted(' '.join(words).encode())}.", line=line
+        )
     if any(other.name == words[1] for other in others):
-        message = f"the header names the element {quoted(words[1].encode())} twice."
+        message = f"the header declares the element {quoted(words[1].encode())} twice."
         raise source.error(message, line=line)
     return Element(words[1], int(words[2]), [])
 
@@ -165,9 +181,15 @@ def _property(source: Source, line: int, words: list[str]) -> Property:
         if words[1] == "list":
             count = np.dtype(_TYPES[words[2]])
             if count.kind == "f":
-                raise source.error("the length of a list must be a whole number.", line=line)
+                raise source.error(
+                    "the length of a list property must have an integer type, not float or double.",
+                    line=line,
+                )
             return Property(words[4], np.dtype(_TYPES[words[3]]), count)
         return Property(words[2], np.dtype(_TYPES[words[1]]))
     except (KeyError, IndexError):
         found = quoted(" ".join(words).encode())
-        raise source.error(f"expected a property and its type, found {found}.", line=line) from None
+        raise source.error(
+            f"expected “property TYPE NAME” or “property list TYPE TYPE NAME”, found {found}.",
+            line=line,
+        ) from None

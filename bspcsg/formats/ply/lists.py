@@ -129,9 +129,12 @@ def read_mixed(
 
 def _cut_off(source: Source, element: Element, number: int, length: int) -> FormatError:
     if length < 0:
-        message = f"“{element.name}” {number} has a list of negative length."
+        message = f"item {number} of the element “{element.name}” has a list of negative length."
         return source.error(message, offset=len(source.data))
-    message = f"the file ends in “{element.name}” {number} of {element.number}."
+    message = (
+        f"the file is incomplete: it ends in item {number} of {element.number} of the element"
+        f" “{element.name}”."
+    )
     return source.error(message, "truncated", offset=len(source.data))
 
 

@@ -58,7 +58,11 @@ def _assembled(package: Package, root: str) -> RawMesh:
         mesh = objects.mesh(path, item)
         triangles += len(mesh.faces)
         if triangles > _MAX_BUILD_TRIANGLES:
-            raise package.source.error("the build has too many triangles.", "too_large")
+            raise package.source.error(
+                f"the build has more than {_MAX_BUILD_TRIANGLES} triangles in all, the largest"
+                " number that is read.",
+                "too_large",
+            )
         pieces.append(_moved(mesh, (*transforms, unit)))
     findings += _other_units(package, part.unit)
     findings += _ignored(beams, "beams")
@@ -67,7 +71,7 @@ def _assembled(package: Package, root: str) -> RawMesh:
     findings += [*slicing.findings, *_left_out(slicing, objects.unmade)]
     findings += _ignored(hollow, "objects without triangles")
     reached = {(path, item) for path, item, _ in built} | objects.used() | slicing.inner
-    findings += _ignored(len(_bodies(package) - reached), "objects outside the build")
+    findings += _ignored(len(_bodies(package) - reached), "objects that the build does not use")
     mesh = placed(pieces) if triangles or not objects.used() else empty_set()
     dropped = sorted(set().union(*(part.dropped for part in package.parts.values())))
     told = (*mesh.findings, *findings)
@@ -122,7 +126,8 @@ def _unit_finding(part: ModelPart) -> tuple[Finding, ...]:
     if part.unit == "millimeter":
         return ()
     message = (
-        f"the file is in {part.unit}s; coordinates were multiplied by {MILLIMETRES[part.unit]}."
+        f"the unit of the file is {part.unit}; coordinates were multiplied by"
+        f" {MILLIMETRES[part.unit]} to get millimetres."
     )
     return (Finding("unit", "note", message, (), 1),)
 
@@ -133,7 +138,10 @@ def _other_units(package: Package, unit: str) -> tuple[Finding, ...]:
     if not others:
         return ()
     told = ", ".join(f"{path} ({package.parts[path].unit})" for path in others)
-    message = f"the unit of the model, {unit}, was taken for parts in other units: {told}."
+    message = (
+        f"parts of the package have other units than the model ({told}); the unit of the model,"
+        f" {unit}, was used for them."
+    )
     return (Finding("unit", "warning", message, (), len(others)),)
 
 
@@ -145,14 +153,16 @@ def _left_out(slicing: Slicing, unmade: list[str]) -> list[Finding]:
     found: list[Finding] = []
     for kind, count in slicing.counts.items():
         if kind != NEGATIVE:
-            found += _ignored(count, f"{kind} of a slicer, which are no material,")
+            found += _ignored(count, f"{kind} of a slicer, which are not material,")
         elif slicing.shapes > len(unmade):
-            message = f"{count} {kind} of a slicer were taken away from the parts of their objects."
+            message = f"{count} {kind} of a slicer were subtracted from the parts of their objects."
             found.append(Finding("negative_volumes", "note", message, (), count))
         elif not unmade and not slicing.unmade:
-            unmade = ["there is nothing to take them away from."]
+            unmade = ["there is no part to subtract them from."]
     for reason in (*slicing.unmade, *unmade):
-        message = f"{NEGATIVE} of a slicer were ignored, as they could not be taken away: {reason}"
+        message = (
+            f"{NEGATIVE} of a slicer were ignored, because they could not be subtracted: {reason}"
+        )
         found.append(Finding("ignored", "warning", message, (), 1))
     return found
 

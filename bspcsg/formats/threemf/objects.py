@@ -118,12 +118,15 @@ class Objects:
         path = placed.path or here
         known = self._package.part(path).objects.get(placed.item)
         if known is None:
-            message = f"object {placed.item} does not exist in {path}."
+            message = f"the model refers to object {placed.item} in {path}, which does not exist."
             raise self._package.source.error(message, "index_out_of_range")
         return path, known
 
     def _too_deep(self) -> FormatError:
-        message = "the objects contain each other too often."
+        message = (
+            f"the objects are nested deeper than {_MAX_OBJECT_DEPTH} levels, form a cycle, or use"
+            f" components more than {_MAX_OBJECTS_PLACED} times."
+        )
         return self._package.source.error(message, "too_large")
 
     def _written(self, path: str, item: str) -> RawMesh:
@@ -161,7 +164,10 @@ class Objects:
             raise self._too_deep()
         path, known = self._named(here, placed)
         if known.kind != "model" or not known.is_body:
-            message = f"object {placed.item} is part of a boolean shape, but no mesh of a model."
+            message = (
+                f"object {placed.item} is an operand of a boolean shape, but it is not a mesh of"
+                " type “model”."
+            )
             raise self._package.source.error(message, "unsupported")
         if (path, placed.item) not in self._solids:
             made = self._combined if known.shape is not None else self._meshed
@@ -177,7 +183,10 @@ class Objects:
             parts = [self._solid(path, one, depth + 1) for one in (shape.base, *shape.operands)]
         triangles = sum(count for _, count in parts)
         if triangles > _MAX_BOOLEAN_TRIANGLES:
-            message = f"the boolean shape {item} is of too many triangles."
+            message = (
+                f"the boolean shape {item} has {triangles} triangles in its operands, more than"
+                f" the limit of {_MAX_BOOLEAN_TRIANGLES}."
+            )
             raise self._package.source.error(message, "too_large")
         base, *others = [solid for solid, _ in parts]
         if shape.operation == "union":
@@ -199,7 +208,7 @@ class Objects:
         except (FormatError, InternalError):
             raise
         except BspcsgError as error:
-            message = f"object {item}, part of a boolean shape: {error.message}"
+            message = f"object {item}, an operand of a boolean shape: {error.message}"
             is_flat = isinstance(error, InvalidParameterError)
             code = "unsupported" if is_flat else error.code
             raise self._package.source.error(message, code) from error

@@ -122,7 +122,9 @@ class Package:
         """Return a source without data, for errors that name a part, and the part's chunks."""
         entry = self._entries.get(name.lower())
         if entry is None:
-            raise self.source.error(f"the archive has no part {name}.", "truncated")
+            raise self.source.error(
+                f"the archive is incomplete: it has no part {name}.", "truncated"
+            )
         if entry.file_size > self._left:
             raise self._too_large(name)
         return Source(f"{self.source.name}/{name}", b""), self._unpacked(entry)
@@ -138,7 +140,7 @@ class Package:
 
     def _too_large(self, name: str) -> FormatError:
         message = (
-            f"the part {name} unpacks to far more than meshes do: all parts together may have"
+            f"the part {name} unpacks to too much data: all parts together may have at most"
             f" {_MAX_UNPACKING_RATIO} times the bytes of the archive, and"
             f" {_MAX_BYTE_LIMIT >> 30} GiB."
         )
@@ -155,7 +157,9 @@ def opened(source: Source) -> Iterator[Package]:
         If the archive is damaged or has too many parts.
     """
     if source.data.count(_ENTRY) > _MAX_PARTS:
-        message = f"the archive has more than {_MAX_PARTS:,} parts."
+        message = (
+            f"the archive has more than {_MAX_PARTS:,} parts, the largest number that is read."
+        )
         raise source.error(message, "too_large")
     with _damage_as_error(source):
         archive = zipfile.ZipFile(io.BytesIO(source.data))
@@ -171,7 +175,7 @@ def _damage_as_error(source: Source) -> Iterator[None]:
     except BspcsgError:
         raise
     except _DAMAGES as error:
-        message = f"the archive is damaged or cut off: {error}."
+        message = f"the ZIP archive is damaged or incomplete: {error}."
         raise source.error(message, "truncated") from error
 
 

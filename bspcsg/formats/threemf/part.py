@@ -192,14 +192,21 @@ def parse_xml(
         try:
             start(element, named)
         except (KeyError, ValueError, OverflowError) as error:
-            reason = f"“{error.args[0]}” is missing" if isinstance(error, KeyError) else error
+            reason = (
+                f"the attribute “{error.args[0]}” is missing"
+                if isinstance(error, KeyError)
+                else error
+            )
             message = f"the element {quoted(element.encode())} is not valid: {reason}."
             raise source.error(message, line=parser.CurrentLineNumber) from None
         if element == "metadata" and metadata is not None:
             _listen(parser, named.get("name", ""), metadata)
 
     def refuse(*_: object) -> None:
-        raise source.error("document types are not allowed here.", line=parser.CurrentLineNumber)
+        raise source.error(
+            "the XML has a document type declaration, which is not supported; save it without.",
+            line=parser.CurrentLineNumber,
+        )
 
     def declare(prefix: str | None, space: str | None) -> None:
         if spaces is not None:
@@ -269,7 +276,7 @@ class PartReader:
         parse_xml(self._source, self._chunks, self._start, self._spaces, self._hear)
         for space in self._needs:
             if not any(word in space for word in _READ):
-                message = f"the model needs the extension {space}, which cannot be read here."
+                message = f"the model requires the 3MF extension {space}, which is not supported."
                 raise self._source.error(message, "unsupported")
         for number, held in self._part.objects.items():
             top = max(map(max, held.triangles), default=-1)
@@ -300,7 +307,7 @@ class PartReader:
         elif tag == "model":
             self._part.unit = attributes.get("unit", "millimeter")
             if self._part.unit not in MILLIMETRES:
-                raise ValueError(f"unknown unit {self._part.unit}")
+                raise ValueError(f"its unit {self._part.unit} is unknown")
             prefixes = attributes.get("requiredextensions", "").split()
             # No element can belong to an extension without a declared prefix.
             self._needs = [self._spaces[one] for one in prefixes if one in self._spaces]
@@ -322,12 +329,12 @@ class PartReader:
         placed = self._placed(attributes)
         if tag == "boolean":
             if self._current.shape is None:
-                raise ValueError("it lies in no boolean shape")
+                raise ValueError("it is not inside a boolean shape")
             self._current.shape.operands.append(placed)
             return
         operation = attributes.get("operation", "union")
         if operation not in ("union", "difference", "intersection"):
-            raise ValueError(f"unknown operation {operation}")
+            raise ValueError(f"its operation {operation} is not union, difference or intersection")
         self._current.shape = BooleanShape(operation, placed, [])
 
     def _note(self, tag: str, attributes: dict[str, str]) -> None:
@@ -371,7 +378,10 @@ class PartReader:
         return PlacedObject(name, attributes["objectid"], matrix.reshape(4, 3))
 
     def _bad_index(self, number: str, index: int, count: int) -> FormatError:
-        message = f"object {number} names vertex {index}, but has {count} vertices."
+        message = (
+            f"a triangle of object {number} has the vertex index {index}, but the object has"
+            f" {count} vertices."
+        )
         return self._source.error(message, "index_out_of_range")
 
 
@@ -403,7 +413,7 @@ def _place(attributes: dict[str, str]) -> tuple[float, float]:
 def _refuse_underscores(words: Iterable[str]) -> None:
     """Raise a `ValueError` if a word has an underscore: Python would read ``1_0`` as 10."""
     if "_" in "".join(words):
-        raise ValueError("a number must not contain “_”")
+        raise ValueError("a number contains “_”, which is not allowed")
 
 
 def _triangle(attributes: dict[str, str]) -> tuple[int, int, int]:
@@ -411,5 +421,5 @@ def _triangle(attributes: dict[str, str]) -> tuple[int, int, int]:
     _refuse_underscores(words)
     corners = int(words[0]), int(words[1]), int(words[2])
     if min(corners) < 0:
-        raise ValueError("a vertex number must not be negative")
+        raise ValueError("a vertex index is negative")
     return corners

@@ -91,7 +91,7 @@ class _Reading:
     def _called(self, texture: str) -> str:
         """Return the material name of a texture, distinct from all other material names."""
         if texture not in self._part.textures:
-            raise IndexError(f"texture {texture} does not exist")
+            raise IndexError(f"it refers to texture {texture}, which does not exist")
         name = named_after(self._part.textures[texture])
         return name if self._taken[name] == 1 else f"{name} ({texture})"
 
@@ -141,7 +141,9 @@ def _pictured(data: bytes) -> Material:
 
 def _entry(group: list[_Entry], number: int) -> _Entry:
     if not 0 <= number < len(group):
-        raise IndexError(f"a triangle names property {number} of a group of {len(group)}")
+        raise IndexError(
+            f"a triangle refers to property {number} of a group with {len(group)} properties"
+        )
     return group[number]
 
 

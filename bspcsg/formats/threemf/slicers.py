@@ -101,7 +101,10 @@ def _settings_of(package: Package, slicing: Slicing) -> _SlicerSettings:
         try:
             package.parse(name, settings.take)
         except FormatError as error:
-            message = f"the settings of a slicer cannot be read: {error.message}"
+            message = (
+                "the settings of a slicer in the file cannot be read and were ignored:"
+                f" {error.message}"
+            )
             slicing.findings.append(Finding("ignored", "warning", message, (), 1))
     return settings
 
@@ -112,7 +115,7 @@ def _kind(slicing: Slicing, word: str) -> str:
     An unknown word means material, with a finding.
     """
     if word not in _KINDS:
-        message = f"a part of the kind “{word}”, which is not known here, was read as material."
+        message = f"a part of the unknown kind “{word}” was read as an ordinary solid part."
         slicing.findings.append(Finding("unknown_part", "warning", message, (), 1))
     kind = _KINDS.get(word, "")
     slicing.counts[kind] += bool(kind)
@@ -177,7 +180,7 @@ def _lessened(
     """Return a component from which negative components are subtracted."""
     known = package.part(one.path or root).objects.get(one.item)
     if known is None or not known.is_body:
-        slicing.unmade.append(f"object {one.item} is no mesh.")
+        slicing.unmade.append(f"object {one.item} is not a mesh.")
         return one
     slicing.shapes += 1
     shape = BooleanShape("difference", one, negatives, is_optional=True)

@@ -88,13 +88,19 @@ def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
     found = []
     count = int(_repeats_corner(mesh.faces).sum())
     if count:
-        message = f"3MF has no triangles with a repeated corner; {count} of them were left out."
+        message = (
+            f"3MF does not allow triangles with a repeated corner, so {count} triangles were left"
+            " out."
+        )
         found.append(Finding("degenerate", "warning", message, (), count))
     said = said_of(mesh)
     materials = {} if said is None else said.materials
     behind = [one for one in materials.values() if one.texture and one.color != Material().color]
     if behind:
-        message = f"3MF has no colour behind a picture; {len(behind)} of them were left out."
+        message = (
+            f"3MF cannot store a colour together with a texture, so the colours of {len(behind)}"
+            " materials were left out."
+        )
         found.append(Finding("colors_left_out", "warning", message, (), len(behind)))
     return tuple(found)
 

@@ -44,7 +44,10 @@ def min_gap(solid: Solid, other: Solid) -> float:
 def closest_points(solid: Solid, other: Solid) -> tuple[FloatArray, FloatArray]:
     """Return the point of each solid that is nearest to the other solid, two (3,) arrays."""
     if solid.is_empty or of_kind(Solid, other, "other").is_empty:
-        raise invalid_parameter("The empty set has no points, and no closest one.")
+        raise invalid_parameter(
+            "One of the two solids is empty, so it has no closest point; pass solids that are not"
+            " empty."
+        )
     found = _nearest(solid, other)
     if found is None:
         common = _common_point(solid & other)
@@ -55,7 +58,10 @@ def closest_points(solid: Solid, other: Solid) -> tuple[FloatArray, FloatArray]:
 def _common_point(common: Solid) -> FloatArray:
     vertices = common.vertices
     if len(vertices) == 0:
-        message = "The common part of the solids is too thin to hold a point in doubles."
+        message = (
+            "The solids overlap, but their common part is so thin that no point inside it can be"
+            " represented in doubles."
+        )
         raise LimitError(message, "too_large")
     return np.array(vertices[0])
 

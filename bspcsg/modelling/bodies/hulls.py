@@ -132,7 +132,9 @@ def _entries(given: Iterable[Any]) -> Iterator[Any]:
             yield one
             continue
         if not isinstance(one, Iterable) or isinstance(one, (str, bytes)):
-            raise invalid_parameter(f"hull takes solids and points, not {shown(one)}.")
+            raise invalid_parameter(
+                f"The arguments of hull must be solids or arrays of points, not {shown(one)}."
+            )
         held: Any = one if isinstance(one, np.ndarray) else list(one)
         mixed = any(isinstance(entry, (Solid, Region)) for entry in held)
         yield from held if mixed else [held]
@@ -145,6 +147,9 @@ def _points_of(given: Any) -> FloatArray:
     points = interop.points_array([given] if is_one else given)
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(bad):
-        message = f"{len(bad)} of the points are not finite, the first is number {bad[0]}."
+        message = (
+            f"{len(bad)} of the points have coordinates that are not finite numbers; the first is"
+            f" point {bad[0]} (counted from 0)."
+        )
         raise InvalidMeshError(message, "non_finite", bad[:20].tolist())
     return points

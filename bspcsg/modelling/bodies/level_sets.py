@@ -92,7 +92,9 @@ def level_set(f: Field, bounds: Any, edge_length: Scalar, *, level: Scalar = 0.0
 
 
 def _box(bounds: Any) -> tuple[FloatArray, FloatArray]:
-    refusal = invalid_parameter(f"bounds must be two corners, not {shown(bounds)}.")
+    refusal = invalid_parameter(
+        f"bounds must be two corners of three numbers each, not {shown(bounds)}."
+    )
     array = doubles(bounds, refusal).copy()
     if array.shape != (2, 3) or not np.isfinite(array).all() or not (array[0] < array[1]).all():
         raise invalid_parameter(
@@ -125,8 +127,8 @@ class _Grid:
             points = 2 * float(np.prod(counts + 5))
         if points > _MAX_SAMPLE_POINTS:
             message = (
-                f"edge_length asks for {points:.3g} points, and {_MAX_SAMPLE_POINTS:,} are the"
-                " most. Choose a longer one."
+                f"edge_length would need {points:.3g} sample points, and at most"
+                f" {_MAX_SAMPLE_POINTS:,} are allowed. Choose a larger edge_length."
             )
             raise LimitError(message, "too_large")
         return cls(low, (high - low) / counts, counts.astype(np.int64))
@@ -210,7 +212,9 @@ def _beside(corner: IndexArray, axis: int, step: IndexArray) -> IndexArray:
 
 
 def _asked(f: Field, points: FloatArray) -> FloatArray:
-    refusal = invalid_parameter("f must return a number for each of the points.")
+    refusal = invalid_parameter(
+        "f must return an array with one number for each point that it is given."
+    )
     found = doubles(f(points), refusal)
     if found.shape != (len(points),):
         raise invalid_parameter(
@@ -218,7 +222,10 @@ def _asked(f: Field, points: FloatArray) -> FloatArray:
         )
     bad = np.flatnonzero(np.isnan(found))
     if len(bad):
-        message = f"f returned NaN for {len(bad)} points, the first is {points[bad[0]].tolist()}."
+        message = (
+            f"f must not return NaN, but did for {len(bad)} points, the first of which is"
+            f" {points[bad[0]].tolist()}."
+        )
         raise InvalidMeshError(message, "non_finite", bad[:20].tolist())
     # Clip infinite values, which cannot be interpolated.
     return np.clip(found, -1e150, 1e150)

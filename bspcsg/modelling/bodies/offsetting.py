@@ -37,7 +37,8 @@ def _ball(r: float, around: int) -> Solid:
     """
     if r < _SMALLEST:
         message = (
-            f"r is {r:g}, less than the finest lattice shows; choose 0, or {_SMALLEST:g} at least."
+            f"r is {r:g}, which is smaller than the finest lattice step; choose 0, or at least"
+            f" {_SMALLEST:g}."
         )
         raise invalid_parameter(message)
     return sphere(r, segments=around + -around % 4)

@@ -69,7 +69,10 @@ def _box(place: "Solid | Vector") -> FloatArray:
         return np.array([vector3(place, "point")] * 2)
     bounds = place.bounds
     if bounds is None:
-        raise invalid_parameter("The empty set has no position, so it cannot be aligned.")
+        raise invalid_parameter(
+            "An empty solid has no position, so it cannot be aligned or aligned to; pass a solid"
+            " that is not empty."
+        )
     return bounds
 
 

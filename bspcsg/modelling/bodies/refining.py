@@ -35,7 +35,7 @@ def refine(solid: Solid, n: Any = None, edge_length: Any = None) -> Solid:
     Give either `n` or `edge_length`, the largest length of an edge in model units.
     """
     if (n is None) == (edge_length is None):
-        raise invalid_parameter("Say either n or edge_length.")
+        raise invalid_parameter("Give exactly one of n and edge_length.")
     mesh = solid.normalized().to_mesh()
     if len(mesh.faces) == 0:
         return solid
@@ -224,5 +224,8 @@ def refuse_many(count: int, about: str = "") -> None:
     """Raise `LimitError` if `count` triangles are too many; the message puts `about` before it."""
     if count > _MAX_TRIANGLES:
         amount = f"{about}{count:,}" if count < _MAX_TRIANGLES**2 else "far too many"
-        message = f"The result would have {amount} triangles; {_MAX_TRIANGLES:,} are the most."
+        message = (
+            f"The result would have {amount} triangles, and at most {_MAX_TRIANGLES:,} are"
+            " allowed; choose larger triangles."
+        )
         raise LimitError(message, "too_large")

@@ -20,7 +20,7 @@ def normals(solid: Solid, sharp_angle: Scalar = 30.0) -> FloatArray:
     """Return a unit normal for each corner of each triangle, (m, 3, 3) (see `Solid.normals`)."""
     limit = not_negative(sharp_angle, "sharp_angle")
     if limit > 180:
-        raise invalid_parameter(f"sharp_angle must be 180 degrees at most, not {limit:g}.")
+        raise invalid_parameter(f"sharp_angle must be at most 180 degrees, not {limit:g}.")
     mesh = solid.normalized().to_mesh()
     if len(mesh.faces) == 0:
         return np.zeros((0, 3, 3))

@@ -89,7 +89,10 @@ def minkowski(a: Any, b: Any) -> Solid | Region:
     if isinstance(a, Region) and isinstance(b, Region):
         return sum_of_regions(a, b)
     if not isinstance(a, Solid) or not isinstance(b, Solid):
-        raise invalid_parameter("minkowski takes two solids or two regions.")
+        raise invalid_parameter(
+            f"The arguments of minkowski must be two solids or two regions, not {type(a).__name__}"
+            f" and {type(b).__name__}."
+        )
     if a.is_empty or b.is_empty:
         return Solid.empty()
     if not a.is_bounded:
@@ -173,8 +176,9 @@ def _refuse_many(solid: Solid, tool: Solid) -> None:
     pairs = _face_count(solid) * _face_count(tool)
     if pairs > _MAX_FACE_PAIRS and not is_convex(tool):
         message = (
-            f"neither solid is convex, and they have {_face_count(solid):,} and"
-            f" {_face_count(tool):,} faces; the most pairs of two are {_MAX_FACE_PAIRS:,}."
+            f"neither solid is convex, and their {_face_count(solid):,} and"
+            f" {_face_count(tool):,} faces form more than the {_MAX_FACE_PAIRS:,} pairs that"
+            " are allowed; simplify the solids, or use a convex one."
         )
         raise LimitError(message, "too_large")
 
@@ -195,7 +199,9 @@ def _eroded(solid: Solid, tool: Solid) -> Solid:
     """Return the points at which a tool fits into a solid, after it is mirrored at the origin."""
     if not solid.is_bounded:
         raise UnboundedError(
-            "This solid and its complement both reach to infinity, so it has no sum.", "unbounded"
+            "This solid and its complement both reach to infinity, so its Minkowski sum"
+            " cannot be computed; intersect it with a box first.",
+            "unbounded",
         )
     if solid.is_empty:
         return solid

@@ -65,8 +65,9 @@ def swept_mesh(solid: Polyhedron, tool: Polyhedron) -> tuple[IndexArray, IndexAr
         count += len(triangles)
         if count > _MAX_PIECE_FACES:
             message = (
-                f"what a tool of {len(tool.faces):,} faces touches at a solid of"
-                f" {len(solid.faces):,} has more than {_MAX_PIECE_FACES:,}; choose coarser solids."
+                f"the part of a solid of {len(solid.faces):,} faces that a tool of"
+                f" {len(tool.faces):,} faces touches has more than {_MAX_PIECE_FACES:,} faces,"
+                " the largest number allowed; choose solids with fewer faces."
             )
             raise LimitError(message, "too_large")
     left = _cancelled(np.concatenate(parts))

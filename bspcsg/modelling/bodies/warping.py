@@ -57,7 +57,7 @@ def _uncrossed(moved: AttributedMesh, before: FloatArray, given: int | None) -> 
         return moved
     mended = None if found.are_deep or pitch is None else moved.mended(before, pitch)
     if mended is None or len(mended.left):
-        raise _refusal(found, moved.vertices, moved.faces, "Where f moves them")
+        raise _refusal(found, moved.vertices, moved.faces, "After f moved the corners")
     return mended.mesh
 
 
@@ -72,13 +72,15 @@ def _moved(f: PointMap, points: FloatArray) -> FloatArray:
     moved = points_array(f(points.copy()))
     if moved.shape != points.shape:
         raise invalid_parameter(
-            f"f must return an array of the shape that it gets, {points.shape}, not {moved.shape}."
+            f"f must return an array of the shape that it is given, {points.shape}, not"
+            f" {moved.shape}."
         )
     bad = np.flatnonzero(~np.isfinite(moved).all(axis=1))
     if len(bad):
         place = points[bad[0]].tolist()
         message = (
-            f"f returned numbers that are not finite for {len(bad)} points, first for {place}."
+            f"f must return finite numbers, but did not for {len(bad)} points, the first of"
+            f" which is {place}."
         )
         raise InvalidMeshError(message, "non_finite", bad[:_MAX_PLACES_LISTED].tolist())
     return moved + 0.0
@@ -97,8 +99,8 @@ def _refusal(
     first = vertices[faces[found.pairs[0, 0]]].mean(axis=0).round(6).tolist()
     least = "" if found.are_all else "at least "
     message = (
-        f"{when}, pairs of faces cross or overlap ({least}{len(found.pairs)}), one near {first}."
-        " Refine the solid first, or choose a winding rule for warp."
+        f"{when}, {least}{len(found.pairs)} pairs of faces cross or overlap, one of them near"
+        f" {first}. Refine the solid first, or pass a winding rule to warp."
     )
     return InvalidMeshError(
         message, "self_crossing", np.unique(found.pairs[:_MAX_PLACES_LISTED]).tolist()

@@ -190,15 +190,26 @@ class _Blend:
             signs = {self.sign(edge) for edge in edges}
             faces = self.skeleton.faces_at(vertex)
             if len(faces) != len(edges) or len(faces) < 3:
-                raise refused(self.skeleton, vertex, "the faces around a corner are not one fan")
+                raise refused(
+                    self.skeleton,
+                    vertex,
+                    "the corner cannot be blended, because the faces around it do not form one"
+                    " closed ring",
+                )
             if len(edges) > 3 and (len(signs) > 1 or not self._is_cone(vertex)):
                 raise refused(
                     self.skeleton,
                     vertex,
-                    "more than three faces meet in a corner that is not convex",
+                    "the corner cannot be blended, because more than three faces meet there"
+                    " and it is not convex; choose other edges",
                 )
             if len(edges) > 3 and len(chosen) > 2 and self.profile.is_round:
-                raise refused(self.skeleton, vertex, "more than three round edges would meet")
+                raise refused(
+                    self.skeleton,
+                    vertex,
+                    "the corner cannot be rounded, because more than three faces and more than"
+                    " two chosen edges meet there; choose at most two of them, or use chamfer",
+                )
 
     def _is_cone(self, vertex: int) -> bool:
         """Return True if the faces at a vertex form a convex cone, or its complement does."""
@@ -386,11 +397,11 @@ def fillet(solid: Solid, edges: EdgeSelection, radius: Scalar, segments: int) ->
 
 def _selected(edges: EdgeSelection) -> tuple[Skeleton, IndexArray]:
     if not isinstance(edges, EdgeSelection):
-        raise invalid_parameter("edges must be a selection, such as solid.edges().")
+        raise invalid_parameter("edges must be a selection of edges, such as solid.edges().")
     skeleton, chosen = selection(edges)
     if len(chosen) > _MAX_EDGES:
-        message = f"{len(chosen)} edges are chosen, and {_MAX_EDGES} are the most."
-        raise LimitError(f"{message} Choose fewer by where().", "too_many")
+        message = f"{len(chosen)} edges are selected, and at most {_MAX_EDGES} are allowed."
+        raise LimitError(f"{message} Select fewer with where().", "too_many")
     return skeleton, chosen
 
 
@@ -401,7 +412,7 @@ def _blended(solid: Solid, edges: EdgeSelection, profile: _Profile) -> Solid:
         skeleton.vertices, mesh.vertices
     ):
         raise invalid_parameter(
-            "These are edges of another solid; select from edges() of this one."
+            "The selected edges belong to another solid; select from edges() of this solid."
         )
     while len(chosen):
         pitch = _pitch_for(skeleton, solid.pitch)

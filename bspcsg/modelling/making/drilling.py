@@ -88,10 +88,13 @@ def _head(r: Scalar | None, d: Scalar | None, bore: float) -> float:
     given = d if r is None else r
     name = "head_d" if r is None else "head_r"
     if given is None or (r is not None and d is not None):
-        raise invalid_parameter("Give the width of the head as head_d or as head_r.")
+        raise invalid_parameter("Give the size of the head as exactly one of head_r and head_d.")
     head = positive(given, name) / (2 if r is None else 1)
     if head <= bore:
-        raise invalid_parameter(f"The head must be wider than the hole: {name} is {given:g}.")
+        raise invalid_parameter(
+            f"The head must be wider than the hole, but {name} is {given:g} and the radius of the"
+            f" hole is {bore:g}."
+        )
     return head
 
 
@@ -116,7 +119,9 @@ def _drilled(
     deepest = max((below for _, below in head), default=0.0)
     bottom = _bottom(skeleton, normal, points, bore) if depth is None else positive(depth, "depth")
     if bottom <= deepest:
-        raise invalid_parameter(f"depth must be more than that of the head, which is {deepest:g}.")
+        raise invalid_parameter(
+            f"depth must be greater than the depth of the head, {deepest:g}, but is {bottom:g}."
+        )
     wide = head[-1][0] if head else bore
     before = _BEFORE * max(flatness(skeleton.vertices), 10.0**solid.pitch)
     profile = [(0, bottom), (bore, bottom), *head, (wide, -before), (0, -before)]
@@ -134,7 +139,9 @@ def _points_on(skeleton: Skeleton, normal: FloatArray, offset: float, at: Any) -
 
     Raise `InvalidParameterError` for a point that is not on a face of the solid in the plane.
     """
-    refusal = invalid_parameter("at must be a point of three finite numbers, or a list of such.")
+    refusal = invalid_parameter(
+        "at must be a point of three finite numbers, or a list of such points."
+    )
     points = np.atleast_2d(doubles(at, refusal))
     if points.size == 0:
         return np.zeros((0, 3))
@@ -147,7 +154,10 @@ def _points_on(skeleton: Skeleton, normal: FloatArray, offset: float, at: Any) -
     for point in points:
         if abs(float(point @ normal) - offset) > near or not _hold(level, normal, point, near):
             place = ", ".join(f"{value:.6g}" for value in point)
-            raise invalid_parameter(f"The solid has no such face at the point ({place}).")
+            raise invalid_parameter(
+                f"The solid has no face in the plane of the hole at the point ({place}); choose a"
+                " point on the face that is drilled."
+            )
     return points
 
 

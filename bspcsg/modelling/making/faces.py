@@ -133,11 +133,13 @@ def flat_face(faces: FaceSelection) -> tuple[FloatArray, float]:
         If the selection is not a single face, or the face is not flat.
     """
     if not isinstance(faces, FaceSelection):
-        raise invalid_parameter("face must be a selection, such as solid.faces().sort_by('z')[-1].")
+        raise invalid_parameter(
+            "face must be a selection of faces, such as solid.faces().sort_by('z')[-1]."
+        )
     if len(faces) != 1:
-        raise invalid_parameter(f"Select one face; these are {len(faces)}.")
+        raise invalid_parameter(f"Exactly one face must be selected, but {len(faces)} are.")
     if not faces.is_flat[0]:
-        raise invalid_parameter("The face is round; select a flat one.")
+        raise invalid_parameter("The selected face is curved; select a flat face.")
     normal: FloatArray = faces.normal[0]
     return normal, float(faces.middle[0] @ normal)
 

@@ -91,7 +91,10 @@ def surface(
     if floor is not None:
         base, least = number(floor, "floor"), float(read.table.min())
         if base >= least:
-            raise invalid_parameter(f"floor must be below all heights: {base:g}, {least:g}.")
+            raise invalid_parameter(
+                f"floor must be below all heights, the smallest of which is {least:g}, but is"
+                f" {base:g}."
+            )
         read = Heights(read.table, base)
     body = height_map(read, centered=truth_value(center, "center"))
     return body if width == depth == 1 else body.scale((width, depth, 1.0))
@@ -103,13 +106,15 @@ def heights_of(table: FloatArray) -> Heights:
 
 
 def _table(heights: Any) -> FloatArray:
-    table = doubles(heights, invalid_parameter("A surface is a table of heights."))
+    table = doubles(
+        heights, invalid_parameter("heights must be a two-dimensional array of numbers.")
+    )
     if table.ndim != 2 or min(table.shape) < 2:
         raise invalid_parameter(
-            f"A surface needs two rows and columns of heights, not a table of {table.shape}."
+            f"heights must have at least two rows and two columns, but has shape {table.shape}."
         )
     if not np.isfinite(table).all():
-        raise invalid_parameter("The heights of a surface must be finite.")
+        raise invalid_parameter("heights has an entry that is not a finite number.")
     return table
 
 
@@ -126,7 +131,9 @@ def read_heights(path: Path) -> Heights:
     rows = [_row(path, k, line) for k, line in enumerate(lines, 1) if _holds_numbers(line)]
     columns = max(map(len, rows), default=0)
     if len(rows) < 2 or columns < 2:
-        raise FormatError(f"{path}: a surface needs two rows and columns of numbers.", "syntax")
+        raise FormatError(
+            f"{path}: a surface needs at least two rows and two columns of numbers.", "syntax"
+        )
     table = np.array([row + [0.0] * (columns - len(row)) for row in rows])
     return Heights(table, min(min(map(min, rows)) - 1, 0.0))
 
@@ -153,7 +160,9 @@ def read_picture(path: Path) -> Heights:
         refuse_many_corners(2 * picture.width * picture.height, "This surface")
         colours = _colours(picture)
     if min(colours.shape[:2]) < 2:
-        raise FormatError(f"{path}: a surface needs two rows and columns of pixels.", "syntax")
+        raise FormatError(
+            f"{path}: a surface needs at least two rows and two columns of pixels.", "syntax"
+        )
     return heights_of((colours[::-1] @ _LUMINANCE) * (BRIGHTEST / 255))
 
 
@@ -175,9 +184,15 @@ def _row(path: Path, number: int, line: str) -> list[float]:
         row = [float(word) for word in line.split()]
     except ValueError:
         # Do not quote the content, which may be confidential.
-        raise FormatError(f"{path}:{number}: a word is no number.", "syntax", [number]) from None
+        raise FormatError(
+            f"{path}:{number}: this line has an entry that is not a number.", "syntax", [number]
+        ) from None
     if not np.isfinite(row).all():
-        raise FormatError(f"{path}:{number}: heights must be finite.", "non_finite", [number])
+        raise FormatError(
+            f"{path}:{number}: this line has a height that is not a finite number.",
+            "non_finite",
+            [number],
+        )
     return row
 
 

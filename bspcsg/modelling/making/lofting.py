@@ -57,10 +57,12 @@ def loft(profiles: Sequence[Any], *, closed: bool = False) -> Solid:
     try:
         sections = [section_of(given, place) for place, given in enumerate(profiles)]
     except TypeError as error:
-        raise invalid_parameter("A loft is given by a list of profiles.") from error
+        raise invalid_parameter("profiles must be a list of profiles.") from error
     is_ring = truth_value(closed, "closed")
     if len(sections) < 2 + is_ring:
-        raise invalid_parameter(f"A loft needs {2 + is_ring} profiles at least.")
+        raise invalid_parameter(
+            f"A loft needs at least {2 + is_ring} profiles, not {len(sections)}."
+        )
     _refuse_inner_tips(sections, is_ring)
     for k in range(1, len(sections)):
         sections[k] = aligned(sections[k - 1], sections[k], k)
@@ -83,7 +85,10 @@ def loft(profiles: Sequence[Any], *, closed: bool = False) -> Solid:
 def _refuse_inner_tips(sections: Sequence[Section], closed: bool) -> None:
     for place, section in enumerate(sections):
         if section.is_tip and (closed or 0 < place < len(sections) - 1):
-            message = f"Profile {place} of the loft is one point; only an end may be."
+            message = (
+                f"Profile {place} of the loft is a single point, which is allowed only for the"
+                " first and last profile of an open loft."
+            )
             raise invalid_parameter(message, [place])
 
 
@@ -106,5 +111,8 @@ def _outward(vertices: FloatArray, faces: IndexArray) -> Solid:
     a, b, c = (vertices[faces[:, corner]] - vertices.mean(axis=0) for corner in range(3))
     volume = float(np.einsum("ij,ij->", np.cross(a, b), c))
     if volume == 0:
-        raise invalid_parameter("The profiles of the loft enclose nothing.")
+        raise invalid_parameter(
+            "The loft has no volume, because its profiles lie in one plane or are flat; move the"
+            " profiles apart."
+        )
     return solid_of(vertices, faces if volume > 0 else faces[:, ::-1])

@@ -110,16 +110,25 @@ def spline(points: Any, *, segments: int = 16, closed: bool = False) -> FloatArr
     (17, 3)
     """
     chords, is_ring = sides_around(1, segments, "segments"), truth_value(closed, "closed")
-    given = doubles(points, invalid_parameter("A spline is given by points."))
+    given = doubles(
+        points, invalid_parameter("points must be an array of numbers of shape (n, 2) or (n, 3).")
+    )
     if given.ndim != 2 or given.shape[1] not in (2, 3) or len(given) < 2 + is_ring:
-        raise invalid_parameter(f"A spline needs {2 + is_ring} points of two or three numbers.")
+        raise invalid_parameter(
+            f"A spline needs at least {2 + is_ring} points of two or three numbers each."
+        )
     if not np.isfinite(given).all():
-        raise invalid_parameter("The points of a spline must be finite.")
+        raise invalid_parameter(
+            "A point of the spline has a coordinate that is not a finite number."
+        )
     refuse_many_corners(len(given) * chords, "This spline")
     with np.errstate(all="ignore"):
         curve = _catmull_rom(_with_neighbours(given, is_ring), chords)
     if not np.isfinite(curve).all():
-        message = "Doubles cannot measure this spline: points are too near each other, or too far."
+        message = (
+            "The points of the spline are too close together, or too far apart, to compute the"
+            " curve in doubles."
+        )
         raise LimitError(message, "too_large")
     return curve
 
@@ -132,7 +141,7 @@ def _with_neighbours(given: FloatArray, closed: bool) -> FloatArray:
     ring = np.concatenate([given, given[:1]]) if closed else given
     same = np.flatnonzero((ring[1:] == ring[:-1]).all(axis=1))
     if len(same):
-        message = f"Points {same[0]} and {same[0] + 1} of the spline lie in one place."
+        message = f"Points {same[0]} and {same[0] + 1} of the spline are equal; remove one of them."
         raise invalid_parameter(message, [int(same[0])])
     if closed:
         return np.concatenate([given[-1:], ring, given[1:2]])

@@ -130,7 +130,10 @@ def grid(shape: _Shape, counts: Sequence[int], steps: Vector, *, center: bool = 
     is_central = truth_value(center, "center")
     numbers, lengths = _entries(counts), _entries(steps)
     if len(numbers) != len(lengths) or not 2 <= len(numbers) <= axes:
-        raise invalid_parameter(f"counts and steps are two numbers each, or {axes} of them.")
+        raise invalid_parameter(
+            f"counts and steps must both have one number for each axis, for 2 to {axes} axes, but"
+            f" have {len(numbers)} and {len(lengths)}."
+        )
     copies = [at_least(1, entry, "counts") for entry in numbers]
     _refuse_many(math.prod(copies))
     result = shape
@@ -144,7 +147,9 @@ def grid(shape: _Shape, counts: Sequence[int], steps: Vector, *, center: bool = 
 
 def _of_shape(shape: _Shape) -> _Shape:
     if not isinstance(shape, (Solid, Region)):
-        raise invalid_parameter(f"A pattern needs a Solid or a Region, not {shown(shape)}.")
+        raise invalid_parameter(
+            f"The shape of a pattern must be a Solid or a Region, not {shown(shape)}."
+        )
     return shape
 
 
@@ -153,7 +158,7 @@ def _entries(given: Any) -> list[Any]:
         return list(given)
     except TypeError as error:
         raise invalid_parameter(
-            "counts and steps of a grid must be lists of a number for each axis."
+            "counts and steps of a grid must be lists with one number for each axis."
         ) from error
 
 
@@ -169,7 +174,9 @@ def _times(step: Sequence[float], factor: int | Fraction) -> list[float]:
         return [float(exact_number(entry) * factor) for entry in step]
     except OverflowError as error:
         raise LimitError(
-            "The copies would lie outside the range of doubles.", "too_large"
+            "The last copies would have coordinates that are too large for doubles; choose a"
+            " smaller step or fewer copies.",
+            "too_large",
         ) from error
 
 
@@ -210,5 +217,5 @@ def _copies(count: int) -> int:
 
 def _refuse_many(copies: int) -> None:
     if copies > _MAX_COPIES:
-        message = f"A pattern has {_MAX_COPIES} copies at most, not {shown(copies)}."
+        message = f"A pattern can have at most {_MAX_COPIES} copies, not {shown(copies)}."
         raise LimitError(message, "too_many")

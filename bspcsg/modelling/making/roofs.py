@@ -63,7 +63,10 @@ def corner_speeds(figure: Region) -> FloatArray:
 def _roof_of_part(loops: Sequence[FloatArray]) -> Solid:
     count = sum(map(len, loops))
     if count > _MAX_CORNERS:
-        message = f"this roof has a part of {count:,} corners; {_MAX_CORNERS:,} is the limit."
+        message = (
+            f"a part of the roof has {count:,} corners, and at most {_MAX_CORNERS:,} are allowed;"
+            " simplify its outline."
+        )
         raise LimitError(message, "too_large")
     building = _Building(loops)
     building.raise_sides()
@@ -217,5 +220,8 @@ def _rings(edges: Sequence[tuple[int, int]]) -> list[list[int]]:
 
 
 def _unclear() -> LimitError:
-    message = "doubles are too coarse to decide how the sides of this roof meet."
+    message = (
+        "the sides of the roof nearly coincide somewhere, so doubles cannot decide how they meet;"
+        " simplify the outline of the roof."
+    )
     return LimitError(message, "not_told_apart")

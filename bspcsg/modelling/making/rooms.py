@@ -63,7 +63,10 @@ def no_room(skeleton: Skeleton, place: FloatArray, faces: Iterable[int]) -> Inva
     """Return the error that says that faces leave no room at a point."""
     point = ", ".join(f"{value:.6g}" for value in place)
     triangles = np.flatnonzero(np.isin(skeleton.face, list(faces)))
-    message = f"The faces leave no room at ({point}). Choose a smaller size, or fewer edges."
+    message = (
+        f"The faces at ({point}) are too small for a blend or offset of this size. Choose a"
+        " smaller size, or fewer edges."
+    )
     return invalid_parameter(message, triangles[:8].tolist())
 
 

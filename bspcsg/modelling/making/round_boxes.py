@@ -58,7 +58,9 @@ def rounded_box(
     """
     given = numbers if r is None else (*numbers, r)
     if len(given) not in (1, 3):
-        raise invalid_parameter("A rounded box has one size or three, and r: (4, 3, 2), 0.5.")
+        raise invalid_parameter(
+            "A rounded box needs one size or three sizes, and the radius r, as in (4, 3, 2), 0.5."
+        )
     *others, round_by = given
     lengths = edge_lengths(size, *others)
     radius, around = not_negative(round_by, "r"), sides_around(4, segments, "segments")

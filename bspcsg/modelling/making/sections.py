@@ -59,7 +59,9 @@ def section_of(given: Any, place: int) -> Section:
     profile, where = given
     flat = contours_of(profile)
     if not flat:
-        raise invalid_parameter(f"Profile {place} of the loft is empty.", [place])
+        raise invalid_parameter(
+            f"Profile {place} of the loft is empty; it must have at least one outline.", [place]
+        )
     matrix = _matrix(where)
     loops = [apply(matrix, np.pad(contour, ((0, 0), (0, 1)))) for contour in flat]
     return Section(loops, flat, hasattr(profile, "outlines"))
@@ -80,7 +82,9 @@ def _loop(given: Any, place: int) -> FloatArray:
     if loop.ndim != 2 or loop.shape[1] != 3 or len(loop) in (0, 2):
         raise invalid_parameter(message, [place])
     if not np.isfinite(loop).all():
-        raise invalid_parameter(f"Profile {place} of the loft must be finite.", [place])
+        raise invalid_parameter(
+            f"Profile {place} of the loft has a coordinate that is not a finite number.", [place]
+        )
     return loop
 
 
@@ -131,7 +135,10 @@ def _order(low: Sequence[FloatArray], high: Sequence[FloatArray], place: int) ->
 
 
 def _other_outlines(place: int) -> Exception:
-    message = f"Profile {place} of the loft must have as many outlines and holes as the last."
+    message = (
+        f"Profile {place} of the loft must have as many outlines and holes as the profile"
+        " before it."
+    )
     return invalid_parameter(message, [place])
 
 

@@ -88,8 +88,8 @@ class Selection(ABC):
         given = np.asarray(None if axes_of(found) is None else found)
         if given.dtype != np.bool_ or given.shape != (len(self),):
             raise invalid_parameter(
-                f"A condition has one truth value for each of the {len(self)} {self._things}, not"
-                f" {given.dtype} of shape {given.shape}."
+                f"A condition must give one bool for each of the {len(self)} {self._things},"
+                f" not {given.dtype} of shape {given.shape}."
             )
         return self._with(self._numbers[given])
 
@@ -127,7 +127,9 @@ class Selection(ABC):
         if isinstance(place, Selection):
             return self._with_faces_of(place, offset)
         if offset is None:
-            raise invalid_parameter("A plane needs an offset: on('z', 5).")
+            raise invalid_parameter(
+                "offset is missing: a plane needs a normal and an offset, as in on('z', 5)."
+            )
         normal = axis_vector(place)
         size = 1.0 if isinstance(place, str) else float(np.linalg.norm(np.asarray(place, float)))
         away = self._skeleton.vertices @ normal - number(offset, "offset") / size
@@ -136,7 +138,9 @@ class Selection(ABC):
 
     def _with_faces_of(self, other: "Selection", offset: Scalar | None) -> Self:
         if offset is not None:
-            raise invalid_parameter("offset belongs to a plane, not to a selection.")
+            raise invalid_parameter(
+                "offset can only be given with a normal, not with a selection; leave it out."
+            )
         self._refuse_another_solid(other)
         faces, owners = self._flat_faces()
         found = np.zeros(len(self), dtype=np.bool_)
@@ -190,19 +194,24 @@ class Selection(ABC):
         else:
             if isinstance(key, str) and key.lower() not in ("x", "y", "z"):
                 names = ", ".join(("x", "y", "z", *self._sizes))
-                raise invalid_parameter(f"There is no key {shown(key)}; there are {names}.")
+                raise invalid_parameter(
+                    f"Unknown key {shown(key)}; known are {names}, a vector or a function."
+                )
             values = self.middle @ axis_vector(key)
             return values, extent(self._skeleton.vertices)
         if values is None or values.shape != (len(self),) or not np.isfinite(values).all():
             raise invalid_parameter(
-                f"A key gives one finite number for each of the {len(self)} {self._things}."
+                f"A key must give one finite number for each of the {len(self)} {self._things}."
             )
         return values, float(np.abs(values).max(initial=0))
 
     def _refuse_another_solid(self, other: "Selection") -> None:
         mine, theirs = self._skeleton.vertices, other._skeleton.vertices
         if mine is not theirs and not np.array_equal(mine, theirs):
-            raise invalid_parameter("Selections of different solids do not go together.")
+            raise invalid_parameter(
+                "The two selections belong to different solids, so they cannot be combined;"
+                " select from one solid."
+            )
 
     def _is_alike(self, other: object) -> bool:
         """Return True if another selection of the same solid has equally numbered items."""
@@ -255,7 +264,7 @@ def as_bend(angle: Scalar, every: bool) -> float:
     """
     bend = number(angle, "angle")
     if not 0 <= bend < 180:
-        raise invalid_parameter(f"angle must be from 0 to below 180 degrees, not {bend:g}.")
+        raise invalid_parameter(f"angle must be at least 0 and below 180 degrees, not {bend:g}.")
     return -np.inf if every else bend
 
 

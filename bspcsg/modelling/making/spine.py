@@ -73,22 +73,27 @@ def path_points(path: Any) -> tuple[FloatArray, bool]:
     LimitError
         If a distance of its points overflows or underflows doubles.
     """
-    points = doubles(path, invalid_parameter("A path is an array of points."))
+    points = doubles(
+        path, invalid_parameter("A path must be an array of points, of shape (n, 2) or (n, 3).")
+    )
     if points.ndim != 2 or points.shape[1] not in (2, 3):
         raise invalid_parameter(f"A path must have shape (n, 3) or (n, 2), not {points.shape}.")
     if not np.isfinite(points).all():
-        raise invalid_parameter("A path must have finite coordinates.")
+        raise invalid_parameter("A path has a coordinate that is not a finite number.")
     points = np.pad(points, ((0, 0), (0, 3 - points.shape[1])))
     if len(points):
         fresh = (points[1:] != points[:-1]).any(axis=1)
         points = points[np.concatenate([[True], fresh])]
     if len(points) < 2:
-        raise invalid_parameter("A path needs two different points.")
+        raise invalid_parameter("A path needs at least two different points.")
     with np.errstate(over="ignore"):
         lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
         size = float(np.linalg.norm(np.ptp(points, axis=0)))
     if not (lengths > 0).all() or not math.isfinite(size):
-        message = "Doubles cannot measure this path: points are too near each other, or too far."
+        message = (
+            "The points of the path are too close together, or too far apart, to compute its"
+            " length in doubles."
+        )
         raise LimitError(message, "too_large")
     closed = len(points) > 3 and math.dist(points[0], points[-1]) <= _SAME * size
     return (points[:-1] if closed else points), closed
@@ -155,7 +160,7 @@ def _refuse_turning_back(points: FloatArray, before: FloatArray, after: FloatArr
     sharp = np.flatnonzero(np.einsum("ij,ij->i", before, after) < _SHARPEST)
     if len(sharp):
         place = ", ".join(f"{value:g}" for value in points[sharp[0]])
-        message = f"The path turns back on itself at ({place}). Round that corner."
+        message = f"The path turns back on itself at ({place}). Round this corner of the path."
         raise invalid_parameter(message, sharp.tolist())
 
 
@@ -169,8 +174,11 @@ def _level(points: FloatArray, middle: FloatArray) -> FloatArray:
     upright = np.flatnonzero(size < _UPRIGHT)
     if len(upright):
         place = ", ".join(f"{value:g}" for value in points[upright[0]])
-        message = f"The path runs upright at ({place}), where a fixed frame has no direction."
-        raise invalid_parameter(message + " Sweep with frame='parallel'.", upright.tolist())
+        message = (
+            f"The path is vertical at ({place}), where frame='fixed' does not define the"
+            " orientation of the profile."
+        )
+        raise invalid_parameter(message + " Use frame='parallel'.", upright.tolist())
     return np.column_stack([x / size, y / size, np.zeros(len(x))])
 
 

@@ -52,7 +52,10 @@ def ready(skeleton: Skeleton, chosen: IndexArray) -> IndexArray:
     if own and not free:
         vertex = int(skeleton.ends[min(before), 0])
         raise refused(
-            skeleton, vertex, "convex and concave edges wait for each other; blend one kind first"
+            skeleton,
+            vertex,
+            "convex and concave edges meet in a cycle, so no order of blending works; blend"
+            " the convex and the concave edges in separate calls",
         )
     return np.array(sorted(free), dtype=np.int64)
 
@@ -67,7 +70,10 @@ def _between_two(skeleton: Skeleton, chosen: set[int], vertex: int) -> int | Non
     if len(kinds) < 2:
         return None
     if len(edges) != 3:
-        reason = "more than three convex and concave edges meet; blend one kind first"
+        reason = (
+            "more than three convex and concave edges meet; blend the convex and the concave"
+            " edges in separate calls"
+        )
         raise refused(skeleton, vertex, reason)
     convex = [edge for edge in edges if skeleton.is_convex[edge]]
     concave = [edge for edge in edges if not skeleton.is_convex[edge]]
@@ -128,7 +134,10 @@ def carried(
         parts = _lie_on(skeleton, edge, after, near, reach)
         if not parts.any():
             vertex = int(skeleton.ends[edge, 0])
-            reason = "an edge vanishes when others are blended; blend one kind first"
+            reason = (
+                "an edge vanishes when others are blended; blend the convex and the concave edges"
+                " in separate calls"
+            )
             raise refused(skeleton, vertex, reason)
         is_meant |= parts
     for face, corners in ends.items():

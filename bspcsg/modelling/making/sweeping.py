@@ -104,7 +104,7 @@ def sweep(
         return Solid.empty()
     turns, sizes = -_along(twist, 0.0, spine, "twist"), _along(scale, 1.0, spine, "scale")
     if sizes.min() < 0:
-        raise invalid_parameter(f"scale must not be below 0, but is {sizes.min():g}.")
+        raise invalid_parameter(f"scale must be at least 0, not {sizes.min():g}.")
     slip = math.degrees(slipped(spine))
     rings = [
         spine.ring(k, _placed(corners, turns[k] - slip * share, sizes[k]))
@@ -159,7 +159,10 @@ def pipe(
     outer = positive(radius(r, d, "A pipe"), "r")
     bore = not_negative(radius(inner, inner_d, "A bore", default=0.0), "inner")
     if bore >= outer:
-        raise invalid_parameter(f"inner must be below r: {bore:g} is not below {outer:g}.")
+        raise invalid_parameter(
+            f"the inner radius of a pipe must be smaller than its outer radius {outer:g}, but is"
+            f" {bore:g}."
+        )
     circle = unit_circle(sides_around(3, segments, "segments"))
     contours = [circle * outer, circle[::-1] * bore] if bore else [circle * outer]
     return sweep(contours, path)
@@ -180,7 +183,10 @@ def _along(given: Along, start: float, spine: Spine, name: str) -> FloatArray:
     shares = np.append(spine.shares, 1.0) if spine.closed else spine.shares
     if not callable(given):
         return start + (number(given, name) - start) * shares
-    message = f"The function {name} must return as many numbers as it is given."
+    message = (
+        f"The function {name} must return an array with one number for each number that it is"
+        " given."
+    )
     refusal = invalid_parameter(message)
     try:
         values = np.broadcast_to(doubles(given(shares.copy()), refusal), shares.shape)
@@ -213,6 +219,6 @@ def _same_corners(last: FloatArray, first: FloatArray, edges: IndexArray) -> Ind
         if fits and set(map(tuple, same[edges].tolist())) == set(map(tuple, edges.tolist())):
             return same
     raise invalid_parameter(
-        "A closed path must end with the profile as it began: choose a twist that turns it onto"
-        " itself, such as 360, and a scale of 1."
+        "On a closed path, the profile must return to its initial orientation and size at the"
+        " end; choose a twist that maps it onto itself, such as 360, and a scale of 1."
     )

@@ -114,7 +114,7 @@ def _selected(corners: Corners, points: FloatArray) -> BoolArray:
     found = np.asarray(None if axes_of(answer) is None else answer)
     if found.dtype != np.bool_ or found.shape != (len(points),):
         raise invalid_parameter(
-            f"corners must return one truth value for each of {len(points)} points, not"
+            f"The function corners must return one bool for each of {len(points)} points, not"
             f" {found.dtype} of shape {found.shape}."
         )
     return found
@@ -128,12 +128,16 @@ def _without_crossings(figure: Region, loops: list[FloatArray]) -> Region:
     crossed = made ^ Region(loops, winding="even-odd", pitch=figure.pitch)
     length = math.fsum(outline.length for outline in made.outlines)
     if crossed.area > length * 10.0**figure.pitch:
-        raise invalid_parameter("New corners cross another outline. Choose a smaller size.")
+        raise invalid_parameter(
+            "The rounded or chamfered corners would cross another outline of the region. Choose a"
+            " smaller size."
+        )
     return made
 
 
 def _no_room(corner: FloatArray) -> InvalidParameterError:
     place = ", ".join(f"{value:.6g}" for value in corner)
     return invalid_parameter(
-        f"The edges leave no room at ({place}). Choose a smaller size, or fewer corners."
+        f"The edges at the corner ({place}) are too short for this size. Choose a smaller"
+        " size, or fewer corners."
     )

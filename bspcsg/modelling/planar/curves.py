@@ -122,16 +122,18 @@ def bezier_points(controls: FloatArray, steps: int) -> FloatArray:
 
 
 def _controls(points: Any) -> FloatArray:
-    array = doubles(points, invalid_parameter("A curve is made of control points."))
+    array = doubles(
+        points, invalid_parameter("The control points of a curve must be an array of numbers.")
+    )
     if (
         array.ndim != 2
         or array.shape[1] not in (2, 3)
         or not 2 <= len(array) <= _MAX_CONTROL_POINTS
     ):
         raise invalid_parameter(
-            f"Control points have shape (k, 2) or (k, 3) with k from 2 to {_MAX_CONTROL_POINTS},"
-            f" not {array.shape}."
+            "The control points of a curve must have shape (k, 2) or (k, 3) with k from 2 to"
+            f" {_MAX_CONTROL_POINTS}, not {array.shape}."
         )
     if not np.isfinite(array).all():
-        raise invalid_parameter("A control point is not finite.")
+        raise invalid_parameter("A control point has a coordinate that is not a finite number.")
     return array

@@ -35,13 +35,19 @@ def hull_of_figures(figures: Sequence[Any]) -> Region:
 def _points_of(figure: Any) -> FloatArray:
     if isinstance(figure, Region):
         return np.concatenate([np.zeros((0, 2)), *figure.to_polygons()])
-    refusal = invalid_parameter("hull takes shapes and points of one dimension, not of both.")
+    refusal = invalid_parameter(
+        "The arguments of hull must all be regions and points in the plane, or all be solids and"
+        " points in space."
+    )
     points = doubles(figure, refusal)
     if points.ndim != 2 or points.shape[1] != 2:
         raise refusal
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(bad):
-        message = f"{len(bad)} of the points are not finite, the first is number {bad[0]}."
+        message = (
+            f"{len(bad)} of the points have coordinates that are not finite numbers; the first is"
+            f" point {bad[0]} (counted from 0)."
+        )
         raise InvalidMeshError(message, "non_finite", bad[:20].tolist())
     return points
 

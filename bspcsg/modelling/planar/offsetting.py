@@ -57,7 +57,7 @@ def offset_region(
     distance, limit = number(delta, "delta"), number(miter_limit, "miter_limit")
     sides = sides_around(3, segments, "segments")
     if limit < 1:
-        raise invalid_parameter(f"miter_limit must be 1 at least, not {limit:g}.")
+        raise invalid_parameter(f"miter_limit must be at least 1, not {limit:g}.")
     if distance == 0 or figure.is_empty or figure.is_full:
         return figure
     if not figure.is_bounded and (~figure).is_bounded:
@@ -72,7 +72,10 @@ def refuse_far(figure: Region, delta: float) -> None:
     """Raise `LimitError` if an offset exceeds 2**20 times a figure's largest coordinate."""
     size = max(float(np.abs(loop).max()) for loop in figure.to_polygons())
     if delta > _MAX_GROWTH * size:
-        message = f"delta is too many times the size of the region: {delta:g}, and {size:g}."
+        message = (
+            f"delta {delta:g} is too large for a region that extends to {size:g} from the origin;"
+            f" it may be at most {_MAX_GROWTH:g} times as large."
+        )
         raise LimitError(message, "too_large")
 
 
@@ -146,7 +149,10 @@ def cleaned(figures: Sequence[Region]) -> Region:
     loops = [loop for figure in figures for loop in figure.to_polygons()]
     largest = max((float(np.abs(loop).max()) for loop in loops), default=0.0)
     if largest >= _GRID_REACH:
-        message = f"a figure reaches to {largest:g}, and an offset to {_GRID_REACH:g} at most."
+        message = (
+            f"a figure has coordinates up to {largest:g}, and offsets are possible up to"
+            f" {_GRID_REACH:g} only; scale the figure down."
+        )
         raise LimitError(message, "too_large")
     rounded = [path for path in _whole_numbers(loops, _GRID) if _has_area(path)]
     if not rounded:
@@ -191,7 +197,9 @@ def stroked(line: FloatArray, width: float, cap: str, join: str = "miter") -> Re
 
 def _whole_numbers(loops: list[FloatArray], scale: float) -> list[Any]:
     if not all(np.isfinite(loop).all() for loop in loops):
-        raise InvalidMeshError("A drawing has coordinates that are not finite.", "non_finite")
+        raise InvalidMeshError(
+            "A drawing has a coordinate that is not a finite number.", "non_finite"
+        )
     return [np.trunc(loop * scale).astype(int).tolist() for loop in loops]
 
 

@@ -27,8 +27,8 @@ def sum_of_regions(a: Region, b: Region) -> Region:
     first, second = a.convex_parts(), b.convex_parts()
     if len(first) * len(second) > _MAX_PART_PAIRS:
         message = (
-            f"the regions fall into convex parts of which {len(first) * len(second):,} pairs would"
-            f" have to be added; the most are {_MAX_PART_PAIRS:,}."
+            f"the convex parts of the two regions form {len(first) * len(second):,} pairs, and"
+            f" at most {_MAX_PART_PAIRS:,} are allowed; simplify the regions."
         )
         raise LimitError(message, "too_large")
     pitch = min(a.pitch, b.pitch)

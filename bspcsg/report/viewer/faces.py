@@ -48,7 +48,9 @@ def face_colours(layers: Sequence[Layer], name: str | None = None) -> FloatArray
         name = next((own for own in OWN if own in names), PART)
     if name != PART and name not in names:
         known = ", ".join(sorted({PART, *names}))
-        raise invalid_parameter(f"there are no colours called {name!r} here; there are {known}.")
+        raise invalid_parameter(
+            f"there are no colours or attributes with the name {name!r}; known are {known}."
+        )
     found = [_of_layer(layer, name) for layer in layers]
     return np.concatenate(found)
 

@@ -41,7 +41,10 @@ def solid_html(solid: "Solid") -> str | None:
     layer = _layer(solid)
     count = f"{len(layer.faces):,} triangles"
     if len(layer.faces) > _MAX_VIEW_TRIANGLES:
-        said = f"{count} are too many for a notebook; save the solid and use bspcsg view."
+        said = (
+            f"{count} are too many for an interactive view in a notebook; save the solid and run"
+            " bspcsg view on the file."
+        )
         return _picture(solid).svg + _paragraph(said)
     try:
         return framed([layer], f"solid of {count}")

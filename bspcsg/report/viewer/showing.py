@@ -70,8 +70,11 @@ def _named(solid: Solid, name: str) -> list[Layer]:
 
 def _refuse_what_has_no_outline(thing: Solid | Region) -> None:
     if not thing.is_bounded:
-        message = "What reaches to infinity cannot be shown; intersect it with a part of space."
+        message = (
+            f"The {type(thing).__name__} reaches to infinity, so it cannot be shown; intersect it"
+            " with a bounded one first."
+        )
         raise UnboundedError(message, "unbounded")
     if thing.is_empty:
         kind = type(thing).__name__
-        raise invalid_parameter(f"There is nothing to be shown: this {kind} is empty.")
+        raise invalid_parameter(f"The {kind} is empty, so there is nothing to show.")

@@ -67,7 +67,7 @@ impl Overlap {
             ""
         };
         let text = format!(
-            "mesh {} of those that the solid was made of (source {}) overlaps itself{note}: {}",
+            "input mesh {} of the solid (source {}) overlaps itself{note}: {}",
             slot.0,
             source.id(),
             self.sign

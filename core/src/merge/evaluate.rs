@@ -179,7 +179,8 @@ pub fn blamed_on_snapshot(solid: &Solid, error: Error) -> Error {
 }
 
 fn false_claim() -> Error {
-    let text = "a snapshot says that the faces of its solid do not overlap, and they do";
+    let text =
+        "the snapshot is wrong: it states that the faces of its solid do not overlap, but they do";
     Error::new(ErrorKind::BadSnapshot, text)
 }
 
@@ -205,8 +206,8 @@ fn wrong_source(operand: &Solid, number: usize) -> Option<Error> {
             Ok(false) => {}
             Ok(true) => {
                 let text = format!(
-                    "operand {number} overlaps itself: mesh {slot} of those it was made of \
-                     (source {}) was declared trusted, but overlaps itself",
+                    "operand {number} overlaps itself: its input mesh {slot} (source {}) was \
+                     declared trusted, but has overlapping faces",
                     source.id()
                 );
                 return Some(Error::new(ErrorKind::NotReduced, text));
@@ -343,13 +344,14 @@ fn common_pitch(expression: &Expression, solids: &[Solid]) -> Result<Pitch> {
         .into_iter()
         .find(|k| *k as usize >= count)
     {
-        let text = format!("the expression names operand {k}, but there are {count} operands");
+        let text =
+            format!("the expression refers to operand {k}, but there are only {count} operands");
         return Err(Error::at(ErrorKind::Shape, vec![u64::from(k)], text));
     }
     let pitch = solids.first().map_or(Pitch::DEFAULT, Solid::pitch);
     if let Some(at) = solids.iter().position(|s| s.pitch() != pitch) {
         let text = format!(
-            "operand {at} lives on the pitch 10^{}, operand 0 on 10^{}; refine the coarser one",
+            "operand {at} has the lattice step 10^{}, operand 0 has 10^{}; refine the coarser one",
             solids[at].pitch().exponent(),
             pitch.exponent()
         );

@@ -103,7 +103,8 @@ impl Expression {
         for (i, term) in terms.iter().enumerate() {
             poll();
             if term.arguments().iter().any(|a| *a as usize >= i) {
-                let text = format!("line {i} of the expression names a line that is not before it");
+                let text =
+                    format!("line {i} of the expression refers to a line that is not before it");
                 return Err(Error::at(ErrorKind::Shape, vec![i as u64], text));
             }
         }

@@ -52,10 +52,10 @@ impl Declined {
     /// Returns the reason as a text for people.
     pub fn text(self) -> &'static str {
         match self {
-            Self::Operands => "the operands are not two different meshes as they were given",
-            Self::Apart => "the boxes around the meshes are apart",
+            Self::Operands => "the operands are not two different, unchanged input meshes",
+            Self::Apart => "the bounding boxes of the meshes do not overlap",
             Self::AllOver => "the meshes touch nearly everywhere",
-            Self::Crowded => "the faces are crowded: boxes do not tell them apart",
+            Self::Crowded => "the faces are too dense: their bounding boxes do not separate them",
             Self::Overlap(_) => "a mesh overlaps itself where the other one meets it",
             Self::Thin => "faces are too thin to count winding numbers in front of them",
             Self::Defect => "a segment left its face, which is a defect",

@@ -116,8 +116,12 @@ pub fn facets(
         poll();
         // Checked above: they count upwards from zero to the number of corners.
         let own = &corners[pair[0] as usize..pair[1] as usize];
-        let source = u32::try_from(number)
-            .map_err(|_| Error::new(ErrorKind::TooLarge, "there are at most 2^32 facets"))?;
+        let source = u32::try_from(number).map_err(|_| {
+            Error::new(
+                ErrorKind::TooLarge,
+                "there are more than 2^32 facets, the largest number allowed",
+            )
+        })?;
         let pieces = match dimension {
             3 => polygon(own, source, lenience.triangulate_nonplanar),
             _ => point_or_segment(dimension, own, source).map(|facet| vec![facet]),
@@ -136,7 +140,7 @@ fn check_offsets(offsets: &[i64], count: usize) -> Result<()> {
     if ends && offsets.windows(2).all(|pair| pair[0] <= pair[1]) {
         return Ok(());
     }
-    let text = format!("offsets must count upwards from 0 to the number of corners, {count}");
+    let text = format!("offsets must increase from 0 to the number of corners, {count}");
     Err(Error::new(ErrorKind::Shape, text))
 }
 
@@ -156,7 +160,7 @@ fn point_or_segment(dimension: usize, corners: &[Lattice], source: u32) -> Resul
             return Err(facet_error(
                 ErrorKind::Shape,
                 source,
-                "has too few or many corners",
+                "has a wrong number of corners for its dimension",
             ))
         }
     }
@@ -169,7 +173,7 @@ fn point_or_segment(dimension: usize, corners: &[Lattice], source: u32) -> Resul
 
 fn polygon(given: &[Lattice], source: u32, lenient: bool) -> Result<Vec<Facet>> {
     if given.len() < 3 || given.len() > MAX_CORNERS_PER_FACET {
-        let text = "needs from 3 to 16384 corners";
+        let text = "must have from 3 to 16384 corners";
         return Err(facet_error(ErrorKind::Shape, source, text));
     }
     let corners = without_flat_corners(given);
@@ -203,7 +207,7 @@ fn without_normal(corners: &[Lattice], source: u32) -> Error {
         // Flat corners are removed: if more than three remain, the first three are not on one line.
         [a, b, c, _, ..] => match Plane::through(a, b, c) {
             Some(plane) if corners.iter().all(|p| plane.side_of_lattice(p) == Side::On) => {
-                let text = "crosses itself: its areas of either orientation cancel";
+                let text = "crosses itself, so that its signed area is zero";
                 (ErrorKind::NotSimple, text)
             }
             _ => (ErrorKind::NonPlanar, "is not planar on the lattice"),

@@ -43,7 +43,8 @@ impl Pitch {
             .filter(|e| (-EXACT_POWERS..=EXACT_POWERS).contains(e))
             .map(Self)
             .ok_or_else(|| {
-                let text = format!("the pitch 10^{exponent} is not between 10^-22 and 10^22");
+                let text =
+                    format!("the lattice step 10^{exponent} is not between 10^-22 and 10^22");
                 Error::new(ErrorKind::TooLarge, text)
             })
     }
@@ -132,7 +133,7 @@ impl Pitch {
             return Error::new(ErrorKind::NonFinite, text);
         }
         let text = format!(
-            "the coordinate {x:e} is beyond 2^53 steps of the pitch 10^{}; use a coarser pitch",
+            "the coordinate {x:e} is more than 2^53 lattice steps of 10^{} from the origin",
             self.0
         );
         Error::new(ErrorKind::TooLarge, text)

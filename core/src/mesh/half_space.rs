@@ -49,13 +49,16 @@ pub fn half_space(
 /// lattice.
 pub fn bounding_plane(normal: [i128; 3], offset: &Int<3>) -> Result<Plane> {
     if normal == [0; 3] {
-        return Err(Error::new(ErrorKind::BadNormal, "the normal is zero"));
+        return Err(Error::new(
+            ErrorKind::BadNormal,
+            "the normal of a hyperplane is the zero vector",
+        ));
     }
     Plane::across_lattice(normal, offset).ok_or_else(out_of_reach)
 }
 
 /// The error for a hyperplane that lies outside the lattice.
 pub fn out_of_reach() -> Error {
-    let text = "the hyperplane of a half-space is beyond 2^53 steps from the origin";
+    let text = "the hyperplane is more than 2^53 lattice steps from the origin";
     Error::new(ErrorKind::TooLarge, text)
 }

@@ -82,11 +82,16 @@ fn check_indices(faces: &[[i64; 3]], count: usize) -> Result<Vec<[VertexId; 3]>>
     let limit = u32::try_from(count)
         .ok()
         .filter(|c| *c < u32::MAX / 4)
-        .ok_or_else(|| Error::new(ErrorKind::TooLarge, "a mesh holds at most 2^30 vertices"))?;
+        .ok_or_else(|| {
+            Error::new(
+                ErrorKind::TooLarge,
+                "the mesh has more than 2^30 vertices, the largest number allowed",
+            )
+        })?;
     if faces.len() >= (u32::MAX / 4) as usize {
         return Err(Error::new(
             ErrorKind::TooLarge,
-            "a mesh holds at most 2^30 faces",
+            "the mesh has more than 2^30 faces, the largest number allowed",
         ));
     }
     let mut narrow = vec![[VertexId::default(); 3]; faces.len()];
@@ -99,7 +104,8 @@ fn check_indices(faces: &[[i64; 3]], count: usize) -> Result<Vec<[VertexId; 3]>>
     let bad = |face: &[i64; 3]| face.iter().any(|v| !(0..i64::from(limit)).contains(v));
     let row = faces.iter().position(bad).unwrap_or(0);
     let face = faces[row];
-    let text = format!("face {row} names vertices {face:?}, but there are {count} vertices");
+    let text =
+        format!("face {row} has the vertex indices {face:?}, but there are only {count} vertices");
     Err(Error::at(
         ErrorKind::IndexOutOfRange,
         vec![row as u64],
@@ -141,7 +147,7 @@ impl Bounds {
             let bad = |p: &[f64; 3]| p.iter().any(|c| !c.is_finite());
             let row = points.iter().position(bad).unwrap_or(0);
             let point = point_text(&points[row]);
-            let text = format!("vertex {row} is {point}; coordinates must be finite");
+            let text = format!("vertex {row} is {point}; all coordinates must be finite numbers");
             Error::at(ErrorKind::NonFinite, vec![row as u64], text)
         })
     }
@@ -197,7 +203,7 @@ fn choose_pitch(
     let chosen = Pitch::suited(if largest.is_finite() { largest } else { 0.0 }, extent)?;
     if chosen != Pitch::DEFAULT {
         let text = format!(
-            "coordinates up to {largest:e} do not suit the pitch 10^-9; using 10^{}",
+            "coordinates up to {largest:e} do not suit the default lattice step 10^-9; the step is 10^{}",
             chosen.exponent()
         );
         findings.push(Finding::about("pitch", Severity::Note, &[0], text));
@@ -291,7 +297,7 @@ fn closed_or_welded(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) -> Res
             WELDED,
             Severity::Note,
             &[0],
-            "vertices at the same place were welded to close the mesh",
+            "vertices with equal coordinates were welded to close the mesh",
         ));
         if is_closed(&mesh.faces) {
             return Ok(Vec::new());

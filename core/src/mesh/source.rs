@@ -140,7 +140,8 @@ impl Source {
     fn irregularity(&self) -> Option<Finding> {
         let irregular = self.irregular_vertices();
         let places: Vec<u64> = irregular.iter().map(|v| u64::from(v.0)).collect();
-        let text = "more than two faces share an edge, or several fans a vertex, at these vertices";
+        let text =
+            "more than two faces share an edge, or separate fans of faces meet, at these vertices";
         let finding = || Finding::about("non_manifold", Severity::Note, &places, text);
         (!places.is_empty()).then(finding)
     }

@@ -54,7 +54,9 @@ pub fn triangles_of(
         if let [Some(a), Some(b), Some(c)] = corners.map(index) {
             return Ok([a, b, c]);
         }
-        let text = format!("triangle {t} names a vertex that does not exist");
+        let text = format!(
+            "triangle {t} has a vertex index out of range; there are {vertex_count} vertices"
+        );
         Err(Error::new(ErrorKind::IndexOutOfRange, text))
     };
     let triangles = rows(triangles, "triangles")?;

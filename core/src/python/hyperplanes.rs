@@ -29,7 +29,7 @@ pub type Row = Vec<BigInt>;
 pub fn coefficients<const N: usize>(row: &[BigInt]) -> Result<([i128; N], Int<3>)> {
     let wrong = || {
         shape(format!(
-            "a hyperplane has {} numbers, not {}",
+            "a hyperplane must have {} numbers, not {}",
             N + 1,
             row.len()
         ))

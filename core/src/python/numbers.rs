@@ -44,7 +44,9 @@ fn in_rows<'py, T: Decimal + Element>(
     row: &[u8],
 ) -> PyResult<Bound<'py, PyArray1<T>>> {
     let found = detached(py, || scanned(text, row));
-    let values = found.map_err(|at| PyValueError::new_err(format!("no such line at byte {at}")))?;
+    let values = found.map_err(|at| {
+        PyValueError::new_err(format!("the text has an unexpected line at byte {at}"))
+    })?;
     Ok(PyArray1::from_vec(py, values))
 }
 

@@ -24,7 +24,10 @@ pub fn welded_points<'py>(
 ) -> PyResult<Welding<'py>> {
     let points = rows(&points, "points").map_err(|e| to_python(py, &e))?;
     if u32::try_from(points.len()).is_err() {
-        let text = format!("{} points are too many to be joined", points.len());
+        let text = format!(
+            "{} points are too many; fewer than 2^32 are allowed",
+            points.len()
+        );
         return Err(to_python(py, &Error::new(ErrorKind::TooLarge, text)));
     }
     let found = run(py, 0, points.len(), || Ok(welded(&points)))?;
@@ -52,7 +55,7 @@ pub fn outline_triangles<'py>(
         .iter()
         .map(|[from, to]| Some((number(*from)?, number(*to)?)));
     let Some(ends) = ends.collect::<Option<Vec<_>>>() else {
-        let text = "an edge names a point that does not exist";
+        let text = "an edge has a point index out of range";
         return Err(to_python(py, &Error::new(ErrorKind::IndexOutOfRange, text)));
     };
     let found = run(py, 0, ends.len(), || {

@@ -644,7 +644,10 @@ fn term(name: &str, arguments: Vec<u32>) -> Result<Term> {
         ("and", _) => Ok(Term::And(arguments)),
         ("xor", _) => Ok(Term::Xor(arguments)),
         _ => {
-            let text = format!("'{name}' with {} arguments is not a line", arguments.len());
+            let text = format!(
+                "'{name}' with {} arguments is not a valid line",
+                arguments.len()
+            );
             Err(Error::new(ErrorKind::Shape, text))
         }
     }

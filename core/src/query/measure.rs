@@ -53,8 +53,8 @@ fn too_long(bits: u64, most_bits: u64) -> Error {
     // The decimal logarithm of 2 is 0.30103, to within 10^-8.
     let digits = |bits: u64| u128::from(bits) * 30_103 / 100_000;
     let text = format!(
-        "the exact volume is a fraction of up to {} digits, more than {}; the near volume is far finer \
-         than a double",
+        "the exact volume is a fraction of up to {} digits, more than the limit of {}; use the rounded \
+         volume instead",
         digits(bits),
         digits(most_bits)
     );

@@ -47,7 +47,7 @@ impl Kind {
         match self {
             Self::Solid => "a solid",
             Self::Set => "a partition tree",
-            Self::Rays => "a tree of rays",
+            Self::Rays => "a ray tree",
         }
     }
 
@@ -58,7 +58,7 @@ impl Kind {
 
     /// Returns the error for a payload that contradicts itself.
     pub fn contradiction(self) -> Error {
-        self.refusal("they contradict themselves")
+        self.refusal("their contents are inconsistent")
     }
 }
 
@@ -93,7 +93,7 @@ fn payload(kind: Kind, bytes: &[u8]) -> Result<&[u8]> {
     }
     let head = [&MARK[..], &[kind.letter()]].concat();
     let Some((version, _)) = bytes.strip_prefix(&*head).and_then(<[u8]>::split_first) else {
-        return Err(kind.refusal("they do not begin as one"));
+        return Err(kind.refusal("they do not start with its header"));
     };
     if !(OLDEST_VERSION..=VERSION).contains(version) {
         let why = format!("version {version} is not known; a newer bspcsg may have written it");
@@ -102,9 +102,9 @@ fn payload(kind: Kind, bytes: &[u8]) -> Result<&[u8]> {
     let (sealed, checksum) = bytes
         .split_last_chunk::<CHECKSUM_BYTES>()
         .filter(|(sealed, _)| sealed.len() >= HEAD_BYTES)
-        .ok_or_else(|| kind.refusal("they end too soon"))?;
+        .ok_or_else(|| kind.refusal("they are incomplete"))?;
     if crc32fast::hash(sealed) != u32::from_le_bytes(*checksum) {
-        return Err(kind.refusal("the checksum does not match, so they were damaged on their way"));
+        return Err(kind.refusal("the checksum does not match, so they are damaged"));
     }
     Ok(&sealed[HEAD_BYTES..])
 }

@@ -227,7 +227,7 @@ impl Snapshot {
     /// `TooLarge` if a point or plane leaves the lattice.
     pub fn moved(&self, motion: &Motion, pitch: Pitch) -> Result<Self> {
         if self.reaches_infinity() {
-            let text = "an unbounded boundary other than one plane cannot be moved";
+            let text = "an unbounded solid other than a half-space cannot be moved";
             return Err(Error::new(ErrorKind::Unbounded, text));
         }
         let mut image = self.clone();
@@ -257,7 +257,11 @@ impl Snapshot {
             });
         }
         if finer > own {
-            let text = format!("10^{} does not refine 10^{}", finer.exponent(), self.pitch);
+            let text = format!(
+                "the lattice step 10^{} is not finer than 10^{}",
+                finer.exponent(),
+                self.pitch
+            );
             return Err(Error::new(ErrorKind::PitchMismatch, text));
         }
         let scale = finer.refinement(own).ok_or_else(too_large)?;

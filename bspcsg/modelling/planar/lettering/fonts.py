@@ -103,7 +103,10 @@ def opened(file: FontFile) -> uharfbuzz.Font:
     """
     face = uharfbuzz.Face(limited_content(file.path), file.face)
     if face.glyph_count == 0:
-        raise FormatError(f"{file.path}: this is no font file.", "malformed")
+        raise FormatError(
+            f"{file.path}: the file is not a font that can be read, such as .ttf or .otf.",
+            "malformed",
+        )
     font = uharfbuzz.Font(face)
     font.scale = (face.upem, face.upem)
     return font

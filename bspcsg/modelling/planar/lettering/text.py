@@ -149,7 +149,10 @@ def text(
     region, missing = lettered(line, font_file(font), look)
     if missing:
         letters = " ".join(f"{letter} (U+{ord(letter):04X})" for letter in missing[:8])
-        message = f"The font {shown(os.fspath(font))} has no glyph for {letters}."
+        message = (
+            f"The font {shown(os.fspath(font))} has no glyph for {letters}; choose another font,"
+            " or other characters."
+        )
         raise InvalidParameterError(message, "missing_glyph")
     return region
 
@@ -212,9 +215,11 @@ def _anchor(end: FloatArray, boxes: FloatArray, look: Lettering, is_horizontal: 
 
 def _line(string: Any) -> str:
     if not isinstance(string, str):
-        raise invalid_parameter(f"string must be a text, not {shown(string)}.")
+        raise invalid_parameter(f"string must be a str, not {shown(string)}.")
     if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in string):
-        raise invalid_parameter("string must be one line without control characters.")
+        raise invalid_parameter(
+            "string must be a single line, without line breaks and other control characters."
+        )
     return string
 
 
@@ -222,10 +227,14 @@ def _writing(direction: Any, language: Any, script: Any) -> Writing:
     if direction is not None:
         _one_of(Direction, direction, "direction")
     if not isinstance(language, str) or not language.isascii():
-        raise invalid_parameter(f"language must be a code such as 'en', not {shown(language)}.")
+        raise invalid_parameter(
+            f"language must be a language code such as 'en', not {shown(language)}."
+        )
     is_script = isinstance(script, str) and len(script) == 4 and script.isascii()
     if script is not None and not (is_script and script.isalpha()):
-        raise invalid_parameter(f"script must be four letters such as 'Latn', not {shown(script)}.")
+        raise invalid_parameter(
+            f"script must be a script code of four letters such as 'Latn', not {shown(script)}."
+        )
     return Writing(direction or "", language, script or "")
 
 

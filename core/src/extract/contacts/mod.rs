@@ -32,12 +32,12 @@ pub(super) fn split(mesh: &mut ExactMesh, sources: &Sources) -> Result<()> {
     order.sort_by_key(|v| origin[v.index()]);
     let numbers = renumber(&mut mesh.vertices, &mut mesh.triangles, &order);
     let starts = split.split_edges.iter().map(|e| e[0]);
-    let text = "the solid touches itself along edges, here split (start vertices)";
+    let text = "the solid touches itself along edges, which were split into separate edges (start vertices)";
     add_finding(mesh, "edge_contact", starts, &numbers, text);
     let ends: HashSet<VertexId> = split.split_edges.iter().flatten().copied().collect();
     let alone = split.split_vertices.iter().copied();
     let alone = alone.filter(|v| !ends.contains(v));
-    let text = "the solid touches itself at vertices, here split";
+    let text = "the solid touches itself at vertices, which were split into separate vertices";
     add_finding(mesh, "vertex_contact", alone, &numbers, text);
     Ok(())
 }
@@ -73,7 +73,7 @@ pub(super) fn is_manifold(assembly: &Assembly) -> Result<bool, Failure> {
             if !is_balanced(fan) {
                 let vertex = assembly.special_vertex(place);
                 return Err(Failure::Overlap(Overlap {
-                    sign: format!("the assembled boundary is open at vertex {vertex}"),
+                    sign: format!("the computed boundary is open at vertex {vertex}"),
                     faces: assembly.faces_at(vertex),
                 }));
             }

@@ -129,7 +129,7 @@ impl Assembly<'_> {
         let triangles = triangulate(&view, edges)
             .map_err(|e| overlap(format!("an outline could not be triangulated: {e}")))?;
         if self.verify && !covers_once(&view, edges, &triangles) {
-            return Err(overlap("faces of one plane overlap".to_owned()));
+            return Err(overlap("faces in one plane overlap".to_owned()));
         }
         Ok(triangles)
     }

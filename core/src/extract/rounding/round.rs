@@ -364,22 +364,23 @@ fn report(mesh: &mut Mesh, swapped: &[u64], turned: &[u64], settled: &Settled, n
     }
 }
 
-const SWAPPED: &str = "rounding to doubles turned triangles over; an edge of these was swapped";
+const SWAPPED: &str = "rounding to doubles turned these triangles over, so an edge was flipped";
 const MOVED: &str =
-    "surfaces would cross between the given corners and the lattice; these corners \
-    were put on the lattice, less than a step away";
+    "surfaces would cross with the given coordinates of these corners; the corners \
+    were moved to the lattice, by less than a step";
 const TOUCHING: &str =
-    "rounding to doubles, or mending it, put these vertices where others are; there \
-    the mesh touches itself";
-const GIVEN: &str = "an input has these vertices where others are; there the mesh touches itself";
-const MENDED: &str = "rounding to doubles made surfaces cross or left triangles no area; these \
-    triangles were changed by the width of the rounding";
-const COLLAPSED: &str = "rounding to doubles put two corners of these triangles in one place";
-const TURNED: &str = "rounding to doubles turned these triangles over or left them no area";
+    "rounding to doubles, or its repair, gave these vertices the coordinates of \
+    others, so the mesh touches itself there";
+const GIVEN: &str = "an input has these vertices twice, so the mesh touches itself there";
+const MENDED: &str =
+    "rounding to doubles made surfaces cross or triangles lose their area; to repair \
+    this, these triangles were changed within the rounding error";
+const COLLAPSED: &str = "rounding to doubles gave two corners of these triangles equal coordinates";
+const TURNED: &str = "rounding to doubles turned these triangles over or removed their area";
 const CROSSING: &str = "rounding to doubles makes these triangles cross or overlap others, which \
-    could not be mended";
+    could not be repaired";
 const OWN: &str = "an operand crosses itself, so these triangles cross or overlap others; \
-    `normalized()` unites it with itself";
+    `normalized()` resolves the overlaps";
 
 /// Returns true if two corners of a triangle have equal doubles.
 #[allow(clippy::float_cmp)]

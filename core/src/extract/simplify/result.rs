@@ -57,7 +57,7 @@ fn on_lattice(mesh: &Simplified, pitch: Pitch, noticed: Vec<Finding>) -> Result<
 fn findings(mesh: &Simplified, before: usize) -> Vec<Finding> {
     let (after, bound) = (mesh.triangles.len(), mesh.bound);
     let text = format!(
-        "short edges and slivers were removed, which made {after} triangles of {before}; no point \
+        "short edges and slivers were removed, which left {after} triangles of {before}; no point \
          of either surface is farther than {bound:?} from the other"
     );
     let done = Finding {
@@ -70,8 +70,8 @@ fn findings(mesh: &Simplified, before: usize) -> Vec<Finding> {
 }
 
 const SMALL_LEFT_TEXT: &str =
-    "an edge or a height of these triangles is within the tolerance still: without \
-    them the surface would move farther, cross itself, or vanish in part";
+    "an edge or a height of these triangles is still within the tolerance: removing it \
+    would move the surface too far, make it cross itself, or remove a part of it";
 
 #[cfg(test)]
 mod tests {

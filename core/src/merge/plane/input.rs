@@ -39,7 +39,7 @@ impl Outlines {
             return Ok(());
         }
         let Some(line) = Line2::through(from, to) else {
-            let text = "an outline leaves the lattice of 2^53 steps";
+            let text = "an outline extends beyond the lattice of 2^53 steps";
             return Err(Error::new(ErrorKind::TooLarge, text));
         };
         let first = self.corner(from);

@@ -358,6 +358,6 @@ fn swept_strands(outlines: &Outlines, stops: &Stops) -> (Vec<SweptStrand>, Vec<u
 }
 
 fn not_closed() -> Error {
-    let text = "the outlines do not close: their winding numbers contradict each other";
+    let text = "the outlines are not closed: their winding numbers are inconsistent";
     Error::new(ErrorKind::NotClosed, text)
 }

@@ -79,7 +79,7 @@ fn started(threads: usize) -> Result<Pool> {
         .stack_size(STACK_BYTES)
         .build();
     let threads = built.map_err(|e| {
-        let text = format!("the system does not start the threads ({e}); ask for fewer threads");
+        let text = format!("the system could not start {threads} threads ({e}); set fewer");
         Error::new(ErrorKind::TooMany, text)
     })?;
     let places = Places::of(&threads);

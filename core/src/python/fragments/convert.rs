@@ -41,7 +41,7 @@ pub fn named_policy(name: &str, seed: u64, sample: Sample, alpha: f64) -> Result
         "weighted" => Policy::Weighted(sample, alpha),
         "least-cost" => Policy::LeastCost(sample),
         _ => {
-            let text = format!("there is no policy '{name}'");
+            let text = format!("unknown policy '{name}'");
             return Err(Error::new(ErrorKind::Shape, text));
         }
     })
@@ -88,7 +88,7 @@ pub fn cut_row(cut: NodeCut) -> [i64; 2] {
 }
 
 pub fn node_cuts(array: &PyReadonlyArray2<'_, i64>) -> Result<Vec<NodeCut>> {
-    let wrong = |_| Error::new(ErrorKind::BadSnapshot, "a stored cut is not one");
+    let wrong = |_| Error::new(ErrorKind::BadSnapshot, "a stored cut has invalid numbers");
     let cut = |row: [i64; 3]| match row {
         [-1, piece, _] => u32::try_from(piece).map(NodeCut::Pivot).map_err(wrong),
         [OWN_AXIS, number, _] => u32::try_from(number).map(NodeCut::Own).map_err(wrong),

@@ -372,7 +372,7 @@ fn grown_box<S: Affine>(facets: &[Facet], margin: i64) -> Result<Polytope<S>> {
     let low = [0, 1, 2].map(|i| reach(corners().map(|c| c[i]).min().unwrap_or(0) - margin));
     let high = [0, 1, 2].map(|i| reach(corners().map(|c| c[i]).max().unwrap_or(0) + margin));
     Polytope::cuboid(&low, &high).ok_or_else(|| {
-        let text = "the facets fill the lattice, so that there is no room around them";
+        let text = "the facets extend to the border of the lattice, so no box fits around them";
         Error::new(ErrorKind::TooLarge, text)
     })
 }
@@ -382,7 +382,7 @@ fn pieces<S: Affine>(facets: &[Facet]) -> Result<Vec<Piece<S>>> {
         let flat = || Error::internal(format!("piece {number} has no extent"));
         let fragment = S::fragment(&facet.corners).ok_or_else(flat)?;
         let number = u32::try_from(number)
-            .map_err(|_| Error::new(ErrorKind::TooLarge, "there are at most 2^32 pieces"))?;
+            .map_err(|_| Error::new(ErrorKind::TooLarge, "there are more than 2^32 pieces"))?;
         Ok(Piece { fragment, number })
     };
     facets.iter().enumerate().map(piece).collect()

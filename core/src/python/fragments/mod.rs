@@ -590,14 +590,17 @@ impl PyFragmentTree {
         if eye.iter().any(|c| !c.is_finite()) {
             return Err(Error::new(
                 ErrorKind::NonFinite,
-                "the viewpoint is not finite",
+                "the viewpoint has a coordinate that is not finite",
             ));
         }
         if !at_infinity {
             return Ok(Viewpoint::point(&eye, -self.pitch()));
         }
         if eye.iter().all(|c| *c == 0.0) {
-            return Err(Error::new(ErrorKind::BadNormal, "the direction is zero"));
+            return Err(Error::new(
+                ErrorKind::BadNormal,
+                "the direction is the zero vector",
+            ));
         }
         Ok(Viewpoint::direction(&eye))
     }

@@ -229,7 +229,9 @@ fn too_large() -> Error {
 }
 
 fn bad_dimension(dimension: usize) -> Error {
-    shape(format!("sets have dimension 1, 2 or 3, not {dimension}"))
+    shape(format!(
+        "the dimension of a set must be 1, 2 or 3, not {dimension}"
+    ))
 }
 
 fn span<S: AxisSpace>(cut: &S::Hyperplane) -> Result<S::Fragment> {

@@ -87,7 +87,7 @@ pub fn same_lattice(a: Pitch, b: Pitch) -> Result<()> {
         return Ok(());
     }
     let text = format!(
-        "the sets live on lattices of pitch 10^{} and 10^{}",
+        "the sets have different lattice steps, 10^{} and 10^{}",
         a.exponent(),
         b.exponent()
     );
@@ -97,7 +97,7 @@ pub fn same_lattice(a: Pitch, b: Pitch) -> Result<()> {
 /// Returns the motion of the lattice given by signed axis numbers from 1 and a shift.
 pub fn lattice_map(dimension: usize, axes: &[i64], shift: &[i64]) -> Result<Motion> {
     let found = Motion::of_axes(axes, shift).filter(|_| axes.len() == dimension);
-    found.ok_or_else(|| shape("the axes and the shift are no map of the lattice"))
+    found.ok_or_else(|| shape("the axes and the shift do not map the lattice to itself"))
 }
 
 /// Converts each row; returns the first error, if there is one.

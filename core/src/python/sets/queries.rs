@@ -48,7 +48,8 @@ impl Set {
     /// Returns the faces of the convex cells, each with the number of its cell.
     pub fn cells(&self, pitch: Pitch) -> Result<PieceList> {
         if !self.is_bounded() {
-            let text = "a cell of the set reaches to infinity";
+            let text =
+                "a cell of the set reaches to infinity; intersect it with a bounded set first";
             return Err(Error::new(ErrorKind::Unbounded, text));
         }
         let mut list = PieceList::new();
@@ -103,7 +104,7 @@ impl Set {
         let segment = |edge| boundary.points(edge).map(|p| pitch.position_in_plane(p));
         let nearest = Nearest::of(boundary.edges.iter().map(segment).collect());
         let found: Option<Vec<_>> = points.iter().map(|p| nearest.to(*p)).collect();
-        found.ok_or_else(|| shape("a set without boundary has no nearest boundary point"))
+        found.ok_or_else(|| shape("the set has no boundary, so no nearest boundary point"))
     }
 
     /// Returns the intervals of a line inside a plane region, as segments.

@@ -28,7 +28,7 @@ fn points<const D: usize>(facets: &[Facet<D>]) -> Result<()> {
     if count.is_multiple_of(2) {
         return Ok(());
     }
-    let text = format!("{count} points of the line bound nothing: their number must be even");
+    let text = format!("{count} points of the line do not bound a set: their number must be even");
     Err(Error::new(ErrorKind::NotClosed, text))
 }
 
@@ -43,7 +43,7 @@ fn segments<const D: usize>(facets: &[Facet<D>], number: impl Fn(u32) -> u32) ->
     for run in ends.chunk_by(|a, b| a.0 == b.0) {
         if run.iter().map(|end| end.1).sum::<i64>() != 0 {
             let place = run.iter().map(|end| u64::from(number(end.2)));
-            let text = "the segments do not close: as many must end in each point as begin there";
+            let text = "the segments are not closed: in each point as many must end as begin there";
             return Err(Error::at(ErrorKind::NotClosed, place.collect(), text));
         }
     }

@@ -128,7 +128,7 @@ fn first_largest<C: Copy, S: PartialOrd, const D: usize>(
 }
 
 fn zero_direction() -> Error {
-    let text = "a ray's direction is zero; it must have a length";
+    let text = "the direction of a ray is the zero vector";
     Error::new(ErrorKind::BadNormal, text)
 }
 

@@ -68,7 +68,7 @@ impl<const D: usize> Scene<D> {
         root: impl FnOnce(&[Facet<D>], &Frame<D>) -> Deferred<D>,
     ) -> Result<Self> {
         if u32::try_from(facets.len()).is_err() {
-            let text = "a scene holds fewer than 2^32 facets";
+            let text = "a scene must have fewer than 2^32 facets";
             return Err(Error::new(ErrorKind::TooLarge, text));
         }
         let mut kept = Vec::with_capacity(facets.len());

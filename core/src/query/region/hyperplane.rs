@@ -18,7 +18,11 @@ pub fn point(normal: i128, offset: &Int<3>) -> Result<Point1> {
     let inside = match normal {
         1 => Direction::Below,
         -1 => Direction::Above,
-        _ => return Err(bad_normal("a point on the line has the normal 1 or −1")),
+        _ => {
+            return Err(bad_normal(
+                "the normal of a point on the line must be 1 or −1",
+            ))
+        }
     };
     let at = offset.to_i128().map(|offset| normal * offset);
     at.and_then(|at| i64::try_from(at).ok())
@@ -33,7 +37,7 @@ pub fn point(normal: i128, offset: &Int<3>) -> Result<Point1> {
 /// `BadNormal` if the normal is zero, `TooLarge` if it is too wide or the line misses the lattice.
 pub fn line(normal: [i128; 2], offset: &Int<3>) -> Result<Line2> {
     if normal == [0; 2] {
-        return Err(bad_normal("the normal is zero"));
+        return Err(bad_normal("the normal of a hyperplane is the zero vector"));
     }
     let narrow = |n: i128| i64::try_from(n).ok();
     let line =
@@ -57,7 +61,9 @@ pub fn plane(normal: [i128; 3], offset: &Int<3>) -> Result<Arc<Plane>> {
 pub fn line_along(origin: [i64; 2], direction: [f64; 2]) -> Result<Line2> {
     let size = direction[0].abs().max(direction[1].abs());
     if !(size > 0.0 && size.is_finite()) {
-        return Err(bad_normal("a direction is finite and not zero"));
+        return Err(bad_normal(
+            "a direction must be finite and not the zero vector",
+        ));
     }
     let power = 2f64.powf(size.log2().floor());
     let [x, y] = direction.map(|c| (c / power * 2f64.powi(52)).round() as i64);

@@ -193,7 +193,7 @@ fn meet_wide(ends: [&Vertex; 2], plane: &Plane) -> Result<Lattice> {
         let x: BigInt = &t * &p.x[i] - &s * &q.x[i];
         let nearest = Integer::div_floor(&(x * 2i32 + &w), &twice);
         *coordinate = i64::try_from(nearest)
-            .map_err(|_| Error::new(ErrorKind::TooLarge, "a section leaves the lattice"))?;
+            .map_err(|_| Error::new(ErrorKind::TooLarge, "a section extends beyond the lattice"))?;
     }
     Ok(meet)
 }

@@ -64,7 +64,7 @@ impl Cast<2> for Dim2 {
             if from == to {
                 return without_extent();
             }
-            let text = "a segment is beyond 2^53 lattice steps; use a coarser pitch";
+            let text = "a segment extends beyond the lattice of 2^53 steps";
             Error::new(ErrorKind::TooLarge, text)
         })
     }

@@ -62,7 +62,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
     pub fn regrown(scene: Scene<D>, growth: Growth, record: &Record) -> Result<Self> {
         let tree = Self::new(scene, growth, None)?;
         tree.follow(record).ok_or_else(|| {
-            let text = "the stored tree is not one over these facets";
+            let text = "the stored tree was not built over these facets";
             Error::new(ErrorKind::BadSnapshot, text)
         })?;
         Ok(tree)

@@ -115,7 +115,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
             poll();
             if nodes.all.len() > limit {
                 let text = format!(
-                    "the tree has more than {limit} nodes; allow more, or let rays grow a tree"
+                    "the tree has more than {limit} nodes; raise max_nodes, or let rays grow the tree"
                 );
                 return Err(Error::new(ErrorKind::TooLarge, text));
             }

@@ -140,12 +140,12 @@ fn given_cut<S: Affine>(
         NodeCut::Own(number) => own.get(number as usize).cloned(),
     };
     let hyperplane =
-        hyperplane.ok_or_else(|| unsuited_cut("a cut's facet is not in its region"))?;
+        hyperplane.ok_or_else(|| unsuited_cut("the facet of a cut does not lie in its region"))?;
     Ok((cut, hyperplane, Reason::Given))
 }
 
 fn unsuited_cut(why: &str) -> Error {
-    let text = format!("the stored cuts do not suit the facets: {why}");
+    let text = format!("the stored cuts do not fit the facets: {why}");
     Error::new(ErrorKind::BadSnapshot, text)
 }
 
@@ -188,7 +188,9 @@ fn asked_cut<S: Affine>(
         Answer::Candidate(index) => {
             let index = shown.get(index).ok_or_else(|| {
                 let count = shown.len();
-                let text = format!("the policy chose candidate {index} of {count}");
+                let text = format!(
+                    "the policy chose candidate {index}, but there are only {count} candidates"
+                );
                 Error::new(ErrorKind::IndexOutOfRange, text)
             })?;
             Ok(supporting(&pieces[*index], Reason::Asked))
@@ -196,7 +198,7 @@ fn asked_cut<S: Affine>(
         Answer::Hyperplane(cut) => {
             if Tally::of(pieces, &cut).larger_side() >= pieces.len() {
                 let text = "the policy chose a hyperplane that leaves all facets of a region on \
-                            one side, or cuts each of them; nothing would be gained";
+                            one side, or cuts each of them; choose one that separates them";
                 return Err(Error::new(ErrorKind::BadNormal, text));
             }
             own.push(cut.clone());

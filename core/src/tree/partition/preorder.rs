@@ -65,7 +65,7 @@ pub fn from_preorder<S: Space>(
 fn bad_list() -> Error {
     Error::new(
         ErrorKind::BadSnapshot,
-        "the nodes are not a partition tree in preorder",
+        "the nodes do not form a partition tree in preorder",
     )
 }
 

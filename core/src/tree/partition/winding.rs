@@ -114,7 +114,7 @@ impl<S: Space> Flat<S> {
 fn not_closed() -> Error {
     Error::new(
         ErrorKind::NotClosed,
-        "the faces in a cell do not give every place one winding number",
+        "the faces do not close: some points have no unique winding number",
     )
 }
 
