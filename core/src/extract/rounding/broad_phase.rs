@@ -18,7 +18,8 @@ const MAX_CELLS_PER_AXIS: usize = 32;
 const MAX_CELLS_PER_TRIANGLE: usize = 64;
 
 /// Returns the triangles outside the ascending list `some` that may meet a triangle of `some` or a triangle
-/// with another party number; each with its own party number, ascending.
+/// with another party number; each with its own party number, ascending. Triangles with equal party numbers
+/// are known not to cross.
 ///
 /// # Cost
 /// Two passes over vertices and triangles.
@@ -59,10 +60,12 @@ struct Cells<'a> {
     bits: u32,
 }
 
-/// The mark of a cell that triangles with different party numbers, or a triangle of `some`, reach into.
+/// The mark of a grid cell that triangles with different party numbers, or a triangle of `some`, reach into;
+/// triangles with equal party numbers are known not to cross.
 const SHARED: u32 = u32::MAX;
 
-/// For each cell one plus the party number of the triangles that reach into it; 0 if none do.
+/// For each grid cell one plus the party number of the triangles that reach into it, or 0 if none do.
+/// Triangles with equal party numbers are known not to cross.
 type CellParties = Vec<AtomicU32>;
 
 impl<'a> Cells<'a> {

@@ -130,7 +130,8 @@ const TRIANGLES_PER_TASK: usize = 512;
 /// The number of pairs that are compared together, on several threads if there are any.
 const PAIRS_PER_BATCH: usize = 8 * CHUNK;
 
-/// A triangle that is compared with triangles of other party numbers.
+/// A triangle that is compared with triangles of other party numbers; triangles with equal party numbers are
+/// known not to cross.
 struct Candidate {
     party: u32,
     triangle: u32,

@@ -71,8 +71,8 @@ pub const MAX_OPERANDS_AT_ONCE: usize = 8;
 /// the boundary of a group's result is smaller than the operands' boundaries, which all cross each other.
 const GROUPS_FROM: usize = 16;
 
-/// The progress of halving: how well the current and the last round of three halvings separate elements, and
-/// which kernels have refused.
+/// The progress of halving cells: how well the current and the last round of three halvings separate elements
+/// (faces or parts of faces), and which kernels have refused.
 #[derive(Clone, Copy)]
 pub struct Round {
     depth: u32,

@@ -23,20 +23,20 @@ const LANES: usize = 8;
 /// A corner of a box, as 32-bit integers.
 type Ends = [i32; 3];
 
-/// An element with its box in 32-bit coordinates.
+/// A triangle, or a part of a face, with its box in 32-bit coordinates.
 #[derive(Clone, Copy)]
 pub struct BoxedElement {
     low: [i32; 3],
     high: [i32; 3],
-    /// The index of the element's operand.
+    /// The index of the operand that the triangle or part belongs to.
     pub operand: u32,
-    /// The number of the element, chosen by the caller.
+    /// The number of the triangle or part, chosen by the caller.
     pub number: u32,
 }
 
 impl BoxedElement {
-    /// Makes an element with its operand's index, its number, and its box with `shift` low bits of each
-    /// coordinate dropped.
+    /// Makes a triangle or part of a face with its operand's index, its number, and its box with `shift` low
+    /// bits of each coordinate dropped.
     #[allow(clippy::cast_possible_truncation, reason = "the shift leaves 31 bits")]
     pub fn new(operand: usize, number: u32, [low, high]: [&Lattice; 2], shift: u32) -> Self {
         Self {
@@ -47,19 +47,19 @@ impl BoxedElement {
         }
     }
 
-    /// Returns the same element with another number.
+    /// Returns the same triangle or part of a face with another number.
     #[must_use]
     pub const fn numbered(self, number: u32) -> Self {
         Self { number, ..self }
     }
 
-    /// Returns the low and the high corner of the element's box.
+    /// Returns the low and the high corner of the box.
     pub const fn ends(&self) -> (Ends, Ends) {
         (self.low, self.high)
     }
 
-    /// Returns the element with its box clipped to the box from `low` to `high`; `None` if the boxes do not
-    /// overlap.
+    /// Returns the triangle or part with its box clipped to the box from `low` to `high`; `None` if the boxes
+    /// do not overlap.
     pub fn within(&self, low: Ends, high: Ends) -> Option<Self> {
         let part = Self {
             low: each_axis(|i| self.low[i].max(low[i])),
@@ -103,8 +103,8 @@ pub struct ElementsInBox {
 
 /// The box of points with coordinates above `low` and up to `high`.
 ///
-/// Two elements belong to the space that contains the low corner of the intersection of their boxes, so that
-/// each pair is found in one space only.
+/// A pair of overlapping boxes belongs to the half-open box that contains the low corner of their
+/// intersection, so that each pair is found in one half-open box only.
 #[derive(Clone, Copy)]
 pub struct HalfOpenBox {
     low: [i32; 3],
@@ -317,8 +317,8 @@ impl HalfOpenBox {
         [below, above]
     }
 
-    /// Calls `report` if the pair of elements belongs to this space, and returns its result; otherwise returns
-    /// `Some(())`.
+    /// Calls `report` if the pair of boxes belongs to this part of space, and returns its result; otherwise
+    /// returns `Some(())`.
     pub fn if_pair_belongs(
         &self,
         a: &BoxedElement,

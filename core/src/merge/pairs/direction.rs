@@ -6,7 +6,7 @@ use crate::geometry::doubles::vector::{cross, dot};
 /// The padding of projections, as a share of the largest coordinate; far above their rounding errors.
 pub const SLACK: f64 = 1e-14;
 
-/// The lowest and the highest coordinate of an element along a line.
+/// The lowest and the highest coordinate of a triangle along a line.
 pub type Span = [f64; 2];
 
 /// Returns a direction and two vectors perpendicular to it and to each other.
@@ -24,7 +24,7 @@ pub fn unit(v: &[f64; 3]) -> Option<[f64; 3]> {
     (size > 0.0 && size.is_finite()).then(|| v.map(|x| x / size))
 }
 
-/// Returns the largest absolute coordinate of all corners, at least 1.
+/// Returns the largest absolute coordinate of all corners of triangles, at least 1.
 pub fn largest_coordinate(elements: &[&SweptElement]) -> f64 {
     let corners = elements.iter().filter_map(|e| e.corners.as_ref());
     let coordinates = corners.flatten().flatten();

@@ -26,14 +26,16 @@ use view::share_corner;
 /// convex hull contains it.
 #[derive(Clone, Debug)]
 pub struct SweptElement {
-    /// The index of the element's operand.
+    /// The index of the operand that the triangle or part belongs to.
     pub operand: usize,
-    /// The element's lowest coordinate on each axis inside the cell, relative to the cell's low corner.
+    /// The lowest coordinate on each axis of the triangle or part inside the cell, relative to the cell's low
+    /// corner.
     pub low: Lattice,
-    /// The element's highest coordinate on each axis inside the cell, relative to the cell's low corner.
+    /// The highest coordinate on each axis of the triangle or part inside the cell, relative to the cell's
+    /// low corner.
     pub high: Lattice,
-    /// The corners of a triangle that contains the element, relative to the cell's low corner; `None` if only
-    /// the box is known.
+    /// The corners of a triangle that contains the part of the face, relative to the cell's low corner;
+    /// `None` if only the box is known.
     pub corners: Option<[[f64; 3]; 3]>,
 }
 

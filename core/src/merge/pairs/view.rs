@@ -98,13 +98,13 @@ fn is_shared(elements: &[&SweptElement], point: &[f64; 3]) -> bool {
 }
 
 impl SweptElement {
-    /// Returns true if a point lies in the element's box inside the cell.
+    /// Returns true if a point lies in the box of this triangle inside the cell.
     fn is_at(&self, point: &[f64; 3]) -> bool {
         let within = |i: usize| as_double(self.low[i])..=as_double(self.high[i]);
         (0..3).all(|i| within(i).contains(&point[i]))
     }
 
-    /// Returns true if a point is one of the element's corners.
+    /// Returns true if a point is one of the triangle's corners.
     fn has(&self, point: &[f64; 3]) -> bool {
         let corners = self.corners.iter().flatten();
         corners.map(bits).any(|corner| corner == bits(point))
