@@ -77,7 +77,8 @@ impl GroupTag {
     /// 2³⁰ sources.
     const OPPOSITE: u32 = 1 << 31;
 
-    /// The bit that is set for faces that may touch other elements anywhere, not only along edges.
+    /// The bit that is set for faces that may touch other elements (faces or parts of faces) anywhere, not
+    /// only along edges.
     const TOUCHING: u32 = 1 << 30;
 
     fn new(slot: Slot, orientation: Orientation, touching: bool) -> Self {

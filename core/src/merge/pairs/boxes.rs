@@ -93,7 +93,7 @@ struct Lanes {
     high: [[i32; LANES]; 3],
 }
 
-/// The elements whose boxes reach into a box of space, grouped by operand.
+/// The elements (triangles or parts of faces) whose boxes reach into a box of space, grouped by operand.
 pub struct ElementsInBox {
     elements: Vec<BoxedElement>,
     half_open_box: HalfOpenBox,
@@ -111,9 +111,9 @@ pub struct HalfOpenBox {
     high: [i32; 3],
 }
 
-/// Calls `report` for the pairs of elements of different operands whose boxes overlap, and `crowd` for elements
-/// that halving does not separate, with the space to which their pairs belong. Stops and returns `None` if a
-/// call does.
+/// Calls `report` for the pairs of elements (triangles or parts of faces) of different operands whose boxes
+/// overlap, and `crowd` for elements that halving does not separate, with the space to which their pairs
+/// belong. Stops and returns `None` if a call does.
 pub fn pairs(
     part: ElementsInBox,
     mut report: impl FnMut(u32, u32) -> Option<()>,
@@ -131,8 +131,8 @@ pub fn pairs(
     })
 }
 
-/// Calls `report` for all pairs of elements of different operands whose boxes overlap, the earlier operand
-/// first. Compares all with all; stops and returns `None` if `report` does.
+/// Calls `report` for all pairs of elements (triangles or parts of faces) of different operands whose boxes
+/// overlap, the earlier operand first. Compares all with all; stops and returns `None` if `report` does.
 pub fn compare_all(
     elements: &[BoxedElement],
     half_open_box: &HalfOpenBox,
@@ -162,9 +162,9 @@ pub fn compare_all(
     Some(())
 }
 
-/// Calls `report` for all pairs of elements of different operands whose boxes overlap, the lower number first,
-/// where most operands have a single element. Sorts the boxes along the axis on which they overlap least, and
-/// compares only those that overlap there.
+/// Calls `report` for all pairs of elements (triangles or parts of faces) of different operands whose boxes
+/// overlap, the lower number first, where most operands have a single element. Sorts the boxes along the axis
+/// on which they overlap least, and compares only those that overlap there.
 fn compare_in_order(
     elements: &[BoxedElement],
     half_open_box: &HalfOpenBox,
@@ -194,7 +194,7 @@ fn compare_in_order(
     Some(())
 }
 
-/// Returns the elements sorted by the lower ends of their boxes on an axis.
+/// Returns the elements (triangles or parts of faces) sorted by the lower ends of their boxes on an axis.
 fn sorted_along(axis: usize, elements: &[BoxedElement]) -> Vec<BoxedElement> {
     let begins = (0usize..).zip(elements).map(|(at, e)| (e.low[axis], at));
     let mut order: Vec<(i32, usize)> = begins.collect();
@@ -202,8 +202,8 @@ fn sorted_along(axis: usize, elements: &[BoxedElement]) -> Vec<BoxedElement> {
     order.into_iter().map(|(_, at)| elements[at]).collect()
 }
 
-/// Calls `report` for each element of the first group and each of the second whose boxes overlap; compares all
-/// with all.
+/// Calls `report` for each element (a triangle or part of a face) of the first group and each of the second
+/// whose boxes overlap; compares all with all.
 pub fn compare_groups(
     first: &[BoxedElement],
     second: &[BoxedElement],
@@ -225,7 +225,7 @@ impl Lanes {
         high: [[i32::MIN; LANES]; 3],
     };
 
-    /// Packs the boxes of elements in order; empty boxes fill the last pack.
+    /// Packs the boxes of elements (triangles or parts of faces) in order; empty boxes fill the last pack.
     fn of(elements: &[BoxedElement]) -> Vec<Self> {
         elements.chunks(LANES).map(Self::packed).collect()
     }
@@ -279,7 +279,7 @@ impl Lanes {
 }
 
 impl HalfOpenBox {
-    /// Returns the smallest space that contains the boxes of all elements.
+    /// Returns the smallest space that contains the boxes of all elements (triangles or parts of faces).
     pub fn around(elements: &[BoxedElement]) -> Self {
         let low = |i: usize| elements.iter().map(|e| e.low[i]).min();
         let high = |i: usize| elements.iter().map(|e| e.high[i]).max();
@@ -289,7 +289,8 @@ impl HalfOpenBox {
         }
     }
 
-    /// Returns the axis along which the boxes of elements are shortest, relative to the space.
+    /// Returns the axis along which the boxes of elements (triangles or parts of faces) are shortest,
+    /// relative to the space.
     fn sparsest(&self, elements: &[BoxedElement]) -> usize {
         let share = |i: usize| {
             let length = |e: &BoxedElement| f64::from(e.high[i]) - f64::from(e.low[i]);
@@ -332,7 +333,7 @@ impl HalfOpenBox {
         }
     }
 
-    /// Returns true if the low corner of the intersection of two elements' boxes lies in this space.
+    /// Returns true if the low corner of the intersection of two boxes lies in this part of space.
     pub fn pair_belongs(&self, a: &BoxedElement, b: &BoxedElement) -> bool {
         (0..3).all(|i| {
             let corner = a.low[i].max(b.low[i]);
@@ -341,7 +342,7 @@ impl HalfOpenBox {
     }
 }
 
-/// Returns the elements sorted by number, without repetition.
+/// Returns the elements (triangles or parts of faces) sorted by number, without repetition.
 pub fn without_repetition(mut elements: Vec<BoxedElement>) -> Vec<BoxedElement> {
     elements.sort_unstable_by_key(|e| e.number);
     elements.dedup_by_key(|e| e.number);
@@ -349,8 +350,8 @@ pub fn without_repetition(mut elements: Vec<BoxedElement>) -> Vec<BoxedElement> 
 }
 
 impl ElementsInBox {
-    /// Makes a part of space around all elements, which must be grouped by operand; `shift` is the number of
-    /// low bits dropped from their boxes.
+    /// Makes a part of space around all elements (triangles or parts of faces), which must be grouped by
+    /// operand; `shift` is the number of low bits dropped from their boxes.
     #[must_use]
     pub fn of(elements: Vec<BoxedElement>, shift: u32) -> Self {
         let half_open_box = HalfOpenBox::around(&elements);
@@ -367,9 +368,9 @@ impl ElementsInBox {
         self.shift
     }
 
-    /// Halves space into parts with at most `max_elements` elements each, and adds one part with all elements
-    /// that halving does not separate. Each pair of overlapping boxes belongs to one of the first parts, or
-    /// is in the last one.
+    /// Halves space into parts with at most `max_elements` elements (triangles or parts of faces) each, and
+    /// adds one part with all elements that halving does not separate. Each pair of overlapping boxes belongs
+    /// to one of the first parts, or is in the last one.
     #[must_use]
     pub fn divided(self, max_elements: usize) -> Vec<Self> {
         let shift = self.shift;
@@ -388,8 +389,8 @@ impl ElementsInBox {
         parts
     }
 
-    /// Halves space, and calls `visit` for each part that has at most `max_elements` elements or that halving
-    /// does not separate; stops and returns `None` if `visit` does.
+    /// Halves space, and calls `visit` for each part that has at most `max_elements` elements (triangles or
+    /// parts of faces) or that halving does not separate; stops and returns `None` if `visit` does.
     fn halved(self, max_elements: usize, mut visit: impl FnMut(Self) -> Option<()>) -> Option<()> {
         let mut open = vec![self];
         while let Some(part) = open.pop() {
@@ -402,8 +403,8 @@ impl ElementsInBox {
         Some(())
     }
 
-    /// Halves the space on an axis, and appends the halves with elements of different operands to `open`.
-    /// Returns false, without a change, if no axis separates the elements.
+    /// Halves the space on an axis, and appends the halves with elements (triangles or parts of faces) of
+    /// different operands to `open`. Returns false, without a change, if no axis separates the elements.
     ///
     /// It takes the longest axis that separates the elements: this is as good as the best one, and saves
     /// counting on all axes.
@@ -428,7 +429,8 @@ impl ElementsInBox {
         self.half_open_box.low[axis].midpoint(self.half_open_box.high[axis])
     }
 
-    /// Returns the numbers of elements that reach into the lower and into the upper half on an axis.
+    /// Returns the numbers of elements (triangles or parts of faces) that reach into the lower and into the
+    /// upper half on an axis.
     fn counts(&self, axis: usize) -> [usize; 2] {
         let at = self.middle(axis);
         let count = |[below, above]: [u32; 2], e: &BoxedElement| {

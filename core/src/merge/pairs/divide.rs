@@ -6,23 +6,24 @@ use super::SweptElement;
 use crate::arith::convert::as_double;
 use crate::geometry::doubles::vector::{cross, dot};
 
-/// The elements of many operands, divided into two groups of operands.
+/// The elements (triangles or parts of faces) of many operands, divided into two groups of operands.
 pub struct Groups {
-    /// The elements of both groups, sorted by operand.
+    /// The elements (triangles or parts of faces) of both groups, sorted by operand.
     pub elements: Vec<BoxedElement>,
     /// The index at which the second group begins.
     pub middle: usize,
 }
 
-/// The elements of one operand, and the sine of the angle between their main direction and the main direction
-/// of the operand with the most elements.
+/// The elements (triangles or parts of faces) of one operand, and the sine of the angle between their main
+/// direction and the main direction of the operand with the most elements.
 struct OperandElements<'a> {
     elements: &'a [BoxedElement],
     angle_sine: f64,
 }
 
-/// Divides elements, sorted by operand, into two groups of operands where the operands' main directions
-/// differ most, preferring groups of similar size. `None` if there is only one operand.
+/// Divides elements (triangles or parts of faces), sorted by operand, into two groups of operands where the
+/// operands' main directions differ most, preferring groups of similar size. `None` if there is only one
+/// operand.
 ///
 /// So bundles of parallel needles are separated from each other first: a sweep along the line across both
 /// directions finds few pairs between two bundles, and the projection along a bundle finds few within it.
@@ -65,8 +66,8 @@ fn runs(
     runs.into_iter().map(with_bend).collect()
 }
 
-/// Returns how many operands come before the best division, and how many elements these have; `None` if there
-/// is only one operand.
+/// Returns how many operands come before the best division, and how many elements (triangles or parts of
+/// faces) these have; `None` if there is only one operand.
 fn division(runs: &[OperandElements], size: usize) -> Option<(usize, usize)> {
     let ends = runs.iter().scan(0, |end, run| {
         *end += run.elements.len();

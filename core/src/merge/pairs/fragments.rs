@@ -19,8 +19,8 @@ const MAX_FRAGMENTS_COMPARED: usize = 64;
 /// The number of equal intervals into which the candidate coordinates divide each axis of a cell.
 const INTERVALS_PER_AXIS: usize = 16;
 
-/// A division of a cell separates elements if both parts together have at most this share of the cell's
-/// pairs.
+/// A division of a cell separates elements (triangles or parts of faces) if both parts together have at most
+/// this share of the cell's pairs.
 const MAX_SHARE_OF_PAIRS: f64 = 7.0 / 8.0;
 
 /// The number of consecutive divisions that may separate nothing; a part with at most half of the pairs
@@ -32,16 +32,16 @@ const MAX_VAIN_DIVISIONS: u32 = 2;
 
 /// The triangles to be separated, and the cells still to be divided.
 pub struct Crowd {
-    /// For each element its corners, if known, in the scale of the boxes.
+    /// For each element (a triangle or part of a face) its corners, if known, in the scale of the boxes.
     corners: Vec<Option<Triangle>>,
     /// A bound on the error of clipping.
     slack: f64,
     open: Vec<Fragments>,
 }
 
-/// The fragments of elements in a cell, grouped by operand.
+/// The fragments of elements (triangles or parts of faces) in a cell, grouped by operand.
 pub struct Fragments {
-    /// The fragments' boxes, numbered by the index of the element.
+    /// The fragments' boxes, numbered by the index of the element (a triangle or part of a face).
     pub elements: Vec<BoxedElement>,
     pub half_open_box: HalfOpenBox,
     /// The number of consecutive further divisions that may separate nothing.
@@ -64,8 +64,8 @@ impl Division {
 }
 
 impl Crowd {
-    /// Starts the separation of elements; `swept` has their boxes before, and `boxed` after dropping `shift`
-    /// low bits.
+    /// Starts the separation of elements (triangles or parts of faces); `swept` has their boxes before, and
+    /// `boxed` after dropping `shift` low bits.
     pub fn of(boxed: &[BoxedElement], swept: &[SweptElement], shift: u32) -> Self {
         let scale = 1.0 / as_double(1u64 << shift);
         let scaled = |corners: Triangle| corners.map(|p| p.map(|x| x * scale));
@@ -85,7 +85,8 @@ impl Crowd {
         }
     }
 
-    /// Clips the fragment `of` an element to the smaller cell `half_open_box`; `None` if nothing is left.
+    /// Clips the fragment `of` an element (a triangle or part of a face) to the smaller cell `half_open_box`;
+    /// `None` if nothing is left.
     fn fragment(&self, of: &BoxedElement, half_open_box: &HalfOpenBox) -> Option<BoxedElement> {
         let Some(corners) = &self.corners[of.number as usize] else {
             return Some(*of);
@@ -137,8 +138,9 @@ impl Crowd {
 impl Iterator for Crowd {
     type Item = Fragments;
 
-    /// Returns the fragments in the next cell that is not worth dividing. Any two elements of different
-    /// operands that meet have fragments with overlapping boxes in one of these cells.
+    /// Returns the fragments in the next cell that is not worth dividing. Any two elements (triangles or
+    /// parts of faces) of different operands that meet have fragments with overlapping boxes in one of these
+    /// cells.
     fn next(&mut self) -> Option<Fragments> {
         while let Some(whole) = self.open.pop() {
             spend(whole.elements.len());
@@ -215,17 +217,21 @@ impl Fragments {
     }
 }
 
-/// Counts of the elements up to each candidate coordinate, from which the numbers of pairs follow.
+/// Counts of the elements (triangles or parts of faces) up to each candidate coordinate, from which the
+/// numbers of pairs follow.
 #[derive(Default)]
 struct Tally {
-    /// For each candidate, the increase of the number of elements over the previous candidate.
+    /// For each candidate, the increase of the number of elements (triangles or parts of faces) over the
+    /// previous candidate.
     more: [f64; INTERVALS_PER_AXIS + 1],
-    /// For each candidate, the increase of the sum of the squares of the operands' numbers of elements.
+    /// For each candidate, the increase of the sum of the squares of the operands' numbers of elements
+    /// (triangles or parts of faces).
     more_squares: [f64; INTERVALS_PER_AXIS + 1],
 }
 
 impl Tally {
-    /// Adds the elements of one operand, given the index of the candidate at which each begins.
+    /// Adds the elements (triangles or parts of faces) of one operand, given the index of the candidate at
+    /// which each begins.
     fn add(&mut self, candidates: impl Iterator<Item = usize>) {
         let mut own = [0.0; INTERVALS_PER_AXIS + 1];
         candidates.for_each(|place| own[place] += 1.0);
@@ -237,7 +243,8 @@ impl Tally {
         }
     }
 
-    /// Returns for each candidate the number of pairs of elements of different operands up to it.
+    /// Returns for each candidate the number of pairs of elements (triangles or parts of faces) of different
+    /// operands up to it.
     fn pairs(&self) -> [f64; INTERVALS_PER_AXIS + 1] {
         let (mut count, mut squares) = (0.0, 0.0);
         std::array::from_fn(|k| {

@@ -7,14 +7,15 @@ use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::vector::{cross, dot};
 
-/// The number of elements above which lines other than the axes are tried.
+/// The number of elements (triangles or parts of faces) above which lines other than the axes are tried.
 pub const SLANTED_LINES_FROM: usize = 512;
 
 /// The largest cosine of the angle between two lines whose plane is used; with a larger cosine they are
 /// nearly parallel, and their plane separates little more than one line.
 const MAX_COSINE_OF_LINES: f64 = 0.8;
 
-/// A line, the extents of elements along it, and how many elements overlap at a point of it on average.
+/// A line, the extents of elements (triangles or parts of faces) along it, and how many elements overlap at a
+/// point of it on average.
 pub struct MeasuredLine {
     pub coordinate: LineCoordinate,
     pub spans: Vec<Span>,
@@ -31,8 +32,9 @@ pub enum LineCoordinate {
 }
 
 impl LineCoordinate {
-    /// Returns true if the plane of two line coordinates may separate more elements than one coordinate: they are far from
-    /// parallel, and straight lines of space are straight in the plane.
+    /// Returns true if the plane of two line coordinates may separate more elements (triangles or parts of
+    /// faces) than one coordinate: they are far from parallel, and straight lines of space are straight in
+    /// the plane.
     pub fn is_across(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Along(a), Self::Along(b)) => dot(a, b).abs() < MAX_COSINE_OF_LINES,
@@ -69,8 +71,9 @@ impl LineCoordinate {
 }
 
 impl MeasuredLine {
-    /// Returns the coordinate axes and, for many elements, lines along and across the main directions of long
-    /// elements, and slopes seen from the corner that most elements of an operand share.
+    /// Returns the coordinate axes and, for many elements (triangles or parts of faces), lines along and
+    /// across the main directions of long elements, and slopes seen from the corner that most elements of an
+    /// operand share.
     pub fn all(elements: &[&SweptElement]) -> Vec<Self> {
         let mut lines: Vec<Self> = (0..3).map(|axis| Self::axis(elements, axis)).collect();
         if elements.len() > SLANTED_LINES_FROM {
@@ -95,13 +98,15 @@ impl MeasuredLine {
         )
     }
 
-    /// Measures elements along a direction; `None` if the corners of an element are not known.
+    /// Measures elements (triangles or parts of faces) along a direction; `None` if the corners of an element
+    /// are not known.
     fn slanted(elements: &[&SweptElement], direction: &[f64; 3]) -> Option<Self> {
         let spans = projections(elements, direction)?;
         Some(Self::new(LineCoordinate::Along(*direction), spans))
     }
 
-    /// Measures the slopes of elements in a view; `None` if no element is ahead of the eye point.
+    /// Measures the slopes of elements (triangles or parts of faces) in a view; `None` if no element is ahead
+    /// of the eye point.
     fn seen(elements: &[&SweptElement], view: &View) -> Option<Self> {
         let spans = view.spans(elements)?;
         Some(Self::new(LineCoordinate::Slope(*view), spans))
@@ -117,8 +122,8 @@ impl MeasuredLine {
     }
 }
 
-/// Returns the average number of elements that overlap at a point of a line: the sum of their lengths divided
-/// by the length of the whole range.
+/// Returns the average number of elements (triangles or parts of faces) that overlap at a point of a line:
+/// the sum of their lengths divided by the length of the whole range.
 fn crowding(spans: &[Span]) -> f64 {
     let low = spans.iter().fold(f64::INFINITY, |m, s| m.min(s[0]));
     let high = spans.iter().fold(f64::NEG_INFINITY, |m, s| m.max(s[1]));
@@ -126,8 +131,9 @@ fn crowding(spans: &[Span]) -> f64 {
     sum / (high - low).max(f64::MIN_POSITIVE)
 }
 
-/// Returns unit vectors: the main direction of the first operand's elements and two directions perpendicular
-/// to it, the same three for all other elements, and the direction perpendicular to both main directions.
+/// Returns unit vectors: the main direction of the first operand's elements (triangles or parts of faces) and
+/// two directions perpendicular to it, the same three for all other elements, and the direction perpendicular
+/// to both main directions.
 fn directions(elements: &[&SweptElement]) -> Vec<[f64; 3]> {
     let own = elements.first().map_or(0, |e| e.operand);
     let (first, others): (Vec<&SweptElement>, Vec<&SweptElement>) =
@@ -140,7 +146,8 @@ fn directions(elements: &[&SweptElement]) -> Vec<[f64; 3]> {
     found.iter().filter_map(unit).collect()
 }
 
-/// Returns the mean direction of the elements' longest edges, as a unit vector; `None` if there is none.
+/// Returns the mean direction of the longest edges of triangles or parts of faces, as a unit vector; `None`
+/// if there is none.
 pub fn direction_along(elements: &[&SweptElement]) -> Option<[f64; 3]> {
     let mut long = [0.0f64; 3];
     let corners = elements.iter().filter_map(|e| e.corners.as_ref());
@@ -160,8 +167,8 @@ pub fn longest_edge(corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
     (0..3).map(edge).max_by(longer)
 }
 
-/// Returns the extents of elements along a direction, padded for rounding; `None` if the corners of an
-/// element are not known.
+/// Returns the extents of elements (triangles or parts of faces) along a direction, padded for rounding;
+/// `None` if the corners of an element are not known.
 fn projections(elements: &[&SweptElement], direction: &[f64; 3]) -> Option<Vec<Span>> {
     elements
         .iter()

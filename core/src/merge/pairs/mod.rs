@@ -39,9 +39,9 @@ pub struct SweptElement {
     pub corners: Option<[[f64; 3]; 3]>,
 }
 
-/// Calls `report` for all pairs of elements of different operands that may meet, the lower number first.
-/// Returns `None` if `report` does, if too many elements overlap along every line, or if elements of different
-/// operands in a crowd share a corner.
+/// Calls `report` for all pairs of elements (triangles or parts of faces) of different operands that may
+/// meet, the lower number first. Returns `None` if `report` does, if too many elements overlap along every
+/// line, or if elements of different operands in a crowd share a corner.
 ///
 /// Elements must be grouped by operand; `swept` returns the element with a number.
 pub fn pairs(
@@ -71,8 +71,8 @@ pub fn pairs(
     )
 }
 
-/// Calls `report` for all pairs of elements of different operands that may meet, where many operands have few
-/// elements each. Returns `None` only if `report` does.
+/// Calls `report` for all pairs of elements (triangles or parts of faces) of different operands that may
+/// meet, where many operands have few elements each. Returns `None` only if `report` does.
 ///
 /// `report` may be called several times for a pair.
 ///
@@ -126,8 +126,8 @@ pub fn pairs_of_many(
     cells.try_for_each(|cell| compare(cell, |e| swept_as(e, &all, shift), report))
 }
 
-/// Returns the fragment of an element, clipped to a cell, as an element for a sweep; `shift` bits were
-/// dropped from its box.
+/// Returns the fragment of an element (a triangle or part of a face), clipped to a cell, as an element for a
+/// sweep; `shift` bits were dropped from its box.
 fn swept_as(fragment: &BoxedElement, all: &[SweptElement], shift: u32) -> SweptElement {
     let (low, high) = fragment.ends();
     SweptElement {
@@ -159,8 +159,8 @@ fn compare(
     Some(())
 }
 
-/// Calls `report` for the pairs of an element of the first group and one of the second that may meet; stops and
-/// returns `None` if `report` does.
+/// Calls `report` for the pairs of an element (a triangle or part of a face) of the first group and one of
+/// the second that may meet; stops and returns `None` if `report` does.
 fn sweep_groups(
     (first, second): (&[BoxedElement], &[BoxedElement]),
     swept: &impl Fn(&BoxedElement) -> SweptElement,
@@ -202,7 +202,7 @@ mod tests {
     use crate::geometry::apart::pierces;
     use crate::geometry::axes::each_axis;
 
-    /// The number of elements above which slanted lines are swept, too.
+    /// The number of elements (triangles or parts of faces) above which slanted lines are swept, too.
     const MANY: usize = 512;
 
     const REACH: i64 = 2000;

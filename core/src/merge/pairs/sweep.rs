@@ -21,9 +21,9 @@ const MAX_PAIRS_SWEPT: f64 = 3e8;
 /// The number of pairs of extents compared per unit of work, after which the program checks whether to stop.
 const PAIRS_PER_UNIT: usize = 16;
 
-/// Calls `report` for all pairs of elements of different operands whose extents overlap along every line, the
-/// lower index first. Returns `None`, before any call, if more than `MAX_PAIRS_SWEPT` pairs would be
-/// compared.
+/// Calls `report` for all pairs of elements (triangles or parts of faces) of different operands whose extents
+/// overlap along every line, the lower index first. Returns `None`, before any call, if more than
+/// `MAX_PAIRS_SWEPT` pairs would be compared.
 pub fn pairs(elements: &[SweptElement], mut report: impl FnMut(usize, usize)) -> Option<()> {
     let groups = groups_by_length(elements);
     let sweeps = each(WorkSize::Task, groups.iter().collect(), |numbers| {
@@ -37,9 +37,9 @@ pub fn pairs(elements: &[SweptElement], mut report: impl FnMut(usize, usize)) ->
     Some(())
 }
 
-/// Returns groups of element indices to be swept separately: one group or, if two operands have many
-/// elements, up to four groups, each with the long or the short elements of each operand, because these suit
-/// different lines.
+/// Returns groups of element indices to be swept separately: one group or, if two operands have many elements
+/// (triangles or parts of faces), up to four groups, each with the long or the short elements of each
+/// operand, because these suit different lines.
 fn groups_by_length(elements: &[SweptElement]) -> Vec<Vec<usize>> {
     let own = elements[0].operand;
     let (ours, others): (Vec<usize>, Vec<usize>) =
@@ -55,8 +55,8 @@ fn groups_by_length(elements: &[SweptElement]) -> Vec<Vec<usize>> {
         .collect()
 }
 
-/// Divides elements into those at least half as long as the longest, and the shorter ones; empty groups are
-/// left out.
+/// Divides elements (triangles or parts of faces) into those at least half as long as the longest, and the
+/// shorter ones; empty groups are left out.
 fn by_length(elements: &[SweptElement], numbers: Vec<usize>) -> Vec<Vec<usize>> {
     let length = |i: &usize| {
         let edge = elements[*i].corners.as_ref().and_then(longest_edge);
@@ -72,22 +72,24 @@ fn by_length(elements: &[SweptElement], numbers: Vec<usize>) -> Vec<Vec<usize>> 
         .collect()
 }
 
-/// One sweep: elements by operand, sorted along the line on which they overlap least.
+/// One sweep over triangles or parts of faces, by operand, sorted along the line on which they overlap least.
 struct Sweep {
     operands: Vec<SortedElements>,
     size: usize,
     crowding: f64,
 }
 
-/// The elements of one operand, sorted along the line on which the elements of all operands overlap least.
+/// The elements (triangles or parts of faces) of one operand, sorted along the line on which the elements of
+/// all operands overlap least.
 struct SortedElements {
-    /// The extents of the elements along the line on which they overlap least.
+    /// The extents of the elements (triangles or parts of faces) along the line on which they overlap least.
     first: Vec<Span>,
-    /// The extents of the elements along the next best line.
+    /// The extents of the elements (triangles or parts of faces) along the next best line.
     second: Vec<Span>,
-    /// The extents of the elements along each further line.
+    /// The extents of the elements (triangles or parts of faces) along each further line.
     others: Vec<Vec<Span>>,
-    /// The three half-planes that bound each element in the plane of the two best lines.
+    /// The three half-planes that bound each element (a triangle or part of a face) in the plane of the two
+    /// best lines.
     rims: Vec<[HalfPlane; 3]>,
     numbers: Vec<usize>,
 }
@@ -133,7 +135,8 @@ impl Sweep {
         self.crowding * as_double(self.size)
     }
 
-    /// Returns the pairs of elements of different operands that may meet, the lower index first.
+    /// Returns the pairs of elements (triangles or parts of faces) of different operands that may meet, the
+    /// lower index first.
     fn run(&self) -> Vec<(usize, usize)> {
         let mut found = Vec::new();
         let mut report = |i: usize, j: usize| found.push((i.min(j), i.max(j)));
@@ -148,8 +151,8 @@ impl Sweep {
 }
 
 impl SortedElements {
-    /// Calls `report` for each element and those overlapping elements of `other` that begin after it along the
-    /// best line, or also at the same coordinate if `level` is true.
+    /// Calls `report` for each element (a triangle or part of a face) and those overlapping elements of
+    /// `other` that begin after it along the best line, or also at the same coordinate if `level` is true.
     fn report_pairs_after(&self, other: &Self, level: bool, report: &mut impl FnMut(usize, usize)) {
         let mut start = 0;
         for (at, [low, high]) in self.first.iter().enumerate() {

@@ -10,7 +10,8 @@ use super::SweptElement;
 use crate::arith::convert::as_double;
 use crate::geometry::doubles::vector::{difference, dot};
 
-/// An operand's elements count as a fan if at least one in this many has a corner at the apex.
+/// An operand's elements (triangles or parts of faces) count as a fan if at least one in this many has a
+/// corner at the apex.
 const FAN_IF_ONE_IN: usize = 4;
 
 /// A point counts as ahead only if its depth along the viewing direction is more than this share of the
@@ -30,12 +31,12 @@ pub struct View {
     eye: [f64; 3],
     ahead: [f64; 3],
     across: [f64; 3],
-    /// The largest absolute coordinate of all elements.
+    /// The largest absolute coordinate of all elements (triangles or parts of faces).
     size: f64,
 }
 
-/// Returns views from the apex of the first operand's elements, and from the apex of all other elements, as
-/// far as they are fans.
+/// Returns views from the apex of the first operand's elements (triangles or parts of faces), and from the
+/// apex of all other elements, as far as they are fans.
 ///
 /// An apex that elements of two operands share inside the cell gives no view, because no slope separates
 /// these elements.
@@ -62,7 +63,8 @@ pub fn views(elements: &[&SweptElement]) -> Vec<View> {
     alone.filter_map(from).flatten().collect()
 }
 
-/// Returns the corner that the most elements share, if they are a fan; otherwise `None`.
+/// Returns the corner that the most elements (triangles or parts of faces) share, if they are a fan;
+/// otherwise `None`.
 fn apex(elements: &[&SweptElement]) -> Option<[f64; 3]> {
     let mut counts: FxHashMap<[u64; 3], usize> = FxHashMap::default();
     for corner in elements.iter().filter_map(|e| e.corners.as_ref()).flatten() {
@@ -80,7 +82,8 @@ fn bits(point: &[f64; 3]) -> [u64; 3] {
     point.map(f64::to_bits)
 }
 
-/// Returns true if elements of different operands share a corner inside the cell.
+/// Returns true if elements (triangles or parts of faces) of different operands share a corner inside the
+/// cell.
 pub fn share_corner(elements: &[SweptElement]) -> bool {
     let mut owners: FxHashMap<[u64; 3], usize> = FxHashMap::default();
     elements.iter().any(|e| {
@@ -89,7 +92,8 @@ pub fn share_corner(elements: &[SweptElement]) -> bool {
     })
 }
 
-/// Returns true if elements of different operands share the corner `point` inside the cell.
+/// Returns true if elements (triangles or parts of faces) of different operands share the corner `point`
+/// inside the cell.
 fn is_shared(elements: &[&SweptElement], point: &[f64; 3]) -> bool {
     let touches = |e: &&&SweptElement| e.is_at(point) && e.has(point);
     let mut operands = elements.iter().filter(touches).map(|e| e.operand);
@@ -150,8 +154,9 @@ impl View {
         (depth > MIN_DEPTH_AHEAD * self.size && slope.abs() < MAX_SLOPE_AHEAD).then_some(slope)
     }
 
-    /// Returns the least and the greatest slope of each element, padded by the error of slopes; an element
-    /// that is not ahead gets the extremes of all slopes. `None` if no element is ahead.
+    /// Returns the least and the greatest slope of each element (a triangle or part of a face), padded by the
+    /// error of slopes; an element that is not ahead gets the extremes of all slopes. `None` if no element is
+    /// ahead.
     ///
     /// A slope is a quotient of linear functions. So on a triangle that is ahead, its extremes are at
     /// corners; on a triangle with a corner at the eye, it is constant along each line from that corner.

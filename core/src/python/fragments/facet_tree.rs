@@ -372,7 +372,9 @@ fn grown_box<S: Affine>(facets: &[Facet], margin: i64) -> Result<Polytope<S>> {
     let low = [0, 1, 2].map(|i| reach(corners().map(|c| c[i]).min().unwrap_or(0) - margin));
     let high = [0, 1, 2].map(|i| reach(corners().map(|c| c[i]).max().unwrap_or(0) + margin));
     Polytope::cuboid(&low, &high).ok_or_else(|| {
-        let text = "the facets extend to the border of the lattice, so no box fits around them";
+        let text =
+            "the facets extend to the border of the lattice, so no box fits around the facets; \
+                    choose a coarser pitch";
         Error::new(ErrorKind::TooLarge, text)
     })
 }

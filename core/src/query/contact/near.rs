@@ -79,11 +79,11 @@ impl LatticeBox {
     }
 }
 
-/// A part of one of two operands, with a box around it.
+/// A triangle or another part of one of two operands, with a box around it.
 pub struct Element {
-    /// The number of the operand; elements of one operand follow each other.
+    /// The index of the operand; the parts of one operand follow each other in the list.
     pub operand: usize,
-    /// A box that contains the element.
+    /// A box that contains the part of the operand.
     pub space: LatticeBox,
 }
 
