@@ -324,8 +324,8 @@ impl Snapshot {
 
     /// Decodes a solid from bytes, which are checked in full.
     ///
-    /// One claim is trusted ([`Solid::marked_as_claimed`]): that the faces are the reduced boundary. Checking it
-    /// would cost ten times as much as all other checks together.
+    /// One claim is trusted ([`Solid::marked_as_claimed`]): that the faces are the reduced boundary. Checking
+    /// it would cost ten times as much as all other checks together.
     ///
     /// # Errors
     /// `BadSnapshot`.

@@ -221,7 +221,8 @@ fn along_axis(place: f64, bits: u32) -> Cell {
     (place as Cell).min((1 << bits) - 1)
 }
 
-/// Marks a cell with a party number, or as `SHARED` if it has another. The order of calls does not matter.
+/// Marks a grid cell with the party number of a triangle, or as `SHARED` if the cell has another. The order
+/// of calls does not matter.
 #[inline]
 fn join(mark: &AtomicU32, party: u32) {
     let mut old = mark.load(Ordering::Relaxed);

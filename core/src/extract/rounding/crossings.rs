@@ -149,7 +149,8 @@ impl Candidate {
         }
     }
 
-    /// Raises the party number of the candidate by `first`.
+    /// Raises the party number of the candidate triangle by `first`; triangles with equal party numbers are
+    /// not compared.
     fn after(self, first: u32) -> Self {
         let party = first + self.party;
         Self { party, ..self }
@@ -251,14 +252,15 @@ impl Meetings {
 
 /// A search for pairs of candidate triangles that may meet.
 struct Search<'a> {
-    /// The triangles, sorted by party number.
+    /// The triangles, sorted by party number; triangles with equal party numbers are known not to cross.
     candidates: &'a [Candidate],
     image: Image,
     slabs: Vec<Slabs>,
 }
 
 impl<'a> Search<'a> {
-    /// Compares the pairs of candidates with different party numbers that may meet.
+    /// Compares the pairs of candidate triangles with different party numbers that may meet; triangles with
+    /// equal party numbers are known not to cross.
     fn among<K: PairFindings>(candidates: &'a [Candidate]) -> K {
         let corners = |k: u32| *candidates[k as usize].facing.triangle();
         let Some(image) = Image::of(candidates.len(), corners) else {

@@ -265,7 +265,7 @@ pub fn alls<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Vec<Found<
     rays.iter().zip(met).map(exact).collect()
 }
 
-/// Returns the facets on each ray that doubles do not certainly exclude.
+/// Returns for each ray the facets that doubles do not certainly exclude from meeting it.
 pub fn likely<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Vec<u32>> {
     let queries = queries(scene, rays);
     let mut met = vec![Vec::new(); rays.len()];

@@ -127,7 +127,8 @@ fn restore<S: Cast<D>, const D: usize>(
     Some(())
 }
 
-/// Sorts entries into the order of the stored facets, and sets their hits; `None` if the facets differ.
+/// Sorts the entries of a leaf's list into the order of the stored facet numbers, and sets their hits; `None`
+/// if they are not the same facets.
 fn rearranged<F>(mut entries: Vec<Entry<F>>, hits: &[(u32, u64)]) -> Option<Vec<Entry<F>>> {
     let mut order: Vec<usize> = (0..hits.len()).collect();
     order.sort_unstable_by_key(|place| hits[*place].0);
