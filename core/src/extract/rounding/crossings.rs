@@ -12,7 +12,7 @@ use crate::geometry::doubles::meeting::{are_clear, folds_over, has_no_area, meet
 use crate::geometry::doubles::slabs::Slabs;
 use crate::geometry::doubles::Facing;
 use crate::interrupt::{poll, spend};
-use crate::merge::pairs::{pairs_of_many, BoxedElement, ElementsInBox, SweptElement};
+use crate::merge::pairs::{pairs, BoxedElement, ElementsInBox, SweptElement};
 use crate::mesh::faces::Faces;
 use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::{both, each, each_chunk, WorkSize, CHUNK};
@@ -298,7 +298,7 @@ impl<'a> Search<'a> {
     fn findings_in<K: PairFindings>(&self, part: ElementsInBox) -> K {
         let mut found = K::default();
         let mut waiting = Vec::new();
-        pairs_of_many(
+        pairs(
             part,
             |k| self.swept(k),
             |i, j| {

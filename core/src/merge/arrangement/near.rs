@@ -10,7 +10,7 @@ use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::Point;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
-use crate::merge::pairs::{pairs_of_many, shift_of, BoxedElement, ElementsInBox, SweptElement};
+use crate::merge::pairs::{pairs, shift_of, BoxedElement, ElementsInBox, SweptElement};
 use crate::mesh::faces::Faces;
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::Source;
@@ -100,7 +100,7 @@ impl<'a> PreparedMesh<'a> {
         let face = |number: u32| sorted[number as usize];
         let swept = |number: u32| self.swept(face(number));
         let add = |a: u32, b: u32| search.add([face(a), face(b)]);
-        let all = pairs_of_many(ElementsInBox::of(boxes, self.shift), swept, add);
+        let all = pairs(ElementsInBox::of(boxes, self.shift), swept, add);
         if all.and_then(|()| search.test_waiting()).is_none() {
             return if search.overlap {
                 Pairs::Overlap

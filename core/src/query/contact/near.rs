@@ -4,7 +4,7 @@ use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
-use crate::merge::pairs::{pairs_of_many, shift_of, BoxedElement, ElementsInBox, SweptElement};
+use crate::merge::pairs::{pairs, shift_of, BoxedElement, ElementsInBox, SweptElement};
 
 /// A box with lattice corners, which belong to it.
 #[derive(Clone, Copy)]
@@ -114,7 +114,7 @@ pub fn near_pairs(
         }
     };
     let boxes = elements.iter().enumerate().map(boxed).collect();
-    pairs_of_many(ElementsInBox::of(boxes, shift), swept, meet)
+    pairs(ElementsInBox::of(boxes, shift), swept, meet)
 }
 
 /// The corners relative to a point, in lattice steps; `None` if one is not a lattice point.

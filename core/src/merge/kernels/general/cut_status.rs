@@ -15,7 +15,7 @@ use crate::geometry::apart::{are_apart, NearTriangle};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
-use crate::merge::pairs::{pairs, shift_of, BoxedElement};
+use crate::merge::pairs::{pairs, shift_of, BoxedElement, ElementsInBox};
 
 /// The numbers of the elements that may meet an element: rarely more than six.
 type Neighbours = SmallVec<[u32; 6]>;
@@ -113,7 +113,7 @@ impl Scene<'_> {
     }
 
     /// Returns for each element the elements of other operands that may meet it inside the cell; `None` if
-    /// there are too many pairs for a sweep, or if a sampled pair touches in a degenerate position.
+    /// a sampled pair touches in a degenerate position.
     fn neighbours(&self) -> Option<Vec<Neighbours>> {
         let size = self.cell.size().into_iter().max().unwrap_or(0);
         let shift = shift_of(1 << size);
@@ -131,7 +131,7 @@ impl Scene<'_> {
             .map(|e| self.near_triangle(e))
             .collect();
         let mut count = 0usize;
-        pairs(boxes, swept, |a, b| {
+        pairs(ElementsInBox::of(boxes, shift), swept, |a, b| {
             poll();
             let (i, j) = (a as usize, b as usize);
             if are_apart(&near[i], &near[j]) {
@@ -145,10 +145,11 @@ impl Scene<'_> {
             }
             Some(())
         })?;
-        // Pairs are not found in the order of the elements.
+        // Pairs are not found in the order of the elements, and some repeatedly.
         for list in found.iter_mut().filter(|list| list.len() > 1) {
             poll();
             list.sort_unstable();
+            list.dedup();
         }
         Some(found)
     }
