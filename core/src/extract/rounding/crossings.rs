@@ -12,7 +12,7 @@ use crate::geometry::doubles::meeting::{are_clear, folds_over, has_no_area, meet
 use crate::geometry::doubles::slabs::Slabs;
 use crate::geometry::doubles::Facing;
 use crate::interrupt::{poll, spend};
-use crate::merge::pairs::{pairs_of_many, BoxedElement, ElementsInBox, SweptElement};
+use crate::merge::pairs::{pairs, BoundedElement, BoxedElement, ElementsInBox};
 use crate::mesh::faces::Faces;
 use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::{both, each, each_chunk, WorkSize, CHUNK};
@@ -286,10 +286,10 @@ impl<'a> Search<'a> {
         BoxedElement::new(party, k, [&low, &high], Image::BITS - 30)
     }
 
-    fn swept(&self, k: u32) -> SweptElement {
+    fn bounded(&self, k: u32) -> BoundedElement {
         let (low, high) = self.image.ends(k);
         let Candidate { party, facing, .. } = &self.candidates[k as usize];
-        SweptElement {
+        BoundedElement {
             operand: *party as usize,
             low,
             high,
@@ -301,9 +301,9 @@ impl<'a> Search<'a> {
     fn findings_in<K: PairFindings>(&self, part: ElementsInBox) -> K {
         let mut found = K::default();
         let mut waiting = Vec::new();
-        pairs_of_many(
+        pairs(
             part,
-            |k| self.swept(k),
+            |k| self.bounded(k),
             |i, j| {
                 if self.slabs[i as usize].miss(&self.slabs[j as usize]) {
                     return Some(());

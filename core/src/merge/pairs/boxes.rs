@@ -47,10 +47,19 @@ impl BoxedElement {
         }
     }
 
-    /// Returns the same triangle or part of a face with another number.
-    #[must_use]
-    pub const fn numbered(self, number: u32) -> Self {
-        Self { number, ..self }
+    /// Makes an element with its operand's index, its number, and the low and the high corner of its box.
+    pub const fn between(operand: u32, number: u32, low: Ends, high: Ends) -> Self {
+        Self {
+            low,
+            high,
+            operand,
+            number,
+        }
+    }
+
+    /// Returns true if the boxes of two elements overlap.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        (0..3).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
     }
 
     /// Returns the low and the high corner of the box.
@@ -112,23 +121,24 @@ pub struct HalfOpenBox {
 }
 
 /// Calls `report` for the pairs of elements (triangles or parts of faces) of different operands whose boxes
-/// overlap, and `crowd` for elements that halving does not separate, with the space to which their pairs
-/// belong. Stops and returns `None` if a call does.
-pub fn pairs(
+/// overlap, and returns the elements that halving does not separate, sorted by number; pairs of these are not
+/// reported. Stops and returns `None` if `report` does.
+pub fn crowded(
     part: ElementsInBox,
     mut report: impl FnMut(u32, u32) -> Option<()>,
-    mut crowd: impl FnMut(&[BoxedElement], &HalfOpenBox) -> Option<()>,
-) -> Option<()> {
+) -> Option<Vec<BoxedElement>> {
+    let mut crowded = Vec::new();
     part.halved(MAX_COMPARED, |part| {
-        if part.elements.len() <= MAX_COMPARED_UNSEPARATED {
-            let half_open_box = part.half_open_box;
-            compare_all(&part.elements, &half_open_box, |a, b| {
-                half_open_box.if_pair_belongs(a, b, || report(a.number, b.number))
-            })
-        } else {
-            crowd(&part.elements, &part.half_open_box)
+        if part.elements.len() > MAX_COMPARED_UNSEPARATED {
+            crowded.extend(part.elements);
+            return Some(());
         }
-    })
+        let half_open_box = part.half_open_box;
+        compare_all(&part.elements, &half_open_box, |a, b| {
+            half_open_box.if_pair_belongs(a, b, || report(a.number, b.number))
+        })
+    })?;
+    Some(without_repetition(crowded))
 }
 
 /// Calls `report` for all pairs of elements (triangles or parts of faces) of different operands whose boxes
@@ -200,22 +210,6 @@ fn sorted_along(axis: usize, elements: &[BoxedElement]) -> Vec<BoxedElement> {
     let mut order: Vec<(i32, usize)> = begins.collect();
     order.sort_unstable();
     order.into_iter().map(|(_, at)| elements[at]).collect()
-}
-
-/// Calls `report` for each element (a triangle or part of a face) of the first group and each of the second
-/// whose boxes overlap; compares all with all.
-pub fn compare_groups(
-    first: &[BoxedElement],
-    second: &[BoxedElement],
-    report: impl Fn(&BoxedElement, &BoxedElement),
-) {
-    let lanes = Lanes::of(second);
-    for one in first {
-        spend(1 + second.len() / PAIRS_PER_UNIT);
-        Lanes::each_overlapping(&lanes, 0, one, |at| {
-            report(one, &second[at]);
-        });
-    }
 }
 
 impl Lanes {
@@ -320,7 +314,7 @@ impl HalfOpenBox {
 
     /// Calls `report` if the pair of boxes belongs to this part of space, and returns its result; otherwise
     /// returns `Some(())`.
-    pub fn if_pair_belongs(
+    fn if_pair_belongs(
         &self,
         a: &BoxedElement,
         b: &BoxedElement,
@@ -334,7 +328,7 @@ impl HalfOpenBox {
     }
 
     /// Returns true if the low corner of the intersection of two boxes lies in this part of space.
-    pub fn pair_belongs(&self, a: &BoxedElement, b: &BoxedElement) -> bool {
+    fn pair_belongs(&self, a: &BoxedElement, b: &BoxedElement) -> bool {
         (0..3).all(|i| {
             let corner = a.low[i].max(b.low[i]);
             self.low[i] < corner && corner <= self.high[i]
@@ -343,7 +337,7 @@ impl HalfOpenBox {
 }
 
 /// Returns the elements (triangles or parts of faces) sorted by number, without repetition.
-pub fn without_repetition(mut elements: Vec<BoxedElement>) -> Vec<BoxedElement> {
+fn without_repetition(mut elements: Vec<BoxedElement>) -> Vec<BoxedElement> {
     elements.sort_unstable_by_key(|e| e.number);
     elements.dedup_by_key(|e| e.number);
     elements

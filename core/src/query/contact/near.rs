@@ -4,7 +4,7 @@ use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
-use crate::merge::pairs::{pairs_of_many, shift_of, BoxedElement, ElementsInBox, SweptElement};
+use crate::merge::pairs::{pairs, shift_of, BoundedElement, BoxedElement, ElementsInBox};
 
 /// A box with lattice corners, which belong to it.
 #[derive(Clone, Copy)]
@@ -103,10 +103,10 @@ pub fn near_pairs(
         let [low, high] = element.space.from(&origin);
         BoxedElement::new(element.operand, as_number(number), [&low, &high], shift)
     };
-    let swept = |number: u32| {
+    let bounded = |number: u32| {
         let element = &elements[number as usize];
         let [low, high] = element.space.from(&origin);
-        SweptElement {
+        BoundedElement {
             operand: element.operand,
             low,
             high,
@@ -114,7 +114,7 @@ pub fn near_pairs(
         }
     };
     let boxes = elements.iter().enumerate().map(boxed).collect();
-    pairs_of_many(ElementsInBox::of(boxes, shift), swept, meet)
+    pairs(ElementsInBox::of(boxes, shift), bounded, meet)
 }
 
 /// The corners relative to a point, in lattice steps; `None` if one is not a lattice point.

@@ -15,7 +15,7 @@ use crate::geometry::apart::{are_apart, NearTriangle};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
-use crate::merge::pairs::{pairs, shift_of, BoxedElement};
+use crate::merge::pairs::{pairs, shift_of, BoxedElement, ElementsInBox};
 
 /// The numbers of the faces of other operands, or pieces of cut faces, that may meet a face: rarely more than
 /// six.
@@ -115,8 +115,7 @@ impl Scene<'_> {
     }
 
     /// Returns for each face, or piece of a cut face, the numbers of those of other operands that may meet it
-    /// inside the cell; `None` if there are too many pairs for a sweep, or if a sampled pair touches without
-    /// crossing.
+    /// inside the cell; `None` if a sampled pair touches without crossing.
     fn neighbours(&self) -> Option<Vec<Neighbours>> {
         let size = self.cell.size().into_iter().max().unwrap_or(0);
         let shift = shift_of(1 << size);
@@ -126,7 +125,7 @@ impl Scene<'_> {
         };
         let elements = (0..).zip(&self.elements);
         let boxes = elements.filter(|(_, e)| !e.is_apart()).map(boxed).collect();
-        let swept = |number: u32| self.elements[number as usize].swept(self.cell);
+        let bounded = |number: u32| self.elements[number as usize].bounded(self.cell);
         let mut found = vec![Neighbours::new(); self.elements.len()];
         let near: Vec<NearTriangle> = self
             .elements
@@ -134,7 +133,7 @@ impl Scene<'_> {
             .map(|e| self.near_triangle(e))
             .collect();
         let mut count = 0usize;
-        pairs(boxes, swept, |a, b| {
+        pairs(ElementsInBox::of(boxes, shift), bounded, |a, b| {
             poll();
             let (i, j) = (a as usize, b as usize);
             if are_apart(&near[i], &near[j]) {
@@ -148,10 +147,11 @@ impl Scene<'_> {
             }
             Some(())
         })?;
-        // Pairs are not found in the order of the elements.
+        // Pairs are not found in the order of the elements, and some repeatedly.
         for list in found.iter_mut().filter(|list| list.len() > 1) {
             poll();
             list.sort_unstable();
+            list.dedup();
         }
         Some(found)
     }

@@ -17,7 +17,7 @@ use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::merge::kernels::problem::ListedOperand;
 use crate::merge::lists::list::{FaceRecord, List, PartRecord, Sources};
-use crate::merge::pairs::SweptElement;
+use crate::merge::pairs::BoundedElement;
 use crate::mesh::handle::{Slot, SourceFace, VertexId};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
@@ -322,11 +322,11 @@ impl<'a> Element<'a> {
     }
 
     /// Returns the face or piece in the form that the search for pairs uses.
-    pub(super) fn swept(&self, cell: &Cell) -> SweptElement {
+    pub(super) fn bounded(&self, cell: &Cell) -> BoundedElement {
         let origin = cell.low();
         let relative = |p: &Lattice| each_axis(|i| as_double(p[i] - origin[i]));
         let [low, high] = self.extent(cell);
-        SweptElement {
+        BoundedElement {
             operand: self.operand,
             low,
             high,
