@@ -17,7 +17,7 @@ use crate::interrupt::spend;
 const SLACK: f64 = 1e-14;
 
 /// The largest absolute value of a scaled coordinate.
-const MAX_SCALED: f64 = (1u64 << 30) as f64;
+const MAX_SCALED: f64 = 1_073_741_824.0;
 
 /// The most fragments in a cell that are compared all with all; dividing the cell of fewer fragments costs
 /// about as much.
