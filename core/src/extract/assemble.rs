@@ -28,14 +28,15 @@ use crate::mesh::handle::{OrientedFace, Slot, SourceFace, VertexId};
 use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::tree::solid::Solid;
 
-/// A face that is boundary as a whole, and the numbers of the points inserted on each of its three edges.
+/// A face that belongs to a solid's boundary as a whole, and the numbers of the points inserted on each of
+/// its three edges.
 struct SplitFace {
     face: OrientedFace,
     inner: [Vec<u32>; 3],
 }
 
-/// In a group of at most this many edges the ends are searched one by one: making a table of them takes
-/// longer.
+/// In a plane group (the boundary faces of one plane) of at most this many edges, the ends of edges are
+/// searched one by one: making a table of them takes longer.
 const MAX_EDGES_SEARCHED: usize = 16;
 
 /// Returns the exact triangle mesh of a bounded solid.
@@ -118,8 +119,8 @@ fn unbounded() -> Error {
     Error::new(ErrorKind::Unbounded, text)
 }
 
-/// Returns true if an edge of the group lies on the border of the universe; only faces of half-spaces reach
-/// it.
+/// Returns true if an edge of a plane group (the boundary faces of one plane) lies on the border of the
+/// universe; only faces of half-spaces reach it.
 fn reaches_infinity(group: &PlaneGroup, sources: &Sources) -> bool {
     let mut faces = group.faces.iter();
     faces.any(|f| sources.get(f.slot()).mesh().is_none())
@@ -173,8 +174,8 @@ impl Assembly<'_> {
         Ok(self.emit_groups(groups, &edges, &inner)?)
     }
 
-    /// Appends the edges of a group as pairs of point numbers; looks up an end shared by two edges only
-    /// once.
+    /// Appends the edges of a plane group (the boundary faces of one plane) as pairs of point numbers; looks
+    /// up an end shared by two edges only once.
     fn number_edges(&mut self, group: &PlaneGroup, edges: &mut Vec<Edge>) {
         let start = edges.len();
         if group.edges().len() > MAX_EDGES_SEARCHED {
@@ -197,8 +198,8 @@ impl Assembly<'_> {
         }
     }
 
-    /// Finds, for each line, the points on it at which a polygon of a group touches or crosses its own
-    /// edges.
+    /// Finds, for each line, the points on it at which a polygon (the joined boundary faces of one plane)
+    /// touches or crosses its own edges.
     fn touching(&mut self, groups: &mut [PlaneGroup], edges: &[Edge]) -> LinePoints {
         let mut touching = LinePoints::default();
         let mut start = 0;
@@ -210,8 +211,8 @@ impl Assembly<'_> {
         touching
     }
 
-    /// Numbers the corners of whole faces in cells where several operands met as table points, because the
-    /// surface may touch itself there.
+    /// Adds to the vertex table the corners of whole faces in cells where several operands met, because the
+    /// surface may touch itself at these corners.
     fn identify_near(&mut self, near: &[SourceFace], fates: &Fates) {
         for face in near {
             if matches!(fates[*face], Fate::Whole(_)) {
@@ -220,7 +221,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// Numbers the corners of a face as points of the vertex table.
+    /// Adds the corners of a face to the vertex table, which numbers them.
     fn identify(&mut self, face: SourceFace) {
         let source = Arc::clone(self.sources.get(face.slot));
         if let Some(mesh) = source.mesh() {
@@ -239,8 +240,8 @@ impl Assembly<'_> {
         Some(Edge { from, to })
     }
 
-    /// Records for each corner of a group the source vertex at the same position, whose original doubles it
-    /// gets.
+    /// Records for each corner of a plane group (the joined boundary faces of one plane) the source vertex at
+    /// the same position, whose original doubles the corner gets.
     ///
     /// Only vertices of the group's own faces count, though a vertex of another face may lie at a corner,
     /// too.
@@ -275,7 +276,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// Numbers as table points the vertices on edges that more than two faces of one source share.
+    /// Adds to the vertex table the vertices on edges that more than two faces of one source share.
     fn mark_irregular(&mut self, fates: &Fates, rims: &Rims) {
         let irregular = carried(|(slot, fates): (Slot, &[Fate])| {
             let rim = rims.get(slot);
@@ -302,7 +303,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// Numbers all corners of split faces as table points, before triangles are emitted, and marks split
+    /// Adds the corners of split faces to the vertex table before triangles are emitted, and marks the split
     /// faces as cut.
     fn identify_corners(&mut self, split: &[SplitFace], fates: &mut Fates) {
         for SplitFace { face, .. } in split {

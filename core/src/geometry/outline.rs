@@ -19,7 +19,7 @@ pub struct OutlineEdge {
     pub from: Arc<Vertex>,
     /// The end of the edge.
     pub to: Arc<Vertex>,
-    /// The carrier of the edge: the edge lies on it and in the region's plane.
+    /// The lattice edge or the plane that carries the edge, which lies on it and in the region's plane.
     pub carrier: Carrier,
     /// The key of the line through the edge.
     pub line: LineKey,
@@ -33,7 +33,7 @@ pub struct BareEdge {
     pub from: Arc<Vertex>,
     /// The end of the edge.
     pub to: Arc<Vertex>,
-    /// The carrier of the edge: the edge lies on it and in the region's plane.
+    /// The lattice edge or the plane that carries the edge, which lies on it and in the region's plane.
     pub carrier: Carrier,
 }
 
@@ -245,7 +245,8 @@ struct Event<'a> {
     change: i32,
 }
 
-/// Cancels the edges `run` of one line against each other, and appends the remaining maximal edges to `kept`.
+/// Cancels the edges `run`, which lie on one line, against each other, and appends the remaining maximal
+/// edges to `kept`.
 fn cancel_line(edges: &[OutlineEdge], run: &[EdgeByLine], kept: &mut Vec<OutlineEdge>) {
     let run: SmallVec<[&OutlineEdge; 16]> = run.iter().map(|p| &edges[p.edge as usize]).collect();
     let axis = run[0].line.axis();
@@ -354,8 +355,8 @@ fn continues(first: &Carrier, second: &Carrier) -> bool {
     }
 }
 
-/// Return whether no corner of an outline lies outside a carrier of one of its edges, and exactly two lie on
-/// it; always true for a carrier that is an edge of the face.
+/// Return whether the plane or lattice edge that carries each edge has no corner of the outline on its outer
+/// side, and exactly two corners on it; always true for a lattice edge of the face.
 fn bounds(carrier: &Carrier, edges: &[BareEdge]) -> bool {
     let Carrier::Cut(plane, plus) = carrier else {
         return true;

@@ -16,7 +16,8 @@ use super::vertex::Vertex;
 use crate::arith::convert::as_double;
 use crate::interrupt::poll;
 
-/// What carries an edge of a polygon: the edge lies on it and in the polygon's plane.
+/// The lattice edge or the plane that carries an edge of a polygon: the edge lies on it and in the polygon's
+/// plane.
 #[derive(Clone, Debug)]
 pub enum Carrier {
     /// A lattice edge of a face, in the face's own direction.
@@ -69,8 +70,8 @@ impl Carrier {
         corners.iter().all(|corner| side(&corner.at) != inner)
     }
 
-    /// Return whether the carrier is a wall of the cell of all lattice points, which cuts only surfaces of
-    /// half-spaces.
+    /// Return whether the carrier of a polygon's edge is a wall of the cell of all lattice points, which cuts
+    /// only surfaces of half-spaces.
     pub fn is_border(&self) -> bool {
         match self {
             Self::Edge(..) => false,
@@ -84,7 +85,7 @@ impl Carrier {
         }
     }
 
-    /// The line in which this carrier and the polygon's plane `support` meet.
+    /// The line in which the carrier of a polygon's edge and the polygon's plane `support` meet.
     pub fn line(&self, support: &PlaneResidues) -> Line {
         match self {
             Self::Edge(edge) => {
@@ -118,12 +119,12 @@ fn edge_plane(edge: &LatticeEdge, support: &Plane) -> Plane {
     }
 }
 
-/// A corner of a polygon and the carrier of the edge that leaves it.
+/// A corner of a polygon, and the lattice edge or plane that carries the edge which leaves it.
 #[derive(Clone, Debug)]
 pub struct Corner {
     /// The exact position of the corner.
     pub at: Arc<Vertex>,
-    /// The carrier of the edge to the next corner.
+    /// The lattice edge or plane that carries the edge to the next corner.
     pub edge: Carrier,
 }
 
@@ -241,7 +242,7 @@ impl Polygon {
         &self.corners
     }
 
-    /// The directed edges, counterclockwise: start, end and carrier of each.
+    /// The directed edges, counterclockwise: start, end, and the lattice edge or plane that carries each.
     pub fn edges(&self) -> impl Iterator<Item = (&Arc<Vertex>, &Arc<Vertex>, &Carrier)> {
         let n = self.corners.len();
         (0..n).map(move |i| {

@@ -207,7 +207,7 @@ fn wrong_source(operand: &Solid, number: usize) -> Option<Error> {
             Ok(true) => {
                 let text = format!(
                     "operand {number} overlaps itself: its input mesh {slot} (source {}) was \
-                     declared trusted, but has overlapping faces",
+                     declared trusted, but has overlapping faces; do not declare this mesh trusted",
                     source.id()
                 );
                 return Some(Error::new(ErrorKind::NotReduced, text));

@@ -46,7 +46,7 @@ pub fn overlaps_itself_at(solid: &Solid, points: &[Lattice]) -> bool {
 }
 
 /// Returns true if the local tree of a small cell around one of the points `points` shows that listed
-/// elements overlap or enclose a region twice.
+/// elements (faces or parts of faces) overlap or enclose a region twice.
 fn overlaps_in(sources: &Sources, cell: Cell, list: List, points: Vec<Lattice>) -> bool {
     let mut open = vec![(cell, list, points)];
     while let Some((cell, list, points)) = open.pop() {

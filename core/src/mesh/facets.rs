@@ -85,7 +85,7 @@ pub fn check_reach(rows: &[Lattice]) -> Result<()> {
     }
 }
 
-/// The flaws of facets that are mended instead of refused.
+/// Which flaws of facets are mended instead of refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lenience {
     /// Divide polygons that are not planar into triangles.

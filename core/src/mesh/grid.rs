@@ -133,7 +133,8 @@ impl Pitch {
             return Error::new(ErrorKind::NonFinite, text);
         }
         let text = format!(
-            "the coordinate {x:e} is more than 2^53 lattice steps of 10^{} from the origin",
+            "the coordinate {x:e} is more than 2^53 lattice steps of 10^{} from the origin; scale the \
+             coordinates down, or choose a coarser pitch",
             self.0
         );
         Error::new(ErrorKind::TooLarge, text)

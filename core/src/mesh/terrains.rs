@@ -29,7 +29,7 @@ const MIN_NEEDLE_RATIO: f64 = 16.0;
 /// The largest number of needles that are compared pairwise, without looking for terrains.
 const MAX_NEEDLES_COMPARED: usize = 256;
 
-/// The least number of triangles of a piece for which a sweep pays.
+/// The least number of triangles in a piece (a smooth connected part of the surface) for which a sweep pays.
 const MIN_TRIANGLES_SWEPT: usize = 4;
 
 /// The tangent of the largest angle between normals of adjoining triangles in one piece: more than in any
@@ -94,7 +94,8 @@ struct Search<'a> {
     needles: &'a [u32],
     /// The needle of each directed edge.
     owners: HashMap<[VertexId; 2], u32>,
-    /// The number of each needle's piece, or `NONE`.
+    /// The number of the piece (smooth connected part of the surface) to which each needle belongs, or
+    /// `NONE`.
     pieces: Vec<u32>,
 }
 
@@ -153,8 +154,8 @@ impl<'a> Search<'a> {
         sorted.into_iter().map(|(_, at)| at).collect()
     }
 
-    /// Numbers and lists the needles of the piece around a first one; needles without area may belong to any
-    /// piece.
+    /// Numbers and lists the needles in the piece (smooth connected part of the surface) around a first
+    /// needle; needles without area may belong to any piece.
     fn piece_around(&mut self, first: u32, projection: Projection, number: u32) -> Vec<u32> {
         self.pieces[first as usize] = number;
         let mut piece = vec![first];
@@ -189,8 +190,8 @@ impl<'a> Search<'a> {
         edges(self.triangle(at)).map(|[from, to]| self.owners.get(&[to, from]).copied())
     }
 
-    /// The edges that only one needle of a piece has, in the projection and directed so that all needles turn
-    /// left.
+    /// The edges that only one needle of a piece (a smooth connected part of the surface) has, in the
+    /// projection and directed so that all needles turn left.
     fn outline(&self, piece: &[u32], projection: Projection) -> Vec<[PlanarPoint; 2]> {
         let number = self.pieces[piece[0] as usize];
         let mut outline = Vec::new();

@@ -367,7 +367,7 @@ impl Tree {
     /// Return the arrays of the input mesh that the solid is.
     fn given_arrays<'py>(&self, py: Python<'py>) -> PyResult<MeshArrays<'py>> {
         let mesh = self.run(py, "given_arrays", 0, 0, || {
-            let text = "the solid is not one unchanged input mesh, so it has no given arrays";
+            let text = "the solid is not one unchanged input mesh, so no given arrays exist";
             self.given().ok_or_else(|| Error::internal(text))
         })?;
         Ok((
@@ -645,7 +645,8 @@ fn term(name: &str, arguments: Vec<u32>) -> Result<Term> {
         ("xor", _) => Ok(Term::Xor(arguments)),
         _ => {
             let text = format!(
-                "'{name}' with {} arguments is not a valid line",
+                "'{name}' with {} arguments is not a line of an expression; use leaf or not with one \
+                 argument, or or, and, xor with any number",
                 arguments.len()
             );
             Err(Error::new(ErrorKind::Shape, text))
@@ -655,7 +656,7 @@ fn term(name: &str, arguments: Vec<u32>) -> Result<Term> {
 
 fn motion(axes: [i64; 3], shift: [i64; 3]) -> Result<Motion> {
     Motion::of_axes(&axes, &shift).ok_or_else(|| {
-        let text = format!("{axes:?} is not a signed permutation of [1, 2, 3]");
+        let text = format!("the axes {axes:?} must contain 1, 2 and 3 once each, with either sign");
         Error::new(ErrorKind::Shape, text)
     })
 }

@@ -105,7 +105,8 @@ enum VertexData {
 struct PlaneData([i128; 3], [u64; 3]);
 
 fn too_large() -> Error {
-    let text = "the moved or refined solid does not fit the lattice of 2^53 steps";
+    let text = "the moved or refined solid does not fit the lattice of 2^53 steps; move the solid less, or \
+                choose a coarser pitch";
     Error::new(ErrorKind::TooLarge, text)
 }
 
@@ -227,7 +228,9 @@ impl Snapshot {
     /// `TooLarge` if a point or plane leaves the lattice.
     pub fn moved(&self, motion: &Motion, pitch: Pitch) -> Result<Self> {
         if self.reaches_infinity() {
-            let text = "an unbounded solid other than a half-space cannot be moved";
+            let text =
+                "an unbounded solid other than a half-space cannot be moved; intersect the solid \
+                        with a box first";
             return Err(Error::new(ErrorKind::Unbounded, text));
         }
         let mut image = self.clone();
@@ -321,8 +324,8 @@ impl Snapshot {
 
     /// Decodes a solid from bytes, which are checked in full.
     ///
-    /// One claim is trusted ([`Solid::marked_as_claimed`]): that the faces are the reduced boundary. Checking it would
-    /// cost ten times as much as all other checks together.
+    /// One claim is trusted ([`Solid::marked_as_claimed`]): that the faces are the reduced boundary. Checking
+    /// it would cost ten times as much as all other checks together.
     ///
     /// # Errors
     /// `BadSnapshot`.

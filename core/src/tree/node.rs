@@ -20,11 +20,11 @@ use crate::mesh::source::Source;
 /// Labels are winding numbers: a region is inside the solid where its number is positive.
 #[derive(Debug)]
 pub enum Node {
-    /// A cell without boundary: it has one winding number everywhere.
+    /// A cell of space without boundary: it has one winding number everywhere.
     Leaf(i32),
-    /// A cell whose boundary is listed but not yet partitioned.
+    /// A cell of space whose boundary is listed but not yet partitioned.
     Deferred(DeferredLeaf),
-    /// A cell that is cut into two halves.
+    /// A cell of space that is cut into two halves.
     Cut(Halves),
 }
 
@@ -152,7 +152,7 @@ pub struct DeferredLeaf {
 #[derive(Clone, Debug)]
 pub struct FaceGroup {
     /// True if the faces may touch other faces or parts anywhere, as in results of local trees or a grid;
-    /// false if they touch others only where one of them was cut.
+    /// false if they touch others only where a face was cut.
     pub touching: bool,
     /// The source of the faces.
     pub source: Arc<Source>,

@@ -3,7 +3,7 @@
 use crate::geometry::flux::fixed::Flux;
 use crate::geometry::side::Orientation;
 
-/// The share of a solid's volume that a node of its tree contributes.
+/// The contribution (share) of a node of a solid's tree to the solid's volume.
 #[derive(Clone, Copy, Debug)]
 pub struct VolumeShare {
     /// Six times the flux of (0, 0, z) through the boundary in the node's cell.
@@ -13,13 +13,13 @@ pub struct VolumeShare {
 }
 
 impl VolumeShare {
-    /// The share of a node without boundary.
+    /// The volume share of a node without boundary.
     pub const NONE: Self = Self {
         flux: Flux::ZERO,
         open: false,
     };
 
-    /// Adds another share, with its flux subtracted if `complement` is set.
+    /// Adds another share of the volume, with its flux subtracted if `complement` is set.
     pub fn add(&mut self, other: &Self, complement: bool) {
         self.flux
             .add(&other.flux, Orientation::turned_around(complement));

@@ -41,7 +41,8 @@ pub struct Boundary {
 /// If more faces than this are to be processed, several threads share the work.
 const PARALLEL_FROM: usize = 256;
 
-/// Listings are sorted, not counted by face, if there are fewer than one for this many faces.
+/// Pairs of a face and a leaf that lists it are sorted, not counted by face, if there are fewer than one pair
+/// for this many faces.
 const COUNTED_IF_ONE_IN: usize = 16;
 
 struct Collector<'a> {
@@ -116,8 +117,8 @@ impl Collector<'_> {
         )
     }
 
-    /// Returns the faces that are boundary in part, with outlines; a face whose pieces add up to all of it
-    /// becomes whole instead.
+    /// Returns the faces that are boundary in part, with outlines; a face whose boundary parts add up to all
+    /// of it becomes whole instead.
     fn outline(&mut self, open: &[&[Spanning]]) -> Vec<CutFace> {
         let spans = open.iter().flat_map(|run| run.iter()).map(Piece::from);
         let mut pieces: Vec<Piece> = spans.collect();
@@ -144,7 +145,7 @@ impl Collector<'_> {
         cut
     }
 
-    /// Joins the pieces of one face to one outline.
+    /// Joins the parts of one face that are boundary to one outline.
     fn joined(&self, run: &mut [Piece]) -> CutFace {
         let cells = &self.listed.cells;
         let face = run[0].face;
@@ -158,7 +159,8 @@ impl Collector<'_> {
     }
 }
 
-/// Sorts listings by face; listings of one face stay in the order of their leaves.
+/// Sorts pairs of a face and a leaf that lists it by face; the pairs of one face stay in the order of their
+/// leaves.
 fn by_face(spanning: &[Spanning], fates: &Fates) -> Vec<Spanning> {
     let faces = fates.faces();
     let mut sorted = spanning.to_vec();

@@ -37,11 +37,11 @@ pub struct Piece<'a> {
     extent: Extent<'a>,
 }
 
-/// The part of a face that a piece covers; its outline is computed only on demand.
+/// How a boundary part of a face is given; its outline is computed only on demand.
 enum Extent<'a> {
     /// The part of the face in the cell of the leaf with this number.
     Face(u32),
-    /// A whole part that the tree stores.
+    /// A part of the face that the tree stores, all of it.
     Part(&'a Part),
     /// The region inside these edges.
     Edges(Vec<OutlineEdge>),
@@ -57,7 +57,7 @@ impl From<&Spanning> for Piece<'_> {
 }
 
 impl Piece<'_> {
-    /// Returns the outline of a piece that is the only piece of its face.
+    /// Returns the outline of this boundary part of a face, which is the only one of its face.
     pub fn outline(&mut self, sources: &Sources, cells: &[Cell]) -> Outline {
         match self.extent {
             Extent::Part(part) => Outline::of_bare(&part.edges),
@@ -65,7 +65,8 @@ impl Piece<'_> {
         }
     }
 
-    /// Returns the edges around the piece; if the piece stores them, it has none afterwards.
+    /// Returns the edges around this boundary part of a face; if the part stores them, it has none
+    /// afterwards.
     pub fn take_edges(&mut self, sources: &Sources, cells: &[Cell]) -> Vec<OutlineEdge> {
         match &mut self.extent {
             Extent::Face(leaf) => {
@@ -87,7 +88,7 @@ pub struct Listed<'a> {
     pub fates: Fates,
     /// The faces that extend beyond the cell of a leaf that lists them, once for each such leaf.
     pub spanning: Vec<Spanning>,
-    /// The pieces that the listed parts make up, sorted by face.
+    /// The boundary parts of faces that the leaves list, sorted by face.
     pub parts: Vec<Piece<'a>>,
     /// Faces in cells where several operands met.
     pub near: Vec<SourceFace>,
@@ -95,7 +96,8 @@ pub struct Listed<'a> {
     pub cells: Vec<Cell>,
 }
 
-/// The faces that extend beyond one leaf's cell, its parts, and its faces near other operands.
+/// The faces that extend beyond one leaf's cell, the parts of faces that the leaf lists, and its faces near
+/// other operands.
 #[derive(Default)]
 struct Found<'a> {
     spanning: Vec<Spanning>,
@@ -149,12 +151,12 @@ pub fn listed<'a>(root: &'a Branch, sources: &Sources) -> Listed<'a> {
     all
 }
 
-/// The pieces of one face; usually there is only one.
+/// The boundary parts of one face; usually there is only one.
 type Pieces<'a> = SmallVec<[Piece<'a>; 1]>;
 
 type Extents<'a> = SmallVec<[Extent<'a>; 1]>;
 
-/// Turns listed parts, which are sorted by face, into pieces of faces.
+/// Turns the parts of faces that leaves list, sorted by face, into the boundary parts of each face.
 fn pieces<'a>(parts: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
     let runs: Vec<&[Listing]> = parts.chunk_by(|a, b| a.face == b.face).collect();
     let face = carried(|run: &&[Listing<'a>]| pieces_of_face(run, cells));
@@ -166,7 +168,8 @@ fn pieces<'a>(parts: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
     pieces.into_iter().flatten().collect()
 }
 
-/// Returns the pieces of one face: a whole part if its leaves contain all of it, else its clip to each leaf.
+/// Returns the boundary parts of one face: a stored part if the leaves that list it contain all of it, else
+/// the part clipped to each leaf.
 fn pieces_of_face<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Pieces<'a> {
     let extents = match run {
         [single] => extents(single.part, &[single.leaf], cells),
@@ -195,7 +198,8 @@ fn extents_by_part<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Extents<'a> {
         .collect()
 }
 
-/// Returns a part as one extent if the leaves that list it contain all of it, else its clip to each leaf.
+/// Returns a stored part of a face as one extent if the leaves that list it contain all of it, else clipped
+/// to each leaf.
 fn extents<'a>(part: &'a Part, leaves: &[u32], cells: &[Cell]) -> Extents<'a> {
     if is_whole(part, leaves, cells) {
         return smallvec![Extent::Part(part)];
@@ -204,7 +208,8 @@ fn extents<'a>(part: &'a Part, leaves: &[u32], cells: &[Cell]) -> Extents<'a> {
     edges.filter(|e| !e.is_empty()).map(Extent::Edges).collect()
 }
 
-/// Returns whether the leaves that list a part together contain all of it; may return false negatives.
+/// Returns whether the leaves that list a part of a face together contain all of the part; may return false
+/// negatives.
 fn is_whole(part: &Part, leaves: &[u32], cells: &[Cell]) -> bool {
     if let [leaf] = leaves
         && cells[*leaf as usize] == part.home
@@ -215,7 +220,7 @@ fn is_whole(part: &Part, leaves: &[u32], cells: &[Cell]) -> bool {
     once && fill(part_box(part), leaves.iter().copied(), cells)
 }
 
-/// The lattice box of a part, clipped to the part's home cell.
+/// The lattice box of a part of a face, clipped to the cell in which the part was made.
 fn part_box(part: &Part) -> (Lattice, Lattice) {
     let ((low, high), home) = (part.bounds(), (part.home.low(), part.home.high()));
     (
@@ -442,7 +447,7 @@ fn holder<'a>(mesh: &'a TriangleMesh, cell: &Cell) -> impl Fn(FaceId) -> bool + 
     }
 }
 
-/// Returns the edges around the part of a face's part that lies in a leaf's cell.
+/// Returns the edges around the intersection of a part of a face with a leaf's cell.
 fn part_edges(part: &Part, cell: &Cell) -> Vec<OutlineEdge> {
     if part.home == *cell {
         return part.outline();

@@ -28,7 +28,8 @@ const OTHER: u8 = 4;
 /// Bit of a vertex on an edge that has no opposite by index, but cancels with other edges on its line.
 const OPEN: u8 = 8;
 
-/// For each slot, where the whole faces of its source end.
+/// For each source, by slot, the vertices and edges at which its whole faces (entirely boundary) meet faces
+/// that are cut or gone.
 #[derive(Debug)]
 pub struct Rims {
     by_slot: Vec<Rim>,
@@ -65,7 +66,8 @@ impl FrontierEdge {
 }
 
 impl Rims {
-    /// Finds for each source where its whole faces end.
+    /// Finds for each source the vertices at which its whole faces (entirely boundary) meet faces that are
+    /// cut or gone.
     pub fn of(fates: &Fates, sources: &Sources) -> Self {
         let slots: Vec<Slot> = Slot::all().take(fates.sources()).collect();
         let rim = carried(|slot: &Slot| Rim::of(sources.get(*slot), fates.of(*slot)));
@@ -185,7 +187,8 @@ pub struct Rim {
 }
 
 impl Rim {
-    /// Finds where a source's whole faces end; empty if `fates` is empty.
+    /// Finds the vertices at which a source's whole faces (entirely boundary) meet faces that are cut or
+    /// gone; empty if `fates` is empty.
     fn of(source: &Source, fates: &[Fate]) -> Self {
         let (Some(mesh), false) = (source.mesh(), fates.is_empty()) else {
             return Self::default();
@@ -283,7 +286,7 @@ impl Half {
     }
 }
 
-/// Returns true if more than one bit of a vertex is set.
+/// Returns true if more than one of the bits `KEPT`, `TURNED`, `OTHER` and `OPEN` of a vertex is set.
 fn is_mixed(touch: u8) -> bool {
     touch & touch.wrapping_sub(1) != 0
 }

@@ -14,7 +14,7 @@ use crate::arith::Sign;
 use crate::interrupt::poll;
 use crate::mesh::handle::VertexId;
 
-/// Marks a corner that does not belong to a fan yet.
+/// Marks a corner of a triangle that does not belong to a fan (a ring of triangles around a vertex) yet.
 const NONE: usize = usize::MAX;
 
 /// The exact geometry that the splitting of edges and vertices asks for.
@@ -210,7 +210,8 @@ impl Surface<'_> {
         origin(self.triangles, half) < origin(self.triangles, next(half))
     }
 
-    /// The sort key of a half-edge among those with the same lower vertex: edge, then forward ones first.
+    /// The sort key of a half-edge among the half-edges with the same lower vertex: by edge, then forward
+    /// ones first.
     fn edge_key(&self, half: usize) -> (VertexId, bool, usize) {
         (ends(self.triangles, half)[1], !self.is_forward(half), half)
     }
@@ -268,7 +269,7 @@ fn next(half: usize) -> usize {
     }
 }
 
-/// The corners around vertices, grouped into connected fans.
+/// The corners of triangles around vertices, grouped into connected fans (rings of triangles).
 struct Fans {
     /// For each corner the number of its fan.
     of: Vec<usize>,
@@ -320,7 +321,8 @@ impl Fans {
         }
     }
 
-    /// Gives each fan its own vertex; returns the triangles over these vertices.
+    /// Gives each fan (ring of triangles around a vertex) its own copy of the vertex; returns the triangles
+    /// over these copies.
     fn number(
         &self,
         surface: &Surface,

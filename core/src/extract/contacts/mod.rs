@@ -18,8 +18,8 @@ use crate::mesh::finding::{Finding, Severity};
 use crate::mesh::handle::VertexId;
 
 /// Splits edges and vertices at which the surface touches itself, and adds findings about them: then every
-/// directed edge has exactly one opposite by index and every vertex one fan. Copies directly follow their
-/// vertex.
+/// directed edge has exactly one opposite by index, and the triangles around every vertex form one ring.
+/// Copies of a vertex directly follow it.
 pub(super) fn split(mesh: &mut ExactMesh, sources: &Sources) -> Result<()> {
     let count = as_number(mesh.vertices.len());
     let split = split_fans(&mesh.triangles, count, &Geometry { mesh, sources })

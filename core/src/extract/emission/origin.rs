@@ -30,7 +30,7 @@ pub struct Owners<'a> {
     corners: Vec<Option<[[f64; 2]; 3]>>,
 }
 
-/// The least and the largest corner of a box.
+/// The corner of a rectangle with the least coordinates, and the corner with the largest.
 type Bounds = [[f64; 2]; 2];
 
 /// Points to locate, and the faces that may contain some of them, ascending.

@@ -12,7 +12,7 @@ use crate::mesh::handle::{FaceId, OrientedFace, Slot, SourceFace, VertexId};
 use crate::mesh::tasks::{each_chunk, in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
 
-/// The untouched faces of sources among the triangles of a mesh; they come first.
+/// The triangles of a mesh that are whole, unchanged faces of sources; they come first in the mesh.
 #[derive(Debug, Default)]
 pub struct Untouched {
     /// The vertices that only triangles of untouched faces use.

@@ -12,7 +12,7 @@ use crate::geometry::doubles::meeting::{are_clear, folds_over, has_no_area, meet
 use crate::geometry::doubles::slabs::Slabs;
 use crate::geometry::doubles::Facing;
 use crate::interrupt::{poll, spend};
-use crate::merge::pairs::{pairs_of_many, BoxedElement, ElementsInBox, SweptElement};
+use crate::merge::pairs::{pairs, BoundedElement, BoxedElement, ElementsInBox};
 use crate::mesh::faces::Faces;
 use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::{both, each, each_chunk, WorkSize, CHUNK};
@@ -130,7 +130,8 @@ const TRIANGLES_PER_TASK: usize = 512;
 /// The number of pairs that are compared together, on several threads if there are any.
 const PAIRS_PER_BATCH: usize = 8 * CHUNK;
 
-/// A triangle that is compared with triangles of other party numbers.
+/// A triangle that is compared with triangles of other party numbers; triangles with equal party numbers are
+/// known not to cross.
 struct Candidate {
     party: u32,
     triangle: u32,
@@ -148,7 +149,8 @@ impl Candidate {
         }
     }
 
-    /// Raises the party number of the candidate by `first`.
+    /// Raises the party number of the candidate triangle by `first`; triangles with equal party numbers are
+    /// not compared.
     fn after(self, first: u32) -> Self {
         let party = first + self.party;
         Self { party, ..self }
@@ -250,14 +252,15 @@ impl Meetings {
 
 /// A search for pairs of candidate triangles that may meet.
 struct Search<'a> {
-    /// The triangles, sorted by party number.
+    /// The triangles, sorted by party number; triangles with equal party numbers are known not to cross.
     candidates: &'a [Candidate],
     image: Image,
     slabs: Vec<Slabs>,
 }
 
 impl<'a> Search<'a> {
-    /// Compares the pairs of candidates with different party numbers that may meet.
+    /// Compares the pairs of candidate triangles with different party numbers that may meet; triangles with
+    /// equal party numbers are known not to cross.
     fn among<K: PairFindings>(candidates: &'a [Candidate]) -> K {
         let corners = |k: u32| *candidates[k as usize].facing.triangle();
         let Some(image) = Image::of(candidates.len(), corners) else {
@@ -283,10 +286,10 @@ impl<'a> Search<'a> {
         BoxedElement::new(party, k, [&low, &high], Image::BITS - 30)
     }
 
-    fn swept(&self, k: u32) -> SweptElement {
+    fn bounded(&self, k: u32) -> BoundedElement {
         let (low, high) = self.image.ends(k);
         let Candidate { party, facing, .. } = &self.candidates[k as usize];
-        SweptElement {
+        BoundedElement {
             operand: *party as usize,
             low,
             high,
@@ -298,9 +301,9 @@ impl<'a> Search<'a> {
     fn findings_in<K: PairFindings>(&self, part: ElementsInBox) -> K {
         let mut found = K::default();
         let mut waiting = Vec::new();
-        pairs_of_many(
+        pairs(
             part,
-            |k| self.swept(k),
+            |k| self.bounded(k),
             |i, j| {
                 if self.slabs[i as usize].miss(&self.slabs[j as usize]) {
                     return Some(());

@@ -253,7 +253,7 @@ impl Rounded {
             .collect()
     }
 
-    /// Returns true if all triangles have the same party number.
+    /// Returns true if all triangles have the same party number, so that they are known not to cross.
     fn is_of_one(&self, party: impl Fn(u32) -> u32) -> bool {
         (1..as_number(self.triangles.len())).all(|t| party(t) == party(0))
     }

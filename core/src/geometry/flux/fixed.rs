@@ -449,7 +449,7 @@ pub struct CoordinateExtent {
 }
 
 impl CoordinateExtent {
-    /// The reach of points in fixed-point binary.
+    /// How far points in fixed-point binary lie from the origin, and how wide the box around them is.
     pub fn of(points: &[Fixed]) -> Self {
         let mut low = [i128::MAX; 3];
         let mut high = [i128::MIN; 3];
@@ -467,7 +467,7 @@ impl CoordinateExtent {
         }
     }
 
-    /// The reach of the corners of a lattice triangle.
+    /// How far the corners of a lattice triangle lie from the origin, and how wide the box around them is.
     pub fn of_triangle(corners: &[Lattice; 3]) -> Self {
         let size = corners.iter().flatten().map(|c| c.unsigned_abs()).max();
         let spread = |i: usize| {

@@ -167,7 +167,8 @@ impl BoxTree {
         }
     }
 
-    /// Adds the slabs of the triangles, which a search for pairs needs; both trees must use the same origin.
+    /// Adds the slabs of the triangles (the intervals that they cover along diagonals), which a search for
+    /// pairs needs; both trees must use the same origin.
     pub(super) fn with_slabs(self, triangles: &[Triangle], origin: &Point) -> Self {
         let slabs = triangles.iter().map(|t| Slabs::of(t, origin)).collect();
         Self { slabs, ..self }

@@ -79,7 +79,8 @@ impl<'a> Operand<'a> {
     }
 
     /// Returns the faces that reach into cells of the coarse grid `others` that the other operand's faces
-    /// reach into; the slabs of both operands must have the same `origin`.
+    /// reach into; the intervals (slabs) that both operands' faces cover along diagonals must have the same
+    /// `origin`.
     pub(super) fn candidates(
         &self,
         within: &FacesInWindow,

@@ -46,7 +46,7 @@ pub(super) struct Face<'a> {
     pub(super) covers: &'a [Cover],
 }
 
-/// A face divided into triangular cells, with the winding numbers around each.
+/// A face divided into triangular cells, with the winding numbers on both sides of each cell.
 #[derive(Debug)]
 pub(super) struct Arrangement<'a> {
     pub(super) face: Face<'a>,
@@ -62,7 +62,7 @@ pub(super) struct CellNumbers {
     /// The winding number behind the cell, minus the number in front of it, without the contribution of the
     /// face itself.
     pub(super) behind: i32,
-    /// The number of other faces of the same plane that cover the cell.
+    /// The number of other faces of the same plane that cover the triangular cell.
     pub(super) covers: u32,
     /// Whether a covering face has a lower joint number than the face.
     pub(super) is_of_earlier: bool,
@@ -85,13 +85,13 @@ impl<'a> Arrangement<'a> {
     }
 
     /// Returns the winding number in front of the face at one of its corners, minus the number in front of
-    /// its first cell.
+    /// the face's first triangular cell.
     pub(super) fn at_corner(&self, corner: u32) -> i32 {
         self.cells[self.division.cell_at_corner(corner as usize)].in_front
     }
 
-    /// Returns a cell for which `count` finds a winding number at a point inside it, with this number; `None`
-    /// if there is none.
+    /// Returns a triangular cell of the divided face for which `count` finds a winding number at a point
+    /// inside the cell, with this number; `None` if there is none.
     pub(super) fn count_in_cell(
         &mut self,
         count: impl FnMut(&Probe) -> Option<i32>,
@@ -99,7 +99,8 @@ impl<'a> Arrangement<'a> {
         cell_with_number(self.division.triangulation(), self.face.plane, count)
     }
 
-    /// Returns for each cell the winding number in front of it, relative to the first cell.
+    /// Returns for each triangular cell of the divided face the winding number in front of it, relative to
+    /// the first cell.
     fn numbers_in_front(&self) -> Vec<CellNumbers> {
         let numbers = self
             .division
@@ -111,8 +112,8 @@ impl<'a> Arrangement<'a> {
         numbers.into_iter().map(cell).collect()
     }
 
-    /// Returns the winding number in front of a cell minus the number in front of its neighbour across an
-    /// edge: the left of a segment is behind the other face, where the number is larger.
+    /// Returns the winding number in front of a triangular cell of the face minus the number in front of its
+    /// neighbour across an edge: the left of a segment is behind the other face, where the number is larger.
     fn change(&self, cell: usize, edge: usize) -> i32 {
         let change = |(segment, is_along): (usize, bool)| match self.face.segments[segment].line {
             Line::Directed | Line::Touching { in_front: true, .. } => {
@@ -127,8 +128,8 @@ impl<'a> Arrangement<'a> {
         self.division.along_edge(cell, edge).map(change).sum()
     }
 
-    /// Records which cells are covered by other faces of the same plane, and how these change the number
-    /// behind.
+    /// Records which triangular cells of the face are covered by other faces of the same plane, and how these
+    /// change the number behind.
     fn cover(&mut self, shared: &SharedGeometry) {
         let axis = self.face.plane.main_axis();
         let is_up = self.face.plane.normal()[axis] > 0;
@@ -153,7 +154,8 @@ impl<'a> Arrangement<'a> {
         }
     }
 
-    /// Returns the outline of the cells for which `is_kept` is true; collinear consecutive edges are merged.
+    /// Returns the outline of the face's triangular cells for which `is_kept` is true; collinear consecutive
+    /// edges are merged.
     pub(super) fn outline(&mut self, is_kept: impl Fn(&CellNumbers) -> bool) -> Vec<BareEdge> {
         let is_kept: Vec<bool> = self.cells.iter().map(is_kept).collect();
         self.division.outline(&is_kept)
@@ -191,8 +193,9 @@ pub(super) fn count_in_face(
     cell_with_number(&mut face, plane, count).map(|(_, number)| number)
 }
 
-/// Returns a cell for which `count` finds a winding number at a point inside it, with this number. Tries the
-/// widest cells first, and several points of each, because another surface may touch the cell at a point.
+/// Returns a triangular cell of a face for which `count` finds a winding number at a point inside the cell,
+/// with this number. Tries the widest cells first, and several points of each, because another surface may
+/// touch the cell at a point.
 fn cell_with_number(
     cells: &mut Triangulation,
     plane: &Arc<Plane>,

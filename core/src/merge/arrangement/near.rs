@@ -10,7 +10,7 @@ use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::Point;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
-use crate::merge::pairs::{pairs_of_many, shift_of, BoxedElement, ElementsInBox, SweptElement};
+use crate::merge::pairs::{pairs, shift_of, BoundedElement, BoxedElement, ElementsInBox};
 use crate::mesh::faces::Faces;
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::Source;
@@ -98,9 +98,9 @@ impl<'a> PreparedMesh<'a> {
             overlap: false,
         };
         let face = |number: u32| sorted[number as usize];
-        let swept = |number: u32| self.swept(face(number));
+        let bounded = |number: u32| self.bounded(face(number));
         let add = |a: u32, b: u32| search.add([face(a), face(b)]);
-        let all = pairs_of_many(ElementsInBox::of(boxes, self.shift), swept, add);
+        let all = pairs(ElementsInBox::of(boxes, self.shift), bounded, add);
         if all.and_then(|()| search.test_waiting()).is_none() {
             return if search.overlap {
                 Pairs::Overlap
@@ -136,10 +136,10 @@ impl PreparedMesh<'_> {
         [low, high].map(|end| each_axis(|i| end[i] - self.origin[i]))
     }
 
-    fn swept(&self, face: FaceId) -> SweptElement {
+    fn bounded(&self, face: FaceId) -> BoundedElement {
         let [low, high] = self.box_of(face);
         let corners = self.mesh.corners(face);
-        SweptElement {
+        BoundedElement {
             operand: self.group_of(face),
             low,
             high,

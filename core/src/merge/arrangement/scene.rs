@@ -35,7 +35,7 @@ pub(super) struct Scene<'a> {
     pub(super) work_size: WorkSize,
 }
 
-/// Whether a face is left out, whole or cut in the result.
+/// Whether a face is absent, whole or cut in the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
     Gone,
@@ -377,7 +377,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Returns the rows that belong to a face, among rows sorted by face; `of` returns the face of a row.
+/// Returns the rows of a table, sorted by face, that belong to one face; `of` returns the face of a row.
 fn rows_of_face<T>(rows: &[T], face: u32, of: impl Fn(&T) -> u32) -> &[T] {
     let first = rows.partition_point(|row| of(row) < face);
     let count = rows[first..]

@@ -66,7 +66,7 @@ impl Counters {
         Self { profile, ..self }
     }
 
-    /// Adds one cell solved by a kernel, with this number of elements.
+    /// Adds one cell solved by a kernel, with this number of elements (faces or parts of faces).
     pub(in crate::merge) fn count_leaf(&self, elements: usize) {
         self.leaves.fetch_add(1, Ordering::Relaxed);
         self.leaf_elements

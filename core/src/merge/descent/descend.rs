@@ -375,7 +375,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Opens each operand's deferred leaf of exactly this cell as a list or as bins; `opening` is the number
-    /// of elements in these leaves.
+    /// of elements (faces or parts of faces) in these leaves.
     fn with_open_leaves(&self, cell: &Cell, states: States, opening: usize) -> States {
         let open =
             |(k, state): (u32, State)| (k, state.opened(cell, self.sources, &self.counters.binned));
@@ -425,7 +425,8 @@ impl<'a> Descent<'a> {
         Ok(join::branch(cell, cut, minus, plus, self.sources))
     }
 
-    /// Lists the elements of all operands in the cell; `None` if an operand's elements cannot be listed.
+    /// Lists the elements (faces or parts of faces) of all operands in the cell; `None` if an operand's
+    /// elements cannot be listed.
     fn list_operands<'s>(&self, cell: &Cell, states: &'s States) -> Option<Vec<ListedOperand<'s>>> {
         let listed = |(number, state): &'s (u32, State)| {
             let (number, list) = (*number, state.list_in(cell, self.sources)?);
@@ -435,7 +436,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Returns the result of the first kernel that does not refuse the cell, after equal operands became one.
-    /// `None` if all kernels refuse, or if an operand's elements cannot be listed.
+    /// `None` if all kernels refuse, or if an operand's elements (faces or parts of faces) cannot be listed.
     fn solve_with(
         &self,
         cell: Cell,

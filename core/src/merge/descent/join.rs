@@ -16,8 +16,8 @@ use crate::tree::node::{Branch, DeferredLeaf, FaceGroup, Node};
 
 /// The most faces that two deferred leaves together may list in order to become one leaf.
 ///
-/// This is half the number of elements of a cell that a kernel solves, so that a joined leaf is not split
-/// again at once.
+/// This is half the number of elements (faces or parts of faces) of a cell that a kernel solves, so that a
+/// joined leaf is not split again at once.
 pub const MAX_FACES_JOINED: usize = 16;
 
 /// Returns the branch for a cell from the branches of its two halves.

@@ -13,15 +13,16 @@ use crate::merge::lists::list::{FaceRecord, List, PartRecord, Sources};
 use crate::mesh::tasks::WorkSize;
 use crate::tree::node::{Branch, Node};
 
-/// The least number of elements of a cell that is worth a task of its own: a kernel takes about 20 µs for
-/// half as many, and a task costs less than 1 µs.
+/// The least number of elements (faces or parts of faces) of a cell that is worth a task of its own: a kernel
+/// takes about 20 µs for half as many, and a task costs less than 1 µs.
 const MIN_ELEMENTS_PER_TASK: usize = 64;
 
-/// The least number of elements of a cell that is worth waking the thread pool, which takes about 50 µs:
-/// kernels alone take ten times as long.
+/// The least number of elements (faces or parts of faces) of a cell that is worth waking the thread pool,
+/// which takes about 50 µs: kernels alone take ten times as long.
 const MIN_ELEMENTS_FOR_POOL: usize = 256;
 
-/// Returns how far the work in a cell with this number of elements is worth sharing among threads.
+/// Returns how far the work in a cell with this number of elements (faces or parts of faces) is worth sharing
+/// among threads.
 pub const fn work_size(elements: usize) -> WorkSize {
     match elements {
         ..MIN_ELEMENTS_PER_TASK => WorkSize::Nothing,
@@ -128,7 +129,8 @@ impl State {
         }
     }
 
-    /// Returns true if the operand's elements in the cell are listed, and no kernel made them.
+    /// Returns true if the operand's elements (faces or parts of faces) in the cell are listed, and no kernel
+    /// made them.
     pub fn is_given(&self) -> bool {
         match self {
             Self::Constant(_) => false,
@@ -150,8 +152,8 @@ impl State {
         }
     }
 
-    /// Returns the number of elements of the operand's deferred leaf, if that has exactly this cell;
-    /// otherwise 0.
+    /// Returns the number of elements (faces or parts of faces) of the operand's deferred leaf, if that has
+    /// exactly this cell; otherwise 0.
     pub fn len_to_open(&self, cell: &Cell) -> usize {
         match self {
             Self::Tree(branch) if branch.cell == *cell => match &*branch.node {
@@ -162,7 +164,8 @@ impl State {
         }
     }
 
-    /// Returns the number of listed elements, each of which a halving of the cell visits.
+    /// Returns the number of listed elements (faces or parts of faces), each of which a halving of the cell
+    /// visits.
     pub fn listed_len(&self) -> usize {
         match self {
             Self::List(list) => list.len(),
@@ -170,7 +173,8 @@ impl State {
         }
     }
 
-    /// Returns true if all of the operand's elements are listed, and their planes are perpendicular to axes.
+    /// Returns true if all of the operand's elements (faces or parts of faces) are listed, and their planes
+    /// are perpendicular to axes.
     pub fn is_orthogonal(&self, sources: &Sources) -> bool {
         match self {
             Self::List(list) => {
@@ -187,8 +191,8 @@ impl State {
         }
     }
 
-    /// Returns the operand's elements as a list of the cell; `None` if they cannot be listed, or if one
-    /// extends out of the smaller cell in which it is known to be surface.
+    /// Returns the operand's elements (faces or parts of faces) as a list of the cell; `None` if they cannot
+    /// be listed, or if one extends out of the smaller cell in which it is known to be surface.
     pub fn list_in(&self, cell: &Cell, sources: &Sources) -> Option<Cow<'_, List>> {
         match self {
             Self::List(list) => Some(Cow::Borrowed(list)),

@@ -69,8 +69,8 @@ pub fn of_one_node(states: &States) -> Option<TwinTable> {
     TwinTable::found(states.iter().map(pair).collect())
 }
 
-/// Finds operands whose lists have the same elements, in any order, and the same winding number at the cell's
-/// corner; `None` if there are none.
+/// Finds operands whose lists have the same elements (faces or parts of faces), in any order, and the same
+/// winding number at the cell's corner; `None` if there are none.
 ///
 /// # Cost
 /// One pass over lists of equal length, and a sort of lists with equal hashes.
@@ -113,8 +113,8 @@ pub fn of_one_boundary<'a>(
     TwinTable::found(own.zip(operands).map(pair).collect())
 }
 
-/// Returns a hash that is the same for lists of the same elements in any order; `None` if a face is not a
-/// triangle.
+/// Returns a hash that is the same for lists of the same elements (faces or parts of faces) in any order;
+/// `None` if a face is not a triangle.
 fn content_hash(list: &List, sources: &Sources) -> Option<u64> {
     spend(list.len());
     let mut sum = 0u64;
@@ -128,7 +128,8 @@ fn content_hash(list: &List, sources: &Sources) -> Option<u64> {
     Some(parts.fold(sum, u64::wrapping_add))
 }
 
-/// Returns true if two lists have the same elements in any order; faces are the same if their keys are equal.
+/// Returns true if two lists have the same elements (faces or parts of faces) in any order; faces are the
+/// same if their keys are equal.
 fn are_equal<K: Ord>(a: &List, b: &List, key_of: impl Fn(&FaceRecord) -> K) -> bool {
     let faces = |list: &List| {
         let mut faces: Vec<K> = list.records.iter().map(&key_of).collect();

@@ -155,7 +155,8 @@ impl Division {
         &mut self.triangulation
     }
 
-    /// Returns for each neighbour of a cell the edge across which it lies, and its number.
+    /// Returns for each neighbour of a triangle of the division the edge across which it lies, and its
+    /// number.
     pub fn neighbours(&self, cell: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         let neighbours = self.triangulation.cells()[cell]
             .neighbours
@@ -165,26 +166,26 @@ impl Division {
         neighbours.map(|(edge, neighbour)| (edge, *neighbour as usize))
     }
 
-    /// Returns the corners of a cell, counterclockwise.
+    /// Returns the corners of a triangle of the division, counterclockwise.
     pub fn corners_of(&self, cell: usize) -> [&Vertex; 3] {
         let corners = self.triangulation.cells()[cell].corners;
         corners.map(|c| &**self.triangulation.vertex(c))
     }
 
-    /// Returns the number of a cell at a corner of the polygon.
+    /// Returns the number of a triangle of the division at a corner of the polygon.
     pub fn cell_at_corner(&self, corner: usize) -> usize {
         self.triangulation.cell_at(as_number(corner)) as usize
     }
 
-    /// Returns the segments that run along an edge of a cell, each with whether it has the direction of the
-    /// edge.
+    /// Returns the segments that run along an edge of a triangle of the division, each with whether it has
+    /// the direction of the edge.
     pub fn along_edge(&self, cell: usize, edge: usize) -> impl Iterator<Item = (usize, bool)> + '_ {
         let along = self.triangulation.along_edge(as_number(cell), edge);
         along.map(|(segment, is_along)| (segment as usize, is_along))
     }
 
-    /// Computes a value for each cell: the first cell has `first`, and `across` returns the value of a
-    /// neighbour from the value of a cell, the cell and the edge.
+    /// Computes a value for each triangle of the division: the first has `first`, and `across` returns the
+    /// value of a neighbour from the value of a triangle, the triangle and the edge.
     pub fn spread<T: Copy>(&self, first: T, across: impl Fn(T, usize, usize) -> T) -> Vec<T> {
         let cells = self.triangulation.cells();
         let mut values = vec![first; cells.len()];
@@ -203,8 +204,8 @@ impl Division {
         values
     }
 
-    /// Returns the border of the cells for which `is_kept` is true, as closed loops; collinear edges are
-    /// merged.
+    /// Returns the border of the triangles of the division for which `is_kept` is true, as closed loops;
+    /// collinear edges are merged.
     pub fn outline(&mut self, is_kept: &[bool]) -> Vec<BareEdge> {
         let is_border = |this: &Self, (cell, edge): (u32, usize)| {
             let neighbour = this.triangulation.cells()[cell as usize].neighbours[edge];
@@ -261,7 +262,7 @@ impl Division {
         }
     }
 
-    /// Returns true if two edges of cells certainly lie in the plane of one segment.
+    /// Returns true if two edges of triangles certainly lie in the plane of one dividing segment.
     fn have_one_cut(&self, first: (u32, usize), second: (u32, usize)) -> bool {
         let cut = |(cell, edge)| self.triangulation.along_edge(cell, edge).next();
         let cuts = cut(first).zip(cut(second));

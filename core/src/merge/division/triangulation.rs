@@ -35,8 +35,9 @@ pub struct Cell {
     pub corners: [u32; 3],
     /// For each edge the number of the triangle across it, or `NONE`.
     pub neighbours: [u32; 3],
-    /// For each edge one more than the index of its last run (a segment along it), or 0 without a run. A
-    /// negative sign says that the runs' directions are given as seen from the triangle across the edge.
+    /// For each edge one more than the index of the last segment recorded along it, or 0 without a segment. A
+    /// negative sign says that the directions of segments are given as seen from the triangle across the
+    /// edge.
     marks: [i32; 3],
 }
 
@@ -46,7 +47,8 @@ struct EdgeSegment {
     segment: u32,
     /// True if the segment has the direction of the edge as seen from the triangle with the positive mark.
     is_forward: bool,
-    /// The mark of the edge before this run was added.
+    /// The mark of the edge before this segment was recorded: one more than the index of the previous
+    /// segment, or 0.
     before: i32,
 }
 

@@ -18,7 +18,7 @@ use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{DeferredLeaf, FaceGroup, Node, Part, PartElement};
 use crate::tree::pieces::pieces;
 
-/// The part of a face, or of a piece of a face, that bounds the result of a cell in one orientation.
+/// The part of a face that bounds the result of a cell in one orientation.
 #[derive(Debug)]
 pub struct KeptPart {
     face: SourceFace,

@@ -10,32 +10,32 @@ use crate::interrupt::poll;
 use crate::mesh::handle::{Slot, SourceFace};
 use crate::tree::node::Part;
 
-/// The part of an element (a face or a convex piece of a part) that bounds the result in one orientation.
+/// The part of a face, or of a convex piece of a cut face, that bounds the result in one orientation.
 pub enum StayingRegion {
-    /// Nothing of the element.
+    /// Nothing of the face.
     Nothing,
-    /// All of the element in the cell.
+    /// All of the face in the cell.
     All,
-    /// These convex pieces of the element.
+    /// These convex pieces of the face.
     Pieces(Vec<Polygon>),
-    /// The region of the element inside an outline; no two consecutive edges lie on one line.
+    /// The region of the face inside an outline; no two consecutive edges lie on one line.
     Outline(Vec<BareEdge>),
 }
 
-/// The face or the part that an element comes from.
+/// Whether a face in a cell is an original face or a piece of a cut one.
 pub enum Owner {
-    /// The element is this whole face.
+    /// This whole face of a source.
     Face(SourceFace),
-    /// The element is a convex piece of the part with this number.
+    /// A convex piece of the part with this number.
     Part(usize),
 }
 
-/// An element that meets the cell: its number, the face or part that it comes from, and the parts of it that
-/// bound the result in the source's orientation and in the opposite one.
+/// A face, or convex piece of a cut face, that meets the cell: its number, the source face or part that it
+/// comes from, and its regions that bound the result in the source's orientation and in the opposite one.
 pub type StayingElement = (usize, Owner, [StayingRegion; 2]);
 
 impl StayingRegion {
-    /// Makes the value for these convex pieces; `Nothing` if there are none.
+    /// Makes the region of these convex pieces; `Nothing` if there are none.
     pub fn of(pieces: Vec<Polygon>) -> Self {
         if pieces.is_empty() {
             Self::Nothing
@@ -54,8 +54,8 @@ impl StayingRegion {
     }
 }
 
-/// Returns the regions of all faces and parts that bound the result. `parts` has the parts with the slots of
-/// their sources, and `polygon` returns the element with a given number.
+/// Returns the regions of all faces and parts of faces that bound the result. `parts` has the parts with the
+/// slots of their sources, and `polygon` returns the face or piece with a given number.
 pub fn kept(
     elements: impl Iterator<Item = StayingElement>,
     parts: &[(&Arc<Part>, Slot)],
@@ -88,8 +88,8 @@ pub fn kept(
     kept
 }
 
-/// Returns the part unchanged if all its pieces stay, otherwise the pieces that stay; `None` if there are
-/// none.
+/// Returns a part of a face unchanged if all its convex pieces stay, otherwise the pieces that stay; `None`
+/// if there are none.
 fn kept_from_part(
     (part, slot): (&Arc<Part>, Slot),
     pieces: Vec<(usize, StayingRegion)>,

@@ -39,14 +39,14 @@ const MIN_CELLS: usize = 64;
 #[derive(Debug)]
 pub struct Bins {
     home: Branch,
-    /// For each group of faces, the number of its first element; elements are numbered consecutively over all
-    /// groups.
+    /// For each group of faces (with one mesh and orientation), the number of its first face; faces are
+    /// numbered consecutively over all groups.
     firsts: Vec<u32>,
     window: Window,
     /// For each cell the index of its first entry in `entries`; the last number is the end of the last cell's
     /// entries.
     starts: Vec<u32>,
-    /// The numbers of the elements in each cell, cell after cell.
+    /// The numbers of the faces in each cell, cell after cell.
     entries: Vec<u32>,
     /// For each corner of the window's cells, the number of entries in the cells below it on all three axes.
     below: Vec<u32>,
@@ -54,7 +54,7 @@ pub struct Bins {
 }
 
 /// The faces of one group, which share a mesh and an orientation; `first` is the number of the first one
-/// among the elements of the leaf.
+/// among the faces of the leaf.
 struct GroupFaces<'a> {
     mesh: &'a TriangleMesh,
     faces: &'a [FaceId],
@@ -62,9 +62,9 @@ struct GroupFaces<'a> {
     first: u32,
 }
 
-/// The cells that each element (face) lies in.
+/// The cells that each face lies in.
 struct Sorted {
-    /// For each element the number of the one cell that contains it, or `SPANS` if it reaches into several or
+    /// For each face the number of the one cell that contains it, or `SPANS` if it reaches into several or
     /// lies outside the window.
     cells: Vec<u32>,
     spans: Vec<Span>,
@@ -191,7 +191,7 @@ impl Bins {
         groups
     }
 
-    /// Returns the numbers of the elements in a cell, ascending and without repetition.
+    /// Returns the numbers of the faces in a cell, ascending and without repetition.
     fn elements_in(&self, cell: &Cell) -> Vec<u32> {
         let [x, y, z] = self.window.cells_in(cell);
         let mut elements = Vec::with_capacity(self.len_in(cell));
@@ -226,7 +226,8 @@ fn sorted_without_repetition(mut numbers: Vec<u32>, limit: usize) -> Vec<u32> {
     numbers
 }
 
-/// Returns the faces of a leaf by group; `None` if the leaf has elements other than triangles of meshes.
+/// Returns the faces of a leaf by group (one mesh and orientation); `None` if the leaf lists anything but
+/// triangles of meshes.
 fn runs(leaf: &DeferredLeaf) -> Option<Vec<GroupFaces<'_>>> {
     if !leaf.parts.is_empty() {
         return None;
@@ -245,7 +246,7 @@ fn runs(leaf: &DeferredLeaf) -> Option<Vec<GroupFaces<'_>>> {
     Some(runs)
 }
 
-/// Returns the group of the element with this number, and its face.
+/// Returns the group (faces of one mesh and orientation) of the face with this number, and the face.
 fn group_and_face_of<'a, 'b>(
     runs: &'a [GroupFaces<'b>],
     element: u32,
@@ -255,8 +256,8 @@ fn group_and_face_of<'a, 'b>(
 }
 
 impl GroupFaces<'_> {
-    /// Returns true if the group has at least as many faces as its mesh has vertices, so that one pass over
-    /// all vertices pays.
+    /// Returns true if this group of faces of one mesh has at least as many faces as the mesh has vertices,
+    /// so that one pass over all vertices pays.
     fn has_most_vertices(&self) -> bool {
         self.faces.len() >= self.mesh.vertices.len()
     }
@@ -365,7 +366,7 @@ impl Sorted {
     }
 }
 
-/// Returns the pairs of cell and element for the faces that reach into several cells; `None` if these pairs,
+/// Returns the pairs of cell and face for the faces that reach into several cells; `None` if these pairs,
 /// with the lines that the faces may cross, are more than `limit`.
 fn cell_element_pairs(
     window: &Window,
@@ -437,9 +438,9 @@ fn spread(
     }
 }
 
-/// Sorts entries by cell; returns for each cell the index of its first entry, and the elements of the
-/// entries. `cells` has the only cell of each element, and `rows` the pairs of cell and element of elements
-/// in several cells.
+/// Sorts pairs of a cell and a face in it by cell; returns for each cell the index of its first pair, and the
+/// faces of the pairs. `cells` has the only cell of each face, and `rows` the pairs of cell and face for
+/// faces in several cells.
 fn distribute(window: &Window, cells: &[u32], rows: &[(u32, u32)]) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0u32; window.len() + 2];
     for cell in cells.iter().filter(|c| **c != SPANS) {

@@ -60,7 +60,7 @@ impl AxisCrossings {
 
 impl Crossings {
     /// Finds the crossings of faces that reach into several cells; `corners` returns the corners and the
-    /// orientation of a face by its element number.
+    /// orientation of a face by its number.
     pub fn new(
         window: Window,
         spans: &[Span],

@@ -58,7 +58,7 @@ impl Frame {
     }
 }
 
-/// A whole face with its bounding box relative to a cell, rounded outwards.
+/// A whole face of an operand with its bounding box relative to a cell, rounded outwards.
 #[derive(Clone, Copy, Debug)]
 pub struct FaceRecord {
     low: [i32; 3],
@@ -77,7 +77,8 @@ impl GroupTag {
     /// 2³⁰ sources.
     const OPPOSITE: u32 = 1 << 31;
 
-    /// The bit that is set for faces that may touch other elements anywhere, not only along edges.
+    /// The bit that is set for faces that may touch other elements (faces or parts of faces) anywhere, not
+    /// only along edges.
     const TOUCHING: u32 = 1 << 30;
 
     fn new(slot: Slot, orientation: Orientation, touching: bool) -> Self {
@@ -128,7 +129,8 @@ impl PartRecord {
     }
 }
 
-/// The elements of one operand that meet a cell, and the operand's winding number at the cell's low corner.
+/// The faces and parts of faces of one operand that meet a cell, and the operand's winding number at the
+/// cell's low corner.
 #[derive(Clone, Debug)]
 pub struct List {
     frame: Frame,
@@ -171,7 +173,8 @@ impl Sources {
 }
 
 impl List {
-    /// Returns the low and the high corner of a box around all elements, rounded outwards.
+    /// Returns the low and the high corner of a box around all listed faces and parts of faces, rounded
+    /// outwards.
     pub fn bounds(&self) -> [Lattice; 2] {
         let records = self.records.iter().map(|r| (&r.low, &r.high));
         let parts = self.parts.iter().map(|p| (&p.low, &p.high));
@@ -210,8 +213,8 @@ impl List {
         list
     }
 
-    /// Makes the list of a deferred leaf in a cell that contains the cell of its branch. `None` if an element
-    /// extends out of the branch's cell, because outside it may not bound the solid.
+    /// Makes the list of a deferred leaf in a cell that contains the cell of its branch. `None` if a face or
+    /// part extends out of the branch's cell, because outside it may not bound the solid.
     pub fn of_larger_cell(branch: &Branch, cell: &Cell, sources: &Sources) -> Option<Self> {
         let Node::Deferred(leaf) = &*branch.node else {
             return None;
@@ -233,28 +236,29 @@ impl List {
         Some(list)
     }
 
-    /// Returns the number of elements (whole faces and parts).
+    /// Returns the number of listed faces and parts of faces.
     pub fn len(&self) -> usize {
         self.records.len() + self.parts.len()
     }
 
-    /// Returns true if a kernel made the elements; false if they are the unchanged boundary of an operand.
+    /// Returns true if a kernel made the listed faces and parts; false if they are the unchanged boundary of
+    /// an operand.
     pub fn is_by_kernel(&self) -> bool {
         self.by_kernel
     }
 
-    /// Returns true if the list has a face that may touch other elements anywhere, not only along edges.
+    /// Returns true if the list has a face that may touch other listed faces anywhere, not only along edges.
     pub fn is_touching(&self) -> bool {
         self.records.iter().any(|r| r.tag.is_touching())
     }
 
-    /// Returns true if no element is listed.
+    /// Returns true if no face and no part of a face is listed.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Divides the list of `cell` at `cut` into the lists of the minus and the plus half; an element may be
-    /// in both.
+    /// Divides the list of `cell` at `cut` into the lists of the minus and the plus half; a face may be in
+    /// both.
     pub fn divide(mut self, cell: &Cell, cut: Cut, sources: &Sources) -> (Self, Self) {
         spend(self.len());
         if !self.frame.resolves(cell) {
@@ -273,8 +277,8 @@ impl List {
         (self, plus)
     }
 
-    /// Restricts the list to a smaller cell. No element may meet the other part of the larger cell, so that
-    /// the winding number at the low corner does not change.
+    /// Restricts the list to a smaller cell. No listed face may meet the other part of the larger cell, so
+    /// that the winding number at the low corner does not change.
     pub fn shrink(&mut self, inner: &Cell, sources: &Sources) {
         if !self.frame.resolves(inner) {
             spend(self.len());
@@ -282,7 +286,7 @@ impl List {
         }
     }
 
-    /// Returns the winding number in `cell` outside of the smaller cell `inner`; no element may meet this
+    /// Returns the winding number in `cell` outside of the smaller cell `inner`; no listed face may meet this
     /// region.
     pub fn winding_number_outside(&self, cell: &Cell, inner: &Cell, sources: &Sources) -> i32 {
         match cell.cut() {
@@ -314,7 +318,8 @@ impl List {
         plus
     }
 
-    /// Returns the number of elements that extend out of the cell, which halving cannot separate soon.
+    /// Returns the number of listed faces and parts that extend out of the cell, which halving cannot
+    /// separate soon.
     pub fn count_reaching_out(&self, cell: &Cell) -> usize {
         let high = cell.high();
         let (low, high) = (self.frame.indices(cell.low()), self.frame.indices(&high));
@@ -372,7 +377,7 @@ impl List {
         change
     }
 
-    /// Returns the list as a deferred leaf, complemented if `complement` is true; without elements, as a
+    /// Returns the list as a deferred leaf, complemented if `complement` is true; an empty list becomes a
     /// leaf.
     pub fn close(self, complement: bool, sources: &Sources) -> Node {
         let corner = if complement {

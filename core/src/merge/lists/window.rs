@@ -28,7 +28,7 @@ pub struct Window {
 /// standing for outside the window.
 #[derive(Clone, Copy, Debug)]
 pub struct Span {
-    /// The number of the face among the elements of a deferred leaf.
+    /// The number of the face among the faces of a deferred leaf.
     pub element: u32,
     /// The lowest cell index on each axis.
     pub low: [i16; 3],

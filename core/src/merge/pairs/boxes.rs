@@ -23,20 +23,20 @@ const LANES: usize = 8;
 /// A corner of a box, as 32-bit integers.
 type Ends = [i32; 3];
 
-/// An element with its box in 32-bit coordinates.
+/// A triangle, or a part of a face, with its box in 32-bit coordinates.
 #[derive(Clone, Copy)]
 pub struct BoxedElement {
     low: [i32; 3],
     high: [i32; 3],
-    /// The index of the element's operand.
+    /// The index of the operand that the triangle or part belongs to.
     pub operand: u32,
-    /// The number of the element, chosen by the caller.
+    /// The number of the triangle or part, chosen by the caller.
     pub number: u32,
 }
 
 impl BoxedElement {
-    /// Makes an element with its operand's index, its number, and its box with `shift` low bits of each
-    /// coordinate dropped.
+    /// Makes a triangle or part of a face with its operand's index, its number, and its box with `shift` low
+    /// bits of each coordinate dropped.
     #[allow(clippy::cast_possible_truncation, reason = "the shift leaves 31 bits")]
     pub fn new(operand: usize, number: u32, [low, high]: [&Lattice; 2], shift: u32) -> Self {
         Self {
@@ -47,19 +47,28 @@ impl BoxedElement {
         }
     }
 
-    /// Returns the same element with another number.
-    #[must_use]
-    pub const fn numbered(self, number: u32) -> Self {
-        Self { number, ..self }
+    /// Makes an element with its operand's index, its number, and the low and the high corner of its box.
+    pub const fn between(operand: u32, number: u32, low: Ends, high: Ends) -> Self {
+        Self {
+            low,
+            high,
+            operand,
+            number,
+        }
     }
 
-    /// Returns the low and the high corner of the element's box.
+    /// Returns true if the boxes of two elements overlap.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        (0..3).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
+    }
+
+    /// Returns the low and the high corner of the box.
     pub const fn ends(&self) -> (Ends, Ends) {
         (self.low, self.high)
     }
 
-    /// Returns the element with its box clipped to the box from `low` to `high`; `None` if the boxes do not
-    /// overlap.
+    /// Returns the triangle or part with its box clipped to the box from `low` to `high`; `None` if the boxes
+    /// do not overlap.
     pub fn within(&self, low: Ends, high: Ends) -> Option<Self> {
         let part = Self {
             low: each_axis(|i| self.low[i].max(low[i])),
@@ -93,7 +102,7 @@ struct Lanes {
     high: [[i32; LANES]; 3],
 }
 
-/// The elements whose boxes reach into a box of space, grouped by operand.
+/// The elements (triangles or parts of faces) whose boxes reach into a box of space, grouped by operand.
 pub struct ElementsInBox {
     elements: Vec<BoxedElement>,
     half_open_box: HalfOpenBox,
@@ -103,36 +112,37 @@ pub struct ElementsInBox {
 
 /// The box of points with coordinates above `low` and up to `high`.
 ///
-/// Two elements belong to the space that contains the low corner of the intersection of their boxes, so that
-/// each pair is found in one space only.
+/// A pair of overlapping boxes belongs to the half-open box that contains the low corner of their
+/// intersection, so that each pair is found in one half-open box only.
 #[derive(Clone, Copy)]
 pub struct HalfOpenBox {
     low: [i32; 3],
     high: [i32; 3],
 }
 
-/// Calls `report` for the pairs of elements of different operands whose boxes overlap, and `crowd` for elements
-/// that halving does not separate, with the space to which their pairs belong. Stops and returns `None` if a
-/// call does.
-pub fn pairs(
+/// Calls `report` for the pairs of elements (triangles or parts of faces) of different operands whose boxes
+/// overlap, and returns the elements that halving does not separate, sorted by number; pairs of these are not
+/// reported. Stops and returns `None` if `report` does.
+pub fn crowded(
     part: ElementsInBox,
     mut report: impl FnMut(u32, u32) -> Option<()>,
-    mut crowd: impl FnMut(&[BoxedElement], &HalfOpenBox) -> Option<()>,
-) -> Option<()> {
+) -> Option<Vec<BoxedElement>> {
+    let mut crowded = Vec::new();
     part.halved(MAX_COMPARED, |part| {
-        if part.elements.len() <= MAX_COMPARED_UNSEPARATED {
-            let half_open_box = part.half_open_box;
-            compare_all(&part.elements, &half_open_box, |a, b| {
-                half_open_box.if_pair_belongs(a, b, || report(a.number, b.number))
-            })
-        } else {
-            crowd(&part.elements, &part.half_open_box)
+        if part.elements.len() > MAX_COMPARED_UNSEPARATED {
+            crowded.extend(part.elements);
+            return Some(());
         }
-    })
+        let half_open_box = part.half_open_box;
+        compare_all(&part.elements, &half_open_box, |a, b| {
+            half_open_box.if_pair_belongs(a, b, || report(a.number, b.number))
+        })
+    })?;
+    Some(without_repetition(crowded))
 }
 
-/// Calls `report` for all pairs of elements of different operands whose boxes overlap, the earlier operand
-/// first. Compares all with all; stops and returns `None` if `report` does.
+/// Calls `report` for all pairs of elements (triangles or parts of faces) of different operands whose boxes
+/// overlap, the earlier operand first. Compares all with all; stops and returns `None` if `report` does.
 pub fn compare_all(
     elements: &[BoxedElement],
     half_open_box: &HalfOpenBox,
@@ -162,9 +172,9 @@ pub fn compare_all(
     Some(())
 }
 
-/// Calls `report` for all pairs of elements of different operands whose boxes overlap, the lower number first,
-/// where most operands have a single element. Sorts the boxes along the axis on which they overlap least, and
-/// compares only those that overlap there.
+/// Calls `report` for all pairs of elements (triangles or parts of faces) of different operands whose boxes
+/// overlap, the lower number first, where most operands have a single element. Sorts the boxes along the axis
+/// on which they overlap least, and compares only those that overlap there.
 fn compare_in_order(
     elements: &[BoxedElement],
     half_open_box: &HalfOpenBox,
@@ -194,28 +204,12 @@ fn compare_in_order(
     Some(())
 }
 
-/// Returns the elements sorted by the lower ends of their boxes on an axis.
+/// Returns the elements (triangles or parts of faces) sorted by the lower ends of their boxes on an axis.
 fn sorted_along(axis: usize, elements: &[BoxedElement]) -> Vec<BoxedElement> {
     let begins = (0usize..).zip(elements).map(|(at, e)| (e.low[axis], at));
     let mut order: Vec<(i32, usize)> = begins.collect();
     order.sort_unstable();
     order.into_iter().map(|(_, at)| elements[at]).collect()
-}
-
-/// Calls `report` for each element of the first group and each of the second whose boxes overlap; compares all
-/// with all.
-pub fn compare_groups(
-    first: &[BoxedElement],
-    second: &[BoxedElement],
-    report: impl Fn(&BoxedElement, &BoxedElement),
-) {
-    let lanes = Lanes::of(second);
-    for one in first {
-        spend(1 + second.len() / PAIRS_PER_UNIT);
-        Lanes::each_overlapping(&lanes, 0, one, |at| {
-            report(one, &second[at]);
-        });
-    }
 }
 
 impl Lanes {
@@ -225,7 +219,7 @@ impl Lanes {
         high: [[i32::MIN; LANES]; 3],
     };
 
-    /// Packs the boxes of elements in order; empty boxes fill the last pack.
+    /// Packs the boxes of elements (triangles or parts of faces) in order; empty boxes fill the last pack.
     fn of(elements: &[BoxedElement]) -> Vec<Self> {
         elements.chunks(LANES).map(Self::packed).collect()
     }
@@ -279,7 +273,7 @@ impl Lanes {
 }
 
 impl HalfOpenBox {
-    /// Returns the smallest space that contains the boxes of all elements.
+    /// Returns the smallest space that contains the boxes of all elements (triangles or parts of faces).
     pub fn around(elements: &[BoxedElement]) -> Self {
         let low = |i: usize| elements.iter().map(|e| e.low[i]).min();
         let high = |i: usize| elements.iter().map(|e| e.high[i]).max();
@@ -289,7 +283,8 @@ impl HalfOpenBox {
         }
     }
 
-    /// Returns the axis along which the boxes of elements are shortest, relative to the space.
+    /// Returns the axis along which the boxes of elements (triangles or parts of faces) are shortest,
+    /// relative to the space.
     fn sparsest(&self, elements: &[BoxedElement]) -> usize {
         let share = |i: usize| {
             let length = |e: &BoxedElement| f64::from(e.high[i]) - f64::from(e.low[i]);
@@ -317,9 +312,9 @@ impl HalfOpenBox {
         [below, above]
     }
 
-    /// Calls `report` if the pair of elements belongs to this space, and returns its result; otherwise returns
-    /// `Some(())`.
-    pub fn if_pair_belongs(
+    /// Calls `report` if the pair of boxes belongs to this part of space, and returns its result; otherwise
+    /// returns `Some(())`.
+    fn if_pair_belongs(
         &self,
         a: &BoxedElement,
         b: &BoxedElement,
@@ -332,8 +327,8 @@ impl HalfOpenBox {
         }
     }
 
-    /// Returns true if the low corner of the intersection of two elements' boxes lies in this space.
-    pub fn pair_belongs(&self, a: &BoxedElement, b: &BoxedElement) -> bool {
+    /// Returns true if the low corner of the intersection of two boxes lies in this part of space.
+    fn pair_belongs(&self, a: &BoxedElement, b: &BoxedElement) -> bool {
         (0..3).all(|i| {
             let corner = a.low[i].max(b.low[i]);
             self.low[i] < corner && corner <= self.high[i]
@@ -341,16 +336,16 @@ impl HalfOpenBox {
     }
 }
 
-/// Returns the elements sorted by number, without repetition.
-pub fn without_repetition(mut elements: Vec<BoxedElement>) -> Vec<BoxedElement> {
+/// Returns the elements (triangles or parts of faces) sorted by number, without repetition.
+fn without_repetition(mut elements: Vec<BoxedElement>) -> Vec<BoxedElement> {
     elements.sort_unstable_by_key(|e| e.number);
     elements.dedup_by_key(|e| e.number);
     elements
 }
 
 impl ElementsInBox {
-    /// Makes a part of space around all elements, which must be grouped by operand; `shift` is the number of
-    /// low bits dropped from their boxes.
+    /// Makes a part of space around all elements (triangles or parts of faces), which must be grouped by
+    /// operand; `shift` is the number of low bits dropped from their boxes.
     #[must_use]
     pub fn of(elements: Vec<BoxedElement>, shift: u32) -> Self {
         let half_open_box = HalfOpenBox::around(&elements);
@@ -367,9 +362,9 @@ impl ElementsInBox {
         self.shift
     }
 
-    /// Halves space into parts with at most `max_elements` elements each, and adds one part with all elements
-    /// that halving does not separate. Each pair of overlapping boxes belongs to one of the first parts, or
-    /// is in the last one.
+    /// Halves space into parts with at most `max_elements` elements (triangles or parts of faces) each, and
+    /// adds one part with all elements that halving does not separate. Each pair of overlapping boxes belongs
+    /// to one of the first parts, or is in the last one.
     #[must_use]
     pub fn divided(self, max_elements: usize) -> Vec<Self> {
         let shift = self.shift;
@@ -388,8 +383,8 @@ impl ElementsInBox {
         parts
     }
 
-    /// Halves space, and calls `visit` for each part that has at most `max_elements` elements or that halving
-    /// does not separate; stops and returns `None` if `visit` does.
+    /// Halves space, and calls `visit` for each part that has at most `max_elements` elements (triangles or
+    /// parts of faces) or that halving does not separate; stops and returns `None` if `visit` does.
     fn halved(self, max_elements: usize, mut visit: impl FnMut(Self) -> Option<()>) -> Option<()> {
         let mut open = vec![self];
         while let Some(part) = open.pop() {
@@ -402,8 +397,8 @@ impl ElementsInBox {
         Some(())
     }
 
-    /// Halves the space on an axis, and appends the halves with elements of different operands to `open`.
-    /// Returns false, without a change, if no axis separates the elements.
+    /// Halves the space on an axis, and appends the halves with elements (triangles or parts of faces) of
+    /// different operands to `open`. Returns false, without a change, if no axis separates the elements.
     ///
     /// It takes the longest axis that separates the elements: this is as good as the best one, and saves
     /// counting on all axes.
@@ -428,7 +423,8 @@ impl ElementsInBox {
         self.half_open_box.low[axis].midpoint(self.half_open_box.high[axis])
     }
 
-    /// Returns the numbers of elements that reach into the lower and into the upper half on an axis.
+    /// Returns the numbers of elements (triangles or parts of faces) that reach into the lower and into the
+    /// upper half on an axis.
     fn counts(&self, axis: usize) -> [usize; 2] {
         let at = self.middle(axis);
         let count = |[below, above]: [u32; 2], e: &BoxedElement| {

@@ -358,6 +358,6 @@ fn swept_strands(outlines: &Outlines, stops: &Stops) -> (Vec<SweptStrand>, Vec<u
 }
 
 fn not_closed() -> Error {
-    let text = "the outlines are not closed: their winding numbers are inconsistent";
+    let text = "the outlines are not closed; at each point as many segments must end as begin";
     Error::new(ErrorKind::NotClosed, text)
 }

@@ -306,7 +306,8 @@ impl<S: Affine> FacetTree<S> {
         export
     }
 
-    /// Returns the box of the facets, enlarged by a margin in model units, at least one step.
+    /// Returns the box around the tree's facets (input points, segments or polygons), enlarged by a margin in
+    /// model units, at least one step.
     pub fn whole(&self, margin: f64) -> Result<Polytope<S>> {
         let steps = (margin / self.units([1.0; 3])[0])
             .round()
@@ -365,14 +366,16 @@ fn half_of(side: i8) -> Option<Half> {
     }
 }
 
-/// Returns the box of the facets, enlarged by `margin` steps on each side.
+/// Returns the box around facets (points, segments or polygons), enlarged by `margin` steps on each side.
 fn grown_box<S: Affine>(facets: &[Facet], margin: i64) -> Result<Polytope<S>> {
     let corners = || facets.iter().flat_map(|f| &f.corners);
     let reach = |k: i64| k.clamp(-S::MAX_COORDINATE, S::MAX_COORDINATE);
     let low = [0, 1, 2].map(|i| reach(corners().map(|c| c[i]).min().unwrap_or(0) - margin));
     let high = [0, 1, 2].map(|i| reach(corners().map(|c| c[i]).max().unwrap_or(0) + margin));
     Polytope::cuboid(&low, &high).ok_or_else(|| {
-        let text = "the facets extend to the border of the lattice, so no box fits around them";
+        let text =
+            "the facets extend to the border of the lattice, so no box fits around the facets; \
+                    choose a coarser pitch";
         Error::new(ErrorKind::TooLarge, text)
     })
 }

@@ -64,7 +64,8 @@ impl Cast<2> for Dim2 {
             if from == to {
                 return without_extent();
             }
-            let text = "a segment extends beyond the lattice of 2^53 steps";
+            let text = "a segment has an end beyond the lattice of 2^53 steps; scale the segments \
+                        down, or choose a coarser pitch";
             Error::new(ErrorKind::TooLarge, text)
         })
     }

@@ -24,7 +24,7 @@ enum StackEntry {
     Cut { node: NodeId, from: f64, far: Far },
 }
 
-/// What lies on the stack directly below a cut.
+/// What lies on the stack of a ray's walk directly below a cut.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Far {
     /// Not the child on the far side of the cut.

@@ -12,7 +12,7 @@ use crate::mesh::handle::NodeId;
 use crate::tree::partition::SplitMix;
 use crate::tree::trace::Watcher;
 
-/// Builds the tree that divides the pieces as the plan says.
+/// Builds the tree that divides the pieces (convex parts of facets) as the plan says.
 ///
 /// # Order
 /// The list of pieces and the plan determine the tree.
@@ -159,8 +159,8 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
         }
     }
 
-    /// Distributes pieces to the two sides of a node's cut, in their order; stores coplanar pieces and
-    /// crossings in the tree.
+    /// Distributes pieces (convex parts of facets) to the two sides of a node's cut, in their order; stores
+    /// coplanar pieces and crossings in the tree.
     fn distribute(
         &mut self,
         pieces: Vec<Piece<S>>,

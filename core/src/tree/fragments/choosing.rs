@@ -149,8 +149,8 @@ fn unsuited_cut(why: &str) -> Error {
     Error::new(ErrorKind::BadSnapshot, text)
 }
 
-/// The first of the tree's own hyperplanes, with its index, that does not leave all pieces on one side;
-/// `None` if there is none.
+/// The first of the tree's own hyperplanes, with its index, that does not leave all pieces (convex parts of
+/// facets) on one side; `None` if there is none.
 fn first_that_divides<S: Affine>(
     pieces: &[Piece<S>],
     own: &[S::Hyperplane],
@@ -208,8 +208,8 @@ fn asked_cut<S: Affine>(
     }
 }
 
-/// Of sampled hyperplanes, supporting or through corners of pieces, the one whose larger side has the fewest
-/// pieces.
+/// Of sampled hyperplanes, supporting or through corners of pieces (convex parts of facets), the one whose
+/// larger side has the fewest pieces.
 fn through_ends<S: Affine>(
     lines: &Lines,
     pieces: &[Piece<S>],
@@ -233,8 +233,8 @@ fn through_ends<S: Affine>(
     }
 }
 
-/// A sample of hyperplanes through corners of the pieces: through one, two or three, the dimension of the
-/// space.
+/// A sample of hyperplanes through corners of the pieces (convex parts of facets): through one, two or three,
+/// the dimension of the space.
 fn corner_cuts<'a, S: Affine>(
     lines: &'a Lines,
     pieces: &[Piece<S>],

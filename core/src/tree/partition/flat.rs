@@ -29,9 +29,9 @@ pub struct FlatCut<S: Space> {
     pub plus: NodeId,
 }
 
-/// A piece of a cut with one leaf on each side.
+/// A convex piece of a node's cut with one leaf on each side.
 pub struct Contact<S: Space> {
-    /// The piece, with the orientation of the cut.
+    /// The convex piece, with the orientation of the cut.
     pub fragment: S::Fragment,
     /// The number of the leaf on the cut's minus side.
     pub minus: NodeId,
@@ -129,7 +129,7 @@ impl<S: Space> Flat<S> {
         Ok(found)
     }
 
-    /// All pieces of cuts that separate two leaves.
+    /// All convex pieces of cuts that separate two leaves.
     ///
     /// # Order
     /// By inner node, in the order of the list.

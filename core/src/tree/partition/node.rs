@@ -35,12 +35,12 @@ impl Label {
     }
 }
 
-/// A fragment and the number of the input element from which it was cut.
+/// A fragment of a set's boundary, and the number of the input facet from which it was cut.
 #[derive(Clone, Debug)]
 pub struct Facet<S: Space> {
     /// The convex piece, oriented with the inside of its set on the minus side.
     pub fragment: S::Fragment,
-    /// The number of the input element; where facets overlap, the one with the smallest number counts.
+    /// The number of the input facet; where facets overlap, the one with the smallest number counts.
     pub source: u64,
 }
 

@@ -163,7 +163,8 @@ fn side_of_region<S: Space>(
     above: Option<&(Arc<SubHyperplane<S>>, Half, usize)>,
 ) -> Result<Half> {
     let Some((sub_hyperplane, ..)) = above else {
-        let text = "a moved or refined hyperplane misses the lattice of 2^53 steps";
+        let text = "a moved or refined hyperplane misses the lattice of 2^53 steps; move the set \
+                    less, or choose a coarser pitch";
         return Err(Error::new(ErrorKind::TooLarge, text));
     };
     match S::split(&sub_hyperplane.span, cut) {

@@ -118,7 +118,7 @@ fn not_closed() -> Error {
     )
 }
 
-/// A piece of a span that each facet covers entirely or not at all.
+/// A convex piece of a cut that each facet covers entirely or not at all.
 struct Piece<S: Space> {
     fragment: S::Fragment,
     rise: i32,
@@ -148,8 +148,8 @@ fn covered_pieces<S: Space>(cut: &Cut<S>) -> Vec<Piece<S>> {
         })
 }
 
-/// The parts of a piece that a facet covers and those that it does not cover, with their changed rise and
-/// layers.
+/// The parts of a convex piece of a cut that a facet covers and the parts that it does not cover, with the
+/// new winding number change and number of facets of each.
 fn cover<S: Space>(piece: Piece<S>, facet: &Facet<S>, rise: i32) -> Vec<Piece<S>> {
     let (under, beside) = overlay::<S>(piece.fragment, &facet.fragment);
     let beside = beside.into_iter().map(|fragment| Piece {

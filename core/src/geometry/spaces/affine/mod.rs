@@ -48,7 +48,8 @@ pub trait Affine: Space {
     /// The corners of a fragment in order, each coordinate within a few units in the last place.
     fn corners(piece: &Self::Fragment) -> Vec<[f64; 3]>;
 
-    /// For each corner of a piece of a facet, whether the edge that leaves it lies on an edge of the facet.
+    /// For each corner of a piece of a facet, whether the edge that leaves the corner lies on an edge of the
+    /// facet.
     ///
     /// `facet` has the facet's corners; edges that `seams` marks do not count. In 2D: for each end of the
     /// piece, whether it is an end of the facet.
@@ -77,7 +78,7 @@ pub trait Affine: Space {
     }
 }
 
-/// How a convex piece lies relative to a hyperplane, from the sides of its corners.
+/// The position of a convex set relative to a hyperplane, from the sides on which its corners lie.
 fn relation_of(sides: impl Iterator<Item = Side>) -> Split<()> {
     let (mut minus, mut plus) = (false, false);
     for side in sides {

@@ -14,14 +14,15 @@ use crate::geometry::vertices::VertexTable;
 use crate::mesh::handle::{Slot, VertexId};
 use crate::tree::node::Part;
 
-/// A point inside the cell that several elements of an operand may share.
+/// A point inside the cell at which the faces of one operand, or pieces of its cut faces, may meet.
 #[derive(Clone)]
 pub(super) struct Anchor {
     pub(super) name: PointName,
     pub(super) position: AnchorPosition,
 }
 
-/// The position of an anchor.
+/// The position of an anchor (a point at which faces of one operand may meet): a lattice point or a
+/// constructed point.
 #[derive(Clone)]
 pub(super) enum AnchorPosition {
     Lattice(Lattice),
@@ -63,7 +64,8 @@ fn vertex_at(part: &Part, position: &Lattice) -> Option<VertexId> {
 }
 
 impl Element<'_> {
-    /// Returns the corners of the element inside the cell, which other elements of the operand may share.
+    /// Returns the corners inside the cell of this face, or piece of a cut face, at which other faces of the
+    /// operand may meet it.
     pub(super) fn anchors(&self, cell: &Cell, names: &mut PointNames) -> Vec<Anchor> {
         match &self.kind {
             ElementKind::Face(triangle) => self
@@ -88,8 +90,8 @@ impl Element<'_> {
         }
     }
 
-    /// Returns the points in which edges of the element leave the cell, which neighbouring elements share;
-    /// `clipped` is the part of the element in the cell.
+    /// Returns the points in which edges of this face, or piece of a cut face, leave the cell, and which
+    /// neighbouring faces share; `clipped` is its part in the cell.
     pub(super) fn anchors_at_walls(
         &self,
         clipped: &Polygon,
@@ -120,8 +122,8 @@ impl Anchor {
         }
     }
 
-    /// Returns an anchor at a corner of a clipped face in which one of the face's edges meets a wall of the
-    /// cell; `None` for other corners.
+    /// Returns, as an anchor, the point in which an edge of a face meets a wall of the cell at the given
+    /// corner of the clipped face; `None` if the corner is no such point.
     #[allow(clippy::cast_possible_truncation, reason = "one of three axes")]
     fn at_wall(triangle: &Triangle, before: &Corner, corner: &Corner) -> Option<Self> {
         let (edge, wall) = match (&before.edge, &corner.edge) {
@@ -138,7 +140,7 @@ impl Anchor {
         })
     }
 
-    /// Returns true if a corner is at the anchor's position.
+    /// Returns true if a corner is at this point.
     pub(super) fn is_at(&self, corner: &Arc<Vertex>) -> bool {
         match &self.position {
             AnchorPosition::Lattice(p) => corner.as_lattice() == Some(p),

@@ -15,54 +15,56 @@ use crate::geometry::apart::{are_apart, NearTriangle};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
-use crate::merge::pairs::{pairs, shift_of, BoxedElement};
+use crate::merge::pairs::{pairs, shift_of, BoxedElement, ElementsInBox};
 
-/// The numbers of the elements that may meet an element: rarely more than six.
+/// The numbers of the faces of other operands, or pieces of cut faces, that may meet a face: rarely more than
+/// six.
 type Neighbours = SmallVec<[u32; 6]>;
 
-/// The number of the first pair of elements that is examined as soon as it is found; the pairs 32, 64 and so
-/// on follow. If many pairs are degenerate, the search so ends early.
+/// The number of the first pair of faces of different operands that is examined as soon as it is found; the
+/// pairs 32, 64 and so on follow. If many pairs touch without crossing, the search so ends early.
 const FIRST_PAIR_EXAMINED: usize = 16;
 
-/// How the faces of other operands affect an element.
+/// How the faces of other operands affect one face, or convex piece of a cut face, in the cell.
 pub(super) enum CutStatus {
-    /// The element does not meet the cell.
+    /// The face does not meet the cell.
     Absent,
-    /// The element is a whole face that no other operand is near, with a vertex in the cell.
+    /// All of an original face that no other operand is near; a vertex of it lies in the cell.
     Untouched,
-    /// No other operand crosses the element; it has at least one anchor (a point that other elements may
-    /// share).
+    /// No other operand crosses the face, which has at least one anchor (a point that other faces of its
+    /// operand may share).
     Uncut(Vec<Anchor>),
-    /// The element was divided.
+    /// Faces of other operands divided the face.
     Cut(Box<CutElement>),
 }
 
-/// The crossing points and the names of corners that all elements share.
+/// The points in which edges cross faces, and the names of corners, which all faces in the cell share.
 struct SharedNames<'a> {
     points: Points,
     names: PointNames<'a>,
 }
 
-/// The elements of other operands that an element meets.
+/// The faces of other operands that a face, or convex piece of a cut face, meets in the cell.
 enum NearElements<'a> {
-    /// The element meets no other one; it may not even meet the cell.
+    /// The face meets no face of another operand; it may not even meet the cell.
     Apart,
-    /// The element does not meet the cell.
+    /// The face does not meet the cell.
     Absent,
-    /// The part of the element inside the cell, and the faces that may cross it, perhaps none.
+    /// The part of the face inside the cell, and the faces of other operands that may cross it, perhaps none.
     Near(Box<Polygon>, Vec<CrossingFace<'a>>),
 }
 
-/// An element that was divided.
+/// A face, or convex piece of a cut face, that faces of other operands divided.
 pub(super) struct CutElement {
-    /// The part of the element inside the cell.
+    /// The part of the face inside the cell.
     pub(super) polygon: Polygon,
     pub(super) trace: Trace,
     pub(super) anchors: Vec<Anchor>,
 }
 
 impl Scene<'_> {
-    /// Returns how other operands affect each element; `None` if two elements touch in a degenerate position.
+    /// Returns how other operands affect each face, or convex piece of a cut face, in the cell; `None` if two
+    /// of different operands touch without crossing.
     pub(super) fn cut_statuses(&self) -> Option<Vec<CutStatus>> {
         let near = self.neighbours()?.into_iter().enumerate();
         // A cell with a degenerate position is refused before any element is divided.
@@ -83,8 +85,8 @@ impl Scene<'_> {
         all_near.map(status).collect()
     }
 
-    /// Returns the elements of other operands that an element meets; `None` if it touches one in a degenerate
-    /// position.
+    /// Returns the faces of other operands that face (or piece of a cut face) number `i` meets; `None` if it
+    /// touches one without crossing it.
     fn near_elements(&self, i: usize, neighbours: &[u32]) -> Option<NearElements<'_>> {
         if neighbours.is_empty() {
             return Some(NearElements::Apart);
@@ -96,7 +98,7 @@ impl Scene<'_> {
         Some(NearElements::Near(Box::new(polygon), crossing_faces))
     }
 
-    /// Returns the cut status of an element that no other operand is near.
+    /// Returns the cut status of a face, or piece of a cut face, that no other operand is near.
     fn status_apart(&self, i: usize, shared: &mut SharedNames) -> Option<CutStatus> {
         let element = &self.elements[i];
         if element.vertices_in(self.cell).next().is_some() {
@@ -112,8 +114,8 @@ impl Scene<'_> {
         }
     }
 
-    /// Returns for each element the elements of other operands that may meet it inside the cell; `None` if
-    /// there are too many pairs for a sweep, or if a sampled pair touches in a degenerate position.
+    /// Returns for each face, or piece of a cut face, the numbers of those of other operands that may meet it
+    /// inside the cell; `None` if a sampled pair touches without crossing.
     fn neighbours(&self) -> Option<Vec<Neighbours>> {
         let size = self.cell.size().into_iter().max().unwrap_or(0);
         let shift = shift_of(1 << size);
@@ -123,7 +125,7 @@ impl Scene<'_> {
         };
         let elements = (0..).zip(&self.elements);
         let boxes = elements.filter(|(_, e)| !e.is_apart()).map(boxed).collect();
-        let swept = |number: u32| self.elements[number as usize].swept(self.cell);
+        let bounded = |number: u32| self.elements[number as usize].bounded(self.cell);
         let mut found = vec![Neighbours::new(); self.elements.len()];
         let near: Vec<NearTriangle> = self
             .elements
@@ -131,7 +133,7 @@ impl Scene<'_> {
             .map(|e| self.near_triangle(e))
             .collect();
         let mut count = 0usize;
-        pairs(boxes, swept, |a, b| {
+        pairs(ElementsInBox::of(boxes, shift), bounded, |a, b| {
             poll();
             let (i, j) = (a as usize, b as usize);
             if are_apart(&near[i], &near[j]) {
@@ -145,10 +147,11 @@ impl Scene<'_> {
             }
             Some(())
         })?;
-        // Pairs are not found in the order of the elements.
+        // Pairs are not found in the order of the elements, and some repeatedly.
         for list in found.iter_mut().filter(|list| list.len() > 1) {
             poll();
             list.sort_unstable();
+            list.dedup();
         }
         Some(found)
     }
@@ -180,7 +183,8 @@ impl Scene<'_> {
         })))
     }
 
-    /// Returns the neighbours that may cross a polygon; `None` if one touches it in a degenerate position.
+    /// Returns the faces among `neighbours` that may cross a polygon; `None` if one touches it without
+    /// crossing it.
     fn crossing_faces(
         &self,
         polygon: &Polygon,
@@ -209,12 +213,14 @@ impl Scene<'_> {
 }
 
 impl CutElement {
-    /// Returns a part of the element that has an anchor as a corner; `None` if there is none.
+    /// Returns the index of a part of the divided face that has an anchor (a point shared with other faces)
+    /// as a corner; `None` if there is none.
     pub(super) fn part_at(&self, anchor: &Anchor) -> Option<usize> {
         self.part_with(|corner| anchor.is_at(corner))
     }
 
-    /// Returns the part at the first corner for which `is_it` is true; `None` if there is none.
+    /// Returns the index of the part of the divided face at the first corner for which `is_it` is true;
+    /// `None` if there is none.
     pub(super) fn part_with(&self, is_it: impl Fn(&Arc<Vertex>) -> bool) -> Option<usize> {
         let corner = self.polygon.corners().iter().position(|c| is_it(&c.at))?;
         self.trace.part_at_corner(corner)

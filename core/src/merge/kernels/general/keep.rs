@@ -11,8 +11,8 @@ use crate::merge::kernels::stays::{kept, Owner, StayingRegion};
 use crate::mesh::handle::{FaceId, SourceFace};
 
 impl Scene<'_> {
-    /// Returns the parts of all elements that bound the result, given the labels of their pieces; `value`
-    /// returns the expression's value for a label.
+    /// Returns the parts of all faces in the cell that bound the result, given how each face is cut and in
+    /// which operands its parts lie (`labels`); `value` returns the expression's value for a label.
     pub(super) fn keep(
         &self,
         statuses: Vec<CutStatus>,
@@ -42,8 +42,8 @@ impl Scene<'_> {
 }
 
 impl Element<'_> {
-    /// Returns the parts of the element that bound the result in its source's orientation and in the opposite
-    /// one, given the labels of its pieces.
+    /// Returns the parts of the face that bound the result in its source's orientation and in the opposite
+    /// one; `labels` says for each part of the face in which operands it lies.
     fn staying_regions(
         &self,
         status: CutStatus,
@@ -61,8 +61,8 @@ impl Element<'_> {
         }
     }
 
-    /// Returns the orientation in which a piece of the element stays, given the bits of the other operands: 0
-    /// for the source's orientation, 1 for the opposite one; `None` if the piece goes.
+    /// Returns the orientation in which a part of the face stays, given the bits of the other operands: 0 for
+    /// the source's orientation, 1 for the opposite one; `None` if it does not stay.
     fn side(
         &self,
         others: Labels,
@@ -75,11 +75,12 @@ impl Element<'_> {
     }
 }
 
-/// A cache of an expression's values for labels.
+/// A cache of an expression's values for labels, each of which has a bit for every operand: whether a point
+/// is inside it.
 struct Values<F> {
     value: F,
     known: HashMap<Labels, bool>,
-    /// The last request and its result: consecutive elements mostly ask for the same.
+    /// The last request and its result: consecutive faces mostly ask for the same.
     last: Option<((Labels, Labels), [bool; 2])>,
 }
 
@@ -107,15 +108,15 @@ impl<F: FnMut(Labels) -> bool> Values<F> {
     }
 }
 
-/// Returns that all of an element stays in the orientation `side`, and nothing in the other one.
+/// Returns that all of a face stays in the orientation `side`, and nothing in the other one.
 fn all_on(side: usize) -> [StayingRegion; 2] {
     let mut stays = [StayingRegion::Nothing, StayingRegion::Nothing];
     stays[side] = StayingRegion::All;
     stays
 }
 
-/// Returns the parts of a divided element that bound the result in each orientation; `sides` has for each
-/// part the orientation in which it bounds the result, or `None`.
+/// Returns the parts of a divided face that bound the result in each orientation; `sides` has for each part
+/// the orientation in which it bounds the result, or `None`.
 fn staying_regions_of_parts(status: CutStatus, sides: &[Option<usize>]) -> [StayingRegion; 2] {
     let CutStatus::Cut(mut cut) = status else {
         return [StayingRegion::Nothing, StayingRegion::Nothing];

@@ -12,34 +12,38 @@ use crate::interrupt::poll;
 use crate::mesh::disjoint::DisjointSets;
 use crate::mesh::handle::Slot;
 
-/// The number that stands for no anchor; it exceeds the numbers of all anchors.
+/// The number that stands for no anchor (a point that faces of one operand may share); it exceeds the numbers
+/// of all anchors.
 const NONE: u32 = u32::MAX;
 
-/// The most vertices of a mesh for each of its elements in the cell for which a table of all vertices is used
-/// instead of a hash map. An element looks up three names in the map, and each look-up costs as much as
-/// clearing about fifty entries of the table.
+/// The most vertices of a mesh for each of its faces in the cell for which a table of all vertices is used
+/// instead of a hash map. A face looks up three names in the map, and each look-up costs as much as clearing
+/// about fifty entries of the table.
 const MAX_VERTICES_PER_ELEMENT: usize = 16;
 
-/// Anchors (points that several elements of an operand share) with the known labels of the other operands
-/// there. All anchors of an element that nothing crosses have the same label.
+/// Anchors (points that several faces of an operand share) with the known labels there, which say in which
+/// other operands the point lies. All anchors of a face that nothing crosses have the same label.
 pub(super) struct KnownLabels {
-    /// For each operand the numbers of its anchors at the vertices of one mesh, if enough of the mesh is in
-    /// the cell.
+    /// For each operand the numbers of its anchors (shared points) at the vertices of one mesh, if enough of
+    /// the mesh is in the cell.
     of_vertices: Vec<Option<(Slot, Vec<u32>)>>,
-    /// The numbers of all other anchors, by operand and name.
+    /// The numbers of all other anchors (points that faces of an operand share), by operand and name.
     numbers: HashMap<(u32, PointName), u32>,
     sets: DisjointSets,
-    /// The label at each anchor that represents its class of anchors with equal labels, if known.
+    /// The label at each anchor (shared point) that represents its class of anchors with equal labels, if
+    /// known.
     pub(super) labels: Vec<Option<Labels>>,
-    /// For each element that nothing crosses the number of one of its anchors; otherwise `NONE`.
+    /// For each face that nothing crosses the number of one of its anchors (points that it shares with other
+    /// faces); otherwise `NONE`.
     anchors: Vec<u32>,
-    /// The divided elements at anchors, sorted: the anchor that represents the class, the element, and the
-    /// index of the anchor among the element's anchors.
+    /// The divided faces at anchors (shared points), sorted: the anchor that represents the class, the number
+    /// of the face, and the index of the anchor among the face's anchors.
     cuts: Vec<(u32, u32, u32)>,
 }
 
 impl KnownLabels {
-    /// Unites the anchors of each element that nothing crosses into classes; no label is known yet.
+    /// Unites the anchors (shared points) of each face that nothing crosses into classes; no label is known
+    /// yet.
     pub(super) fn new(scene: &Scene, statuses: &[CutStatus]) -> Self {
         // A closed surface has half as many vertices as triangles.
         let count = scene.elements.len();
@@ -74,8 +78,8 @@ impl KnownLabels {
         known
     }
 
-    /// Unites the anchors of an element that nothing crosses into one class and returns a number of it;
-    /// `NONE` for other elements.
+    /// Unites the anchors (shared points) of a face that nothing crosses into one class and returns the
+    /// number of one of them; `NONE` for other faces.
     fn enter(&mut self, cell: &Cell, element: &Element, status: &CutStatus) -> u32 {
         let operand = element.operand;
         match (status, &element.kind) {
@@ -99,8 +103,8 @@ impl KnownLabels {
         })
     }
 
-    /// Returns the number of the anchor that represents the class of the anchor with this name; adds the
-    /// anchor if it is new.
+    /// Returns the number of the anchor that represents the class of the anchor (point shared by faces) with
+    /// this name; adds the anchor if it is new.
     pub(super) fn root_of(&mut self, operand: usize, name: PointName) -> u32 {
         let next = self.sets.end();
         let at = match (name, &mut self.of_vertices[operand]) {
@@ -121,8 +125,8 @@ impl KnownLabels {
         self.sets.least(at)
     }
 
-    /// Returns the divided elements at an anchor, each with its part at the anchor and the label `label`
-    /// there; `None` if an anchor is no corner of its element.
+    /// Returns the divided faces at an anchor (shared point), each with its part at the anchor and the label
+    /// `label` there; `None` if an anchor is no corner of its face.
     pub(super) fn cut_elements_at(
         &self,
         root: usize,
@@ -142,8 +146,8 @@ impl KnownLabels {
         .collect()
     }
 
-    /// Returns the label of all other operands at an anchor of an operand; counts it if it is not known.
-    /// `None` if counting is doubtful.
+    /// Returns the label at an anchor of an operand (a point that its faces share): in which other operands
+    /// the point lies. Counts winding numbers if the label is not known; `None` if counting is doubtful.
     pub(super) fn label(
         &mut self,
         scene: &Scene,
@@ -154,8 +158,8 @@ impl KnownLabels {
         self.known_or_counted(root, || scene.count_label_at(operand, &anchor.position))
     }
 
-    /// Returns the label of all other operands on an element that nothing crosses; counts it if it is not
-    /// known. `None` if counting is doubtful.
+    /// Returns the label of a face that nothing crosses: in which other operands it lies. Counts winding
+    /// numbers if the label is not known; `None` if counting is doubtful.
     pub(super) fn label_of(
         &mut self,
         scene: &Scene,
@@ -192,8 +196,8 @@ impl KnownLabels {
     }
 }
 
-/// Makes an empty table of anchor numbers for the vertices of the mesh of an operand's first element; `None`
-/// if this mesh has too many vertices for its elements in the cell.
+/// Makes an empty table of anchor numbers for the vertices of the mesh of an operand's first face in the
+/// cell; `None` if this mesh has too many vertices for its faces in the cell.
 fn numbers_of_vertices(elements: &[Element]) -> Option<(Slot, Vec<u32>)> {
     let ElementKind::Face(triangle) = &elements.first()?.kind else {
         return None;

@@ -21,8 +21,8 @@ use crate::geometry::winding::path::{triangle_change_on_path, PaddedPath};
 use crate::interrupt::poll;
 
 impl Scene<'_> {
-    /// Returns for each element the labels of its pieces; `None` if labels contradict each other, or if they
-    /// cannot be counted.
+    /// Returns for each face in the cell the labels of its parts, which say in which other operands a part
+    /// lies; `None` if labels contradict each other, or if they cannot be counted.
     pub(super) fn labels(&self, statuses: &[CutStatus]) -> Option<Vec<PieceLabels>> {
         let mut known = KnownLabels::new(self, statuses);
         let mut labels = vec![PieceLabels::new(); statuses.len()];
@@ -42,8 +42,8 @@ impl Scene<'_> {
         Some(labels)
     }
 
-    /// Returns a part of a divided element and its label, from which the labels of all other parts follow;
-    /// `None` if no label can be counted.
+    /// Returns a part of a divided face and its label (in which other operands it lies), from which the
+    /// labels of all other parts follow; `None` if no label can be counted.
     fn start_label(
         &self,
         operand: usize,
@@ -63,8 +63,8 @@ impl Scene<'_> {
         cut.polygon.corners().iter().find_map(label)
     }
 
-    /// Labels the parts of a divided element from one of them, and then the parts of all divided elements
-    /// that are connected to it by common points; `None` if labels contradict each other.
+    /// Labels the parts of a divided face from one of them, and then the parts of all divided faces that are
+    /// connected to it by common points; `None` if labels contradict each other.
     fn spread_from(
         &self,
         statuses: &[CutStatus],
@@ -92,8 +92,8 @@ impl Scene<'_> {
         Some(())
     }
 
-    /// Returns the label of all operands except `own` at a point on the boundary of `own`; `None` if it
-    /// cannot be counted.
+    /// Returns the label at a point on the boundary of operand `own`: in which other operands the point lies;
+    /// `None` if winding numbers cannot be counted.
     pub(super) fn count_label_at(&self, own: usize, position: &AnchorPosition) -> Option<Labels> {
         match position {
             AnchorPosition::Lattice(point) => self.count_label_at_lattice(own, point),
@@ -101,15 +101,15 @@ impl Scene<'_> {
         }
     }
 
-    /// Returns the label of all operands except `own` at an exact point on the boundary of `own`; `None` if
-    /// it cannot be counted.
+    /// Returns the label at an exact point on the boundary of operand `own`: in which other operands the
+    /// point lies; `None` if winding numbers cannot be counted.
     fn count_label_at_vertex(&self, own: usize, point: &Vertex) -> Option<Labels> {
         let across = |e: &Element| e.change_on_path(&self.corner, point);
         self.count_label(own, point.approx(), across)
     }
 
-    /// Returns the label of all operands except `own` at a lattice vertex of `own`; `None` if it cannot be
-    /// counted.
+    /// Returns the label at a lattice vertex of operand `own`: in which other operands the vertex lies;
+    /// `None` if winding numbers cannot be counted.
     pub(super) fn count_label_at_lattice(&self, own: usize, point: &Lattice) -> Option<Labels> {
         let exact = Vertex::lattice(*point);
         let across = |e: &Element| match &e.kind {
@@ -119,8 +119,8 @@ impl Scene<'_> {
         self.count_label(own, point.map(as_double), across)
     }
 
-    /// Counts winding numbers along a path from the cell's corner to near a point, and returns the label
-    /// there of all operands except `own`; `across` returns the change at an element. `None` if a change is
+    /// Counts winding numbers along a path from the cell's corner to near a point, and returns in which
+    /// operands except `own` the point lies; `across` returns the change at a face. `None` if a change is
     /// doubtful, or a number is neither 0 nor 1.
     fn count_label(
         &self,
@@ -156,8 +156,8 @@ impl Scene<'_> {
     }
 }
 
-/// Returns the labels of all parts of a divided element, given the label of one; `None` if this contradicts
-/// the segments that divide the element.
+/// Returns the labels of all parts of a divided face (in which operands each lies), given the label of one;
+/// `None` if this contradicts the segments that divide the face.
 fn labels_of_parts(trace: &Trace, first: usize, start: Labels) -> Option<PieceLabels> {
     let agrees = start & trace.operands == trace.parts[first];
     let others = start & !trace.operands;

@@ -31,7 +31,8 @@ pub const MAX_OPERANDS: usize = 64;
 /// The label of a region: for each operand of the cell a bit that says whether the region is inside it.
 type Labels = u64;
 
-/// The labels of an element's pieces: one if nothing cuts the element, otherwise usually two.
+/// The labels of the parts into which other operands cut a face: one if nothing cuts it, otherwise usually
+/// two.
 type PieceLabels = SmallVec<[Labels; 2]>;
 
 /// The kernel that divides only faces that truly cross, and needs no trees.

@@ -17,55 +17,56 @@ use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::merge::kernels::problem::ListedOperand;
 use crate::merge::lists::list::{FaceRecord, List, PartRecord, Sources};
-use crate::merge::pairs::SweptElement;
+use crate::merge::pairs::BoundedElement;
 use crate::mesh::handle::{Slot, SourceFace, VertexId};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
 
-/// The elements of all operands in a cell.
+/// The faces, and convex pieces of cut faces, of all operands in a cell.
 pub(super) struct Scene<'a> {
     pub(super) cell: &'a Cell,
     /// The cell's low corner, in half lattice steps.
     pub(super) corner: Lattice,
     /// The operands' winding numbers at the cell's low corner.
     pub(super) corners: Vec<i32>,
-    /// The elements, sorted by operand.
+    /// The faces and convex pieces of cut faces, sorted by operand.
     pub(super) elements: Vec<Element<'a>>,
-    /// For each operand the index of the end of its elements.
+    /// For each operand the index in `elements` after its last face or piece.
     ends: Vec<usize>,
-    /// For each operand the low and the high corner of a box around its elements.
+    /// For each operand the low and the high corner of a box around its faces.
     pub(super) boxes: Vec<[Lattice; 2]>,
-    /// The listed parts of faces, with the slots of their sources.
+    /// The parts of cut faces that the operands list, with the slots of their sources.
     pub(super) parts: Vec<(&'a Arc<Part>, Slot)>,
     /// The index of an operand for which a winding number other than 0 and 1 was found.
     pub(super) overlapping: OnceCell<usize>,
 }
 
-/// A whole face, or a part of a face or a convex piece of a part.
+/// A whole face of an operand, or a part of a cut face, or a convex piece of such a part, in a cell.
 pub(super) struct Element<'a> {
     pub(super) operand: usize,
     /// The winding number behind the face minus the number in front of it.
     pub(super) weight: i32,
     pub(super) kind: ElementKind<'a>,
-    /// True if all of the element is known to lie in the cell.
+    /// True if the whole face, part or piece is known to lie in the cell.
     inside: bool,
     pub(super) low: Lattice,
     pub(super) high: Lattice,
 }
 
-/// The kind of an element, with its geometry.
+/// The geometry of a whole face of an operand, or of a part or piece of a cut face.
 pub(super) enum ElementKind<'a> {
     Face(Triangle<'a>),
     /// The face of a half-space: the slot of the half-space, and the part of its plane in the cell.
     Plane(Slot, Box<Face<'a>>),
-    /// A convex piece of a part: the part's number in `Scene::parts`, and the piece.
+    /// A convex piece of a part of a cut face: the part's number in `Scene::parts`, and the piece.
     Piece(usize, Box<Face<'a>>),
-    /// A part whose box meets no box of another operand: the part's number in `Scene::parts`, and the part.
+    /// A part of a cut face whose box meets no box of another operand: the part's number in `Scene::parts`,
+    /// and the part.
     Part(usize, ApartPart<'a>),
 }
 
-/// A part that no face of another operand can cross; its convex pieces are computed only if a path may cross
-/// it.
+/// A part of a cut face that no face of another operand can cross; its convex pieces are computed only if a
+/// path may cross it.
 pub(super) struct ApartPart<'a> {
     record: &'a PartRecord,
     pieces: OnceCell<Vec<Face<'a>>>,
@@ -144,8 +145,8 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Returns true if the box around a part meets no other operand's box, and the part has a corner that
-    /// certainly lies in the cell.
+    /// Returns true if the box around a part of a cut face meets no other operand's box, and the part has a
+    /// corner that certainly lies in the cell.
     fn is_apart(&self, operand: usize, part: &Part) -> bool {
         let [low, high] = part.enclosing();
         let meets =
@@ -155,8 +156,8 @@ impl<'a> Scene<'a> {
         !others.map(|(_, other)| other).any(meets) && corners.any(|c| is_well_inside(c, self.cell))
     }
 
-    /// Returns a triangle that contains the element, for quick tests: an element apart from a face is apart
-    /// from the pieces of this face, too. The face of a half-space is never known to be apart.
+    /// Returns a triangle that contains the face or piece, for quick tests: what is apart from a face is
+    /// apart from the pieces of this face, too. The face of a half-space is never known to be apart.
     pub(super) fn near_triangle(&self, element: &Element) -> NearTriangle {
         let corners = match &element.kind {
             ElementKind::Face(triangle) => Some(triangle.corners),
@@ -184,19 +185,20 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// The name of a point that several elements of an operand may share.
+/// The name of a point that several faces of an operand may share.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum PointName {
     /// A vertex of a mesh, by the mesh's slot and the vertex's number.
     Vertex(Slot, VertexId),
-    /// A corner of a part that is no vertex of its face, by a number for its exact position.
+    /// A corner of a part of a cut face that is no vertex of the face, by a number for its exact position.
     Point(u32),
     /// The point in which an edge of a mesh leaves the cell: the mesh's slot, the edge's ends, and the number
     /// of the wall, which is twice its axis, plus one for the upper wall.
     Crossing(Slot, [VertexId; 2], u8),
 }
 
-/// Returns the bounding box of the listed elements; if there are none, a box with low above high.
+/// Returns the bounding box of the listed faces and parts of faces; if there are none, a box with low above
+/// high.
 fn box_around(list: &List, sources: &Sources) -> [Lattice; 2] {
     let faces = list.records.iter();
     let faces = faces.map(|r| sources.get(r.slot()).face_box(r.face));
@@ -220,7 +222,7 @@ pub(super) fn is_well_inside(vertex: &Vertex, cell: &Cell) -> bool {
 }
 
 impl ApartPart<'_> {
-    /// Returns the part of a face.
+    /// Returns the part of a cut face.
     pub(super) fn part(&self) -> &Part {
         &self.record.element.part
     }
@@ -264,7 +266,8 @@ impl Triangle<'_> {
 }
 
 impl<'a> Element<'a> {
-    /// Makes the element of a listed face; `None` for the face of a half-space that misses the cell.
+    /// Makes the entry of a listed face for a scene; `None` for the face of a half-space that misses the
+    /// cell.
     fn of_record(
         operand: usize,
         record: &FaceRecord,
@@ -296,7 +299,8 @@ impl<'a> Element<'a> {
         })
     }
 
-    /// Returns the indices of the corners of a whole face that lie in the cell; none for other elements.
+    /// Returns the indices of the corners of a whole face that lie in the cell; none for a part or piece of a
+    /// face.
     pub(super) fn vertices_in(&self, cell: &Cell) -> impl Iterator<Item = usize> {
         let inside = match &self.kind {
             ElementKind::Face(_) if self.inside => [true; 3],
@@ -306,8 +310,8 @@ impl<'a> Element<'a> {
         (0..3).filter(move |i| inside[*i])
     }
 
-    /// Returns the low and the high corner of the element's box, clipped to the cell extended by one step,
-    /// relative to the cell's low corner.
+    /// Returns the low and the high corner of the box around the face or piece, clipped to the cell extended
+    /// by one step, relative to the cell's low corner.
     pub(super) fn extent(&self, cell: &Cell) -> [Lattice; 2] {
         if self.inside && matches!(self.kind, ElementKind::Face(_)) {
             return [&self.low, &self.high].map(|p| each_axis(|i| p[i] - cell.low()[i]));
@@ -317,12 +321,12 @@ impl<'a> Element<'a> {
         [&self.low, &self.high].map(|p| each_axis(|i| within(p, i)))
     }
 
-    /// Returns the element in the form that the search for pairs uses.
-    pub(super) fn swept(&self, cell: &Cell) -> SweptElement {
+    /// Returns the face or piece in the form that the search for pairs uses.
+    pub(super) fn bounded(&self, cell: &Cell) -> BoundedElement {
         let origin = cell.low();
         let relative = |p: &Lattice| each_axis(|i| as_double(p[i] - origin[i]));
         let [low, high] = self.extent(cell);
-        SweptElement {
+        BoundedElement {
             operand: self.operand,
             low,
             high,
@@ -333,13 +337,13 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// Returns true if the element is a part whose box meets no box of another operand.
+    /// Returns true if this is a part of a cut face whose box meets no box of another operand.
     pub(super) fn is_apart(&self) -> bool {
         matches!(self.kind, ElementKind::Part(..))
     }
 
-    /// Returns the change of the winding number where a path crosses the element, or that it is doubtful, as
-    /// [`Face::change_on_path`].
+    /// Returns the change of the winding number where a path crosses the face or piece, or that it is
+    /// doubtful, as [`Face::change_on_path`].
     pub(super) fn change_on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
         match &self.kind {
             ElementKind::Part(_, part) => part.change_on_path(from, to),
@@ -349,7 +353,8 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// Returns the element as a convex polygon; `None` for a part that is apart from all other operands.
+    /// Returns the face or piece as a convex polygon; `None` for a part that is apart from all other
+    /// operands.
     pub(super) fn shape(&self) -> Option<&Face<'a>> {
         Some(match &self.kind {
             ElementKind::Face(t) => t.shape.get_or_init(|| {

@@ -14,56 +14,58 @@ use crate::geometry::vertex::Vertex;
 use crate::geometry::winding::path::determinant;
 use crate::merge::division::PositionInPolygon;
 
-/// The segment in which a face of another operand crosses an element; the minus side of that face is on its
-/// left.
+/// The segment in which a face of one operand crosses a face of another; the minus side of the crossing face
+/// is on the segment's left.
 pub(super) struct Segment {
     pub(super) ends: [SegmentEnd; 2],
-    /// The index of the other operand.
+    /// The index of the operand that has the crossing face.
     pub(super) operand: usize,
     /// The plane of the crossing face.
     pub(super) plane: Arc<Plane>,
-    /// True if the other operand's inside is on the plus side of this plane.
+    /// True if the inside of the crossing face's operand is on the plus side of this plane.
     pub(super) plus: bool,
 }
 
-/// An end of a segment on an element.
+/// An end of the segment in which a face of another operand crosses a face.
 #[derive(Clone)]
 pub(super) struct SegmentEnd {
     pub(super) at: Arc<Vertex>,
-    /// Whether the end is a corner of the element, on one of its sides, or inside.
+    /// Whether the end is a corner of the crossed face, on one of its sides, or inside.
     pub(super) position: PositionInPolygon,
 }
 
-/// A face of another operand that may cross a given element.
+/// A face of one operand that may cross the face or piece in a [`CrossedElement`], which belongs to another
+/// operand.
 pub(super) struct CrossingFace<'a> {
     pub(super) face: &'a Face<'a>,
-    /// The number of the face among the elements of the cell.
+    /// The number of the face among the faces and pieces of faces in the cell.
     pub(super) number: u32,
     pub(super) operand: usize,
     /// The winding number on the minus side of the face, minus the number on its plus side.
     pub(super) weight: i32,
-    /// The sides of the face's plane on which the element's corners lie.
+    /// The sides of this face's plane on which the corners of the crossed face lie.
     pub(super) ours: Sides,
-    /// The sides of the element's plane on which the face's corners lie.
+    /// The sides of the crossed face's plane on which the corners of this face lie.
     pub(super) theirs: Sides,
 }
 
 impl Segment {
-    /// Returns the bit of the other operand in labels.
+    /// Returns the label with the bit of the operand that has the crossing face.
     pub(super) fn bit(&self) -> Labels {
         1 << self.operand
     }
 }
 
-/// An element that faces of other operands may cross.
+/// A whole face, or a convex piece of a cut face, of one operand in a cell, which faces of other operands may
+/// cross.
 pub(super) struct CrossedElement<'a> {
     pub(super) polygon: &'a Polygon,
     pub(super) number: u32,
 }
 
 impl CrossedElement<'_> {
-    /// Returns the segment in which a face crosses the element; `None` if it does not, an error if their
-    /// position is degenerate.
+    /// Returns the segment in which a face of another operand crosses this face; `None` if it does not, an
+    /// error if the two touch in a degenerate position.
     pub(super) fn segment(
         &self,
         other: &CrossingFace,
@@ -83,12 +85,12 @@ impl CrossedElement<'_> {
         }))
     }
 
-    /// Returns the ends of the segment in which a face crosses the element, if no corner of either lies in
-    /// the other's plane; `None` if it does not cross.
+    /// Returns the ends of the segment in which a face of another operand crosses this face, if no corner of
+    /// either lies in the other's plane; `None` if it does not cross.
     ///
-    /// Along the common line of both planes, with the face's minus side on the left, the element reaches from
-    /// x to x′ and the face from y to y′. If both borders meet in a point, the segment ends on the element's
-    /// border. A single point is no segment.
+    /// Along the common line of both planes, with the crossing face's minus side on the left, this face
+    /// reaches from x to x′ and the crossing face from y to y′. If both borders meet in a point, the segment
+    /// ends on the border of this face. A single point is no segment.
     fn ends(
         &self,
         other: &CrossingFace,
@@ -124,8 +126,9 @@ impl CrossedElement<'_> {
         ]))
     }
 
-    /// Returns the ends of the segment in which a face crosses the element, if corners may lie in the other's
-    /// plane; `None` if it does not cross. It compares the order of points along the common line.
+    /// Returns the ends of the segment in which a face of another operand crosses this face, if corners may
+    /// lie in the other's plane; `None` if it does not cross. It compares the order of points along the
+    /// common line.
     fn ends_by_order(
         &self,
         other: &CrossingFace,
@@ -158,9 +161,9 @@ impl CrossedElement<'_> {
         Ok((order(&from, &to) == onward).then_some([from, to]))
     }
 
-    /// Returns the side of the face's edge `rim` on which an edge of the element crosses the face's plane:
-    /// positive on the inner side, zero on the edge. The flag says whether the element's edge leads to the
-    /// plus side of the plane.
+    /// Returns the side of the other face's edge `rim` on which an edge of this face crosses the other face's
+    /// plane: positive on the inner side, zero on the edge. The flag says whether this face's edge leads to
+    /// the plus side of the plane.
     fn inside(
         &self,
         (edge, rises): (usize, bool),

@@ -19,25 +19,27 @@ use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::merge::division::{Defect, Division, PositionInPolygon};
 
-/// An element divided by the surfaces of other operands.
+/// A face, or convex piece of a cut face, divided by the surfaces of other operands.
 pub(super) struct Trace {
-    /// The bits of the operands whose faces cross the element.
+    /// The bits of the operands whose faces cross the divided face.
     pub(super) operands: Labels,
-    /// The labels of the parts of the element, ascending; a part is all cells with the same label.
+    /// The labels of the parts of the face, ascending: in which operands each part lies. A part is all
+    /// triangles of the division with the same label.
     pub(super) parts: SmallVec<[Labels; 2]>,
-    /// The division of the element; `None` if no face crosses it.
+    /// The division of the face; `None` if no face of another operand crosses it.
     divided: Option<Divided>,
 }
 
-/// An element divided into cells.
+/// A face divided into triangles.
 struct Divided {
     division: Division,
-    /// For each cell its label.
+    /// For each triangle of the division its label: in which operands it lies.
     labels: Vec<Labels>,
 }
 
 impl Trace {
-    /// Divides an element by the faces that may cross it; an error if they contradict each other.
+    /// Divides a face by the faces of other operands that may cross it; an error if they contradict each
+    /// other.
     pub(super) fn new(
         crossed: &CrossedElement,
         crossing_faces: &[CrossingFace],
@@ -70,7 +72,7 @@ impl Trace {
         })
     }
 
-    /// Returns the index of the part at a corner of the element.
+    /// Returns the index of the part at a corner of the divided face.
     pub(super) fn part_at_corner(&self, corner: usize) -> Option<usize> {
         let Some(Divided { division, labels }) = &self.divided else {
             return Some(0);
@@ -100,7 +102,7 @@ impl From<Defect> for Degenerate {
     }
 }
 
-/// Divides an element along segments.
+/// Divides a polygon along segments.
 fn divided<'s>(polygon: &Polygon, segments: &'s [Segment]) -> Result<Division, Degenerate> {
     let corners = polygon.corners().iter();
     let corners = corners.map(|c| (Arc::clone(&c.at), c.edge.clone()));
@@ -125,7 +127,8 @@ fn divided<'s>(polygon: &Polygon, segments: &'s [Segment]) -> Result<Division, D
     Ok(division)
 }
 
-/// Returns for each cell its label; an error if segments contradict each other.
+/// Returns for each triangle of a divided face its label relative to the first one: in which operands it
+/// lies; an error if segments contradict each other.
 fn labels(division: &Division, segments: &[Segment]) -> Result<Vec<Labels>, Degenerate> {
     let change = |cell: usize, edge: usize| {
         let along = division.along_edge(cell, edge);
@@ -148,8 +151,8 @@ fn labels(division: &Division, segments: &[Segment]) -> Result<Vec<Labels>, Dege
     is_certain.then_some(labels).ok_or(Degenerate)
 }
 
-/// Returns true if all segments along an edge of a cell belong to different operands. Three coincident faces
-/// of one operand would otherwise give the same bits as a single face.
+/// Returns true if all segments along an edge of a triangle of the division belong to different operands.
+/// Three coincident faces of one operand would otherwise give the same bits as a single face.
 fn are_of_different_operands(
     division: &Division,
     segments: &[Segment],
@@ -165,7 +168,8 @@ fn are_of_different_operands(
     })
 }
 
-/// Returns the label of the first cell, given the labels of all cells relative to it.
+/// Returns the label of the first triangle of the division (in which operands it lies), given the labels of
+/// all triangles relative to it.
 fn labels_of_first(division: &Division, segments: &[Segment], relative: &[Labels]) -> Labels {
     let (mut known, mut labels): (Labels, Labels) = (0, 0);
     for (cell, relative) in relative.iter().enumerate() {
@@ -177,8 +181,8 @@ fn labels_of_first(division: &Division, segments: &[Segment], relative: &[Labels
     labels
 }
 
-/// Returns for each segment along an inner edge of a cell the bit of its operand, and this bit again if the
-/// cell lies inside the operand, otherwise 0.
+/// Returns for each segment along an inner edge of a triangle of the division the bit of its operand, and
+/// this bit again if the triangle lies inside the operand, otherwise 0.
 fn sides<'a>(
     division: &'a Division,
     segments: &'a [Segment],

@@ -59,8 +59,8 @@ pub(super) struct Facets<'a> {
 }
 
 impl<'a> Facets<'a> {
-    /// Makes the facets of all operands; `None` if a listed element is not perpendicular to an axis, or has a
-    /// slanted edge that is no edge of its face.
+    /// Makes the facets of all operands; `None` if a listed element (a face or part of a face) is not
+    /// perpendicular to an axis, or has a slanted edge that is no edge of its face.
     pub(super) fn new(
         cell: &Cell,
         operands: &'a [ListedOperand],

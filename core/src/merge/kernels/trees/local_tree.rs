@@ -17,7 +17,7 @@ use crate::geometry::side::{Half, Orientation, Side};
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 
-/// A convex piece of boundary, with the jump of the winding number across it.
+/// A convex piece of an operand's boundary, with the jump of the winding number across it.
 ///
 /// The winding number on the minus side of the polygon's plane exceeds the number on its plus side by
 /// `weight`.
@@ -29,7 +29,7 @@ pub struct WeightedPolygon {
     pub weight: i32,
 }
 
-/// A piece of a polygon, and the winding numbers of an operand on the minus and the plus side of its plane.
+/// A part of a polygon, and the winding numbers of an operand on the minus and the plus side of its plane.
 #[derive(Debug)]
 pub struct LabelledPolygon {
     /// The polygon of the piece.
@@ -72,13 +72,14 @@ pub struct LocalTree {
     labels: Vec<i32>,
 }
 
-/// A fragment, or a piece of a fragment, while the tree is built.
+/// A fragment of an operand's boundary, or a piece of it, while the tree is built.
 struct PendingFragment {
     fragment: WeightedPolygon,
     extent: Extent,
 }
 
-/// The fragments and their pieces while the tree is built; tasks refer to them by index.
+/// The fragments of an operand's boundary and their pieces while the tree is built; tasks refer to them by
+/// index.
 struct TreeBuilder {
     all: Vec<PendingFragment>,
     /// For each node one fragment in its plane, which relates the winding numbers on both sides of the node.
@@ -367,8 +368,8 @@ impl TreeBuilder {
         }
     }
 
-    /// Divides pieces by a plane and returns those on its minus and on its plus side, without pieces that lie
-    /// in it.
+    /// Divides fragments of an operand's boundary by a plane and returns their pieces on the minus and on the
+    /// plus side, without fragments that lie in the plane.
     fn divide(&mut self, pieces: &[usize], cut: &Arc<Plane>) -> [Vec<usize>; 2] {
         let (mut minus, mut plus) = (Vec::new(), Vec::new());
         for &piece in pieces {

@@ -30,7 +30,8 @@ use operand::Operand;
 #[derive(Debug)]
 pub struct LocalTrees;
 
-/// A piece of a fragment, with the labels on its two sides: for each operand whether this side is inside it.
+/// A piece of a fragment of an operand's boundary, with the labels on its two sides: for each operand whether
+/// this side is inside it.
 pub(in crate::merge) struct Piece {
     pub(in crate::merge) polygon: Polygon,
     pub(in crate::merge) minus: Vec<bool>,
