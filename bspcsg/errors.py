@@ -153,8 +153,6 @@ _ADVICE = {
     "non_planar": "Pass triangles, or non_planar='triangulate' to divide it into triangles.",
     "not_simple": "Give an outline that does not cross or touch itself.",
     "not_reduced": "Make the solid without trusted=True, so that its overlaps are resolved.",
-    "too_large": "Choose a coarser pitch (for example pitch=-6), or move or scale the solids.",
-    "too_small": "Choose a finer pitch (for example pitch=-12), or scale the solid up.",
 }
 
 

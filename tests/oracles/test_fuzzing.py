@@ -125,7 +125,7 @@ def test_the_judge_of_sizes_notices() -> None:
     scene = Scene((Body((large,)), Body((tiny,))), ("-", 0, 1), ())
     assert judge_sized(scene) == []
     assert next(far_and_wide(scene, Forgetful())).startswith("untouched: the face")
-    assert list(far_and_wide(scene, Forgetful(threads=2))) == ["threads: 2 different meshes"]
+    assert list(far_and_wide(scene, Forgetful(threads=2))) == ["threads: 2 unchanged input meshes"]
     turned = dataclasses.replace(scene, expression=("-", 1, 0))
     assert judge_sized(turned) == []
 

@@ -330,7 +330,7 @@ def test_broken_file_costs_its_cases_only(folder: Path, capsys: Capture) -> None
         (["--results", "c.stl"], "--results would overwrite the input c.stl; choose another name."),
         (
             ["--results", "r.jsonl", "--junit", "./r.jsonl"],
-            "--junit would overwrite r.jsonl, which --results also writes;",
+            "--junit would overwrite r.jsonl, which --results also writes; choose different names.",
         ),
         (["-"], "crosscheck cannot read standard input; give the names of files."),
     ],

@@ -55,7 +55,10 @@ def test_solids_without_a_boundary_to_show(solid: b.Solid, words: str) -> None:
 def test_too_large_a_solid_is_a_picture_and_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(notebook, "_MAX_VIEW_TRIANGLES", 100)
     shown = str(b.sphere(r=1, segments=24)._repr_html_())
-    assert shown.startswith("<svg") and "528 triangles are too many for a notebook" in shown
+    assert (
+        shown.startswith("<svg")
+        and "528 triangles are too many for an interactive view in a notebook" in shown
+    )
     assert "iframe" not in shown
 
 

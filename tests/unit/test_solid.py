@@ -490,7 +490,9 @@ def test_operands_in_one_place_are_combined_without_dividing_space() -> None:
 def test_exact_volumes_refuse_to_be_too_long() -> None:
     ball = b.sphere(1, segments=24)
     rest = ball - ball.rotate((10, 20, 30)).translate((0.1, 0.2, 0.3))
-    with pytest.raises(b.LimitError, match=r"up to \d+ digits, more than 10\b") as caught:
+    with pytest.raises(
+        b.LimitError, match=r"up to \d+ digits, more than the limit of 10\b"
+    ) as caught:
         rest.exact_volume(most_digits=10)
     assert caught.value.code == "too_many"
     exact = rest.exact_volume()

@@ -79,7 +79,10 @@ pub fn check_reach(rows: &[Lattice]) -> Result<()> {
     match rows.iter().position(beyond) {
         None => Ok(()),
         Some(row) => {
-            let text = format!("corner {row} is more than {limit} lattice steps from the origin");
+            let text = format!(
+                "corner {row} is more than {limit} lattice steps from the origin; scale the corners down, or \
+                 choose a coarser pitch"
+            );
             Err(Error::at(ErrorKind::TooLarge, vec![row as u64], text))
         }
     }
