@@ -263,7 +263,8 @@ def of_kind(kind: type[_Kind], value: Any, name: str) -> _Kind:
     """Check that a parameter is an instance of a class, and return it."""
     if isinstance(value, kind):
         return value
-    raise invalid_parameter(f"{name} must be a {kind.__name__}, not {shown(value)}.")
+    article = "an" if kind.__name__[0] in "AEIOU" else "a"
+    raise invalid_parameter(f"{name} must be {article} {kind.__name__}, not {shown(value)}.")
 
 
 def no_options(options: Mapping[str, Any], solid: object) -> None:
