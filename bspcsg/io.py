@@ -23,7 +23,7 @@ from .formats.raw import RawMesh
 from .formats.registry import FORMATS
 from .formats.solids import solid_of
 from .parameters import file_path, of_kind, shown, text_value, truth_value
-from .solid.counting import counted
+from .solid.ledger import counted
 from .solid.solid import Solid
 
 #: Suffixes of scripts, which `load` evaluates.

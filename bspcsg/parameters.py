@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from ._core import set_threads as _set_threads
 from .errors import LimitError, invalid_parameter
-from .meant import question
+from .suggestions import question
 
 if TYPE_CHECKING:
     from ._types import SetOp, WindingRule

@@ -14,10 +14,10 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from .errors import MissingPartError, invalid_parameter
-from .meant import question
 from .operations.setops import OPERATIONS
-from .solid.counting import uncounted
+from .solid.ledger import uncounted
 from .solid.solid import Solid
+from .suggestions import question
 
 if TYPE_CHECKING:
     import trimesh

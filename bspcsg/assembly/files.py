@@ -13,16 +13,16 @@ from ..attributes.attributes import Attributes
 from ..attributes.colours import hexadecimal
 from ..attributes.material import Material
 from ..errors import Finding, FormatError, format_errors
-from ..formats import obj, single
+from ..formats import obj, single_precision
 from ..formats.atomic import write_file
 from ..formats.files import form_of, read_as, write
 from ..formats.glb import scene as glb
 from ..formats.raw import RawMesh, joined, parts_of
 from ..formats.registry import Form
-from ..formats.said import not_held
 from ..formats.scene import SceneNode, are_alike, say_alike
 from ..formats.solids import solid_of
 from ..formats.source import Source, whole_content
+from ..formats.storable_attributes import not_held
 from ..formats.threemf import scene as threemf
 from ..formats.threemf.properties import kept
 from ..formats.threemf.write import called
@@ -219,7 +219,7 @@ class _Describing:
             mesh = solid.normalized().to_mesh()
             self._tell(name, () if self._form.losses is None else self._form.losses(mesh))
             if self._form.is_single:
-                mesh, mended = single.settled(mesh)
+                mesh, mended = single_precision.settled(mesh)
                 self._tell(name, mended)
             self._meshes[id(solid)] = (solid, _raw(mesh, name, self._form.is_single))
         return self._meshes[id(solid)][1]

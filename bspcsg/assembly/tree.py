@@ -12,10 +12,10 @@ from .._types import FloatArray, Scalar
 from ..attributes.colours import AnyColor, color_of
 from ..errors import Finding, invalid_parameter, warn_of_losses
 from ..geometry.transform import Factors
+from ..method_ownership import owning
 from ..operations.setops import union
-from ..owned import owning
 from ..parameters import not_negative, of_kind, shown
-from ..solid.counting import uncounted
+from ..solid.ledger import uncounted
 from ..solid.movable import Movable
 from ..solid.solid import Solid
 from .bill import Bill, bill_of

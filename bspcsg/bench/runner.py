@@ -27,7 +27,7 @@ _GRACE_SECONDS = 120.0
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 
-_BOOT = Path(__file__).with_name("boot.py")
+_BOOT = Path(__file__).with_name("start_worker.py")
 
 
 @dataclass(frozen=True)

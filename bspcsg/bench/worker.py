@@ -19,9 +19,9 @@ from typing import Any
 from ..machine import forget_peak, held_mb, peak_mb
 from .cases import CASES, dome
 from .engines import ENGINES, Engine
-from .facts import facts_of
+from .result_facts import facts_of
 from .targets import OURS
-from .work import Carving, Chain, Outcome, Tell, Work
+from .workloads import Carving, Chain, Outcome, Tell, Work
 
 #: The least time between two reports of steps, in seconds.
 _REPORT_INTERVAL = 0.5

@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from ..errors import BspcsgError
-from .console import output, status, terminal
+from .console import output, status_line, terminal
 from .console.output import Output
 from .inputs.files import STREAM, Target, expanded, is_dropped
 from .inputs.scripts import SUFFIXES
@@ -142,7 +142,7 @@ def _progress(
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
 
-    status.end()
+    status_line.end()
     columns = (word, BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         yield iter(bar.track(pairs))

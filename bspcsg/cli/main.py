@@ -11,8 +11,8 @@ import click
 
 from .._core import __version__
 from ..errors import BspcsgError, FormatError, InternalError, harmless
-from ..meant import question
-from .console import clock, output, standard, status, terminal
+from ..suggestions import question
+from .console import clock, output, standard_streams, status_line, terminal
 
 _EPILOG = """\b
 Exit codes:
@@ -129,7 +129,7 @@ def main(arguments: Sequence[str] | None = None, began: float | None = None) -> 
     `began` is the start time of the process, as `time.perf_counter` measures it.
     """
     _fill_closed_streams()
-    standard.take_over(_ERRORS)
+    standard_streams.take_over(_ERRORS)
     sys.exit(run(sys.argv[1:] if arguments is None else arguments, began))
 
 
@@ -155,9 +155,9 @@ def run(arguments: Sequence[str], began: float | None = None) -> int:
         sys.stdout.flush()
         return code
     except BrokenPipeError:
-        standard.discard()
+        standard_streams.discard()
         return output.CLOSED_PIPE
-    except standard.FullOutputError as error:
+    except standard_streams.FullOutputError as error:
         return output.tell_error(_unwritable(error), as_json=False)
     except KeyboardInterrupt:
         return output.INTERRUPTED
@@ -170,7 +170,7 @@ def _answered(arguments: list[str]) -> int:
     """
     try:
         return _invoked(arguments)
-    except (BrokenPipeError, standard.FullOutputError):
+    except (BrokenPipeError, standard_streams.FullOutputError):
         raise
     except click.Abort:
         return output.INTERRUPTED
@@ -220,7 +220,7 @@ def _invoked(arguments: list[str]) -> int:
     quiet = bool(terminal.QUIET.intersection(arguments))
     with (
         commands.make_context("bspcsg", arguments, obj=tuple(arguments)) as context,
-        status.watched(next(iter(arguments), ""), quiet),
+        status_line.watched(next(iter(arguments), ""), quiet),
     ):
         code = commands.invoke(context)
     return code if isinstance(code, int) else output.DONE

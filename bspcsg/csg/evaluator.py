@@ -9,19 +9,19 @@ from typing import Any, get_args
 from ..bsp import Region
 from ..errors import BspcsgError, FormatError, invalid_parameter
 from ..parameters import file_path, function_of, of_kind, shown, truth_value, word
-from ..solid.counting import counted
+from ..solid.ledger import counted
 from ..solid.solid import Solid
-from .making.apart import COMBINING, moved_apart
 from .making.polish import Polish, corners_and_levels, pitch_of, polished_pitch, snapped
+from .making.transform_distribution import COMBINING, moved_apart
 from .nodes import files as nodes_file
 from .nodes import hulls as nodes_hull
-from .nodes import letters as nodes_letters
-from .nodes import moves as nodes_move
-from .nodes import plane as nodes_plane
+from .nodes import plane_figures as nodes_plane
 from .nodes import projection as nodes_project
-from .nodes import sets as nodes_set
+from .nodes import set_operations as nodes_set
 from .nodes import solids as nodes_solid
 from .nodes import sweeps as nodes_sweep
+from .nodes import text as nodes_letters
+from .nodes import transforms as nodes_move
 from .nodes.left_out import is_left_out, nothing_of
 from .nodes.registry import RECIPES, Evaluation, Geometry, OnInvalid
 from .scope import Scope, inherited, with_scope

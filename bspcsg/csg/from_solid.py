@@ -16,9 +16,9 @@ from ..geometry.chain import UNMOVED, FactorChain
 from ..geometry.transform import Factor
 from ..parameters import of_kind, truth_value
 from ..solid import expression
-from ..solid.counting import uncounted
 from ..solid.expression import Pending, Placed, Plan, make_plan
 from ..solid.leaf import ConstantLeaf, PlaneLeaf, TreeLeaf
+from ..solid.ledger import uncounted
 from ..solid.solid import Solid, expression_of, from_node
 from .syntax.tree import Argument, CsgTree, Node, Value
 

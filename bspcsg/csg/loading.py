@@ -10,7 +10,7 @@ from ..errors import BspcsgError, FormatError
 from ..formats.atomic import write_file
 from ..formats.source import limited_content
 from ..parameters import file_path, word
-from ..solid.counting import counted
+from ..solid.ledger import counted
 from ..solid.solid import Solid
 from .evaluator import evaluate
 from .from_solid import tree_of

@@ -13,13 +13,13 @@ import numpy as np
 from ..errors import Finding, FormatError, format_errors, invalid_parameter
 from ..mesh.mesh import Mesh
 from ..parameters import file_path, of_kind, shown, text_value, truth_value
-from . import single
+from . import single_precision
 from .atomic import refuse_target, write_file
-from .proof import prove, prove_with_attributes
 from .raw import RawMesh, empty_set, says_empty_set
 from .registry import FORMATS, Form, Format
-from .said import left_out, said_of, saying
 from .source import Source, present, whole_content
+from .storable_attributes import left_out, said_of, saying
+from .verification import prove, prove_with_attributes
 
 _BREP = (
     "{} files contain curved surfaces, and bspcsg reads triangle meshes only. Convert the"
@@ -267,7 +267,7 @@ def encoded(
     try:
         findings = form.losses(mesh) if form.losses is not None else ()
         if form.is_single and isinstance(mesh, Mesh):
-            mesh, mended = single.settled(mesh)
+            mesh, mended = single_precision.settled(mesh)
             findings = (*findings, *mended)
     except OverflowError:
         message = (

@@ -19,8 +19,8 @@ from ..mesh.mesh import Mesh
 from . import mtl
 from .blocks import encoded_lines, listed
 from .raw import EMPTY_SET, IndexPolygons, RawMesh, on_one_line, parts_of, says_empty_set
-from .said import chosen, said_of
 from .source import Source, as_text, quoted, whole
+from .storable_attributes import chosen, said_of
 
 #: Keywords of statements that are not read, and what they define.
 _DROPPED = {

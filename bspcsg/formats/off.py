@@ -12,8 +12,8 @@ from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
 from .blocks import encoded_lines, listed
 from .raw import EMPTY_SET, IndexPolygons, RawMesh, says_empty_set
-from .said import chosen, said_of
 from .source import Source, integral, quoted, whole
+from .storable_attributes import chosen, said_of
 
 #: The keyword of an OFF file; the number of vertices may follow it without a blank.
 _KEYWORD = re.compile(rb"((?:ST)?C?N?(4?)(n?)(?i:OFF))(\d*)")

@@ -9,9 +9,9 @@ from .._types import FloatArray
 from ..attributes.attributes import Attributes
 from ..errors import Finding
 from ..mesh.mesh import Mesh
-from .proof import Called, Scan
 from .raw import RawMesh
 from .source import Source
+from .verification import Called, Scan
 
 Encoder: TypeAlias = Callable[[Mesh | RawMesh], Iterator[bytes]]
 Keeper: TypeAlias = Callable[[Attributes, FloatArray], Attributes]
@@ -84,24 +84,24 @@ class Format:
 
 def _stl() -> Format:
     from . import stl
-    from .held import plain
+    from .readback import stl_obj_off_ply
 
     return Format(
         stl.read,
-        Form(stl.text, plain.text_stl, stl.called),
-        Form(stl.binary, plain.binary_stl, losses=stl.losses, is_single=True),
+        Form(stl.text, stl_obj_off_ply.text_stl, stl.called),
+        Form(stl.binary, stl_obj_off_ply.binary_stl, losses=stl.losses, is_single=True),
     )
 
 
 def _obj() -> Format:
     from . import obj
-    from .held import plain
+    from .readback import stl_obj_off_ply
 
     text = Form(
         obj.text,
-        plain.obj,
+        stl_obj_off_ply.obj,
         obj.called,
-        keeps=lambda said, _: obj.kept(said),
+        keeps=lambda attributes, _: obj.kept(attributes),
         beside=obj.beside,
         needs_vertices=True,
     )
@@ -109,16 +109,20 @@ def _obj() -> Format:
 
 
 def _ply() -> Format:
-    from .held import plain
     from .ply import columns, file
+    from .readback import stl_obj_off_ply
 
     return Format(
         file.read,
-        Form(file.text, plain.text_ply, keeps=lambda said, _: columns.kept(said)),
+        Form(
+            file.text,
+            stl_obj_off_ply.text_ply,
+            keeps=lambda attributes, _: columns.kept(attributes),
+        ),
         Form(
             file.binary,
-            plain.binary_ply,
-            keeps=lambda said, _: columns.kept(said),
+            stl_obj_off_ply.binary_ply,
+            keeps=lambda attributes, _: columns.kept(attributes),
             beyond=file.beyond,
         ),
     )
@@ -126,13 +130,20 @@ def _ply() -> Format:
 
 def _off() -> Format:
     from . import off
-    from .held import plain
+    from .readback import stl_obj_off_ply
 
-    return Format(off.read, Form(off.text, plain.off, keeps=lambda said, _: off.kept(said)))
+    return Format(
+        off.read,
+        Form(
+            off.text,
+            stl_obj_off_ply.off,
+            keeps=lambda attributes, _: off.kept(attributes),
+        ),
+    )
 
 
 def _threemf() -> Format:
-    from .held import threemf
+    from .readback import threemf
     from .threemf import file, properties, write
 
     binary = Form(
@@ -141,22 +152,22 @@ def _threemf() -> Format:
         write.called,
         write.losses,
         repeats=False,
-        keeps=lambda said, _: properties.kept(said),
+        keeps=lambda attributes, _: properties.kept(attributes),
     )
     return Format(file.read, None, binary, "mm")
 
 
 def _glb() -> Format:
-    from .glb import file, said
-    from .held import glb
+    from .glb import attribute_conversion, file
+    from .readback import glb
 
     binary = Form(
         file.binary,
         glb.objects,
-        said.called,
+        attribute_conversion.called,
         file.losses,
         is_single=True,
-        keeps=said.kept,
+        keeps=attribute_conversion.kept,
         beyond=file.beyond,
     )
     return Format(file.read, None, binary, "mm", "y")
@@ -164,7 +175,7 @@ def _glb() -> Format:
 
 def _vtk(suffix: str) -> Format:
     from . import vtk
-    from .held.vtk import legacy, xml
+    from .readback.vtk import legacy, xml
 
     scan = legacy if suffix == ".vtk" else xml
     return Format(vtk.reader(suffix), None, Form(vtk.writer(suffix), scan))

@@ -16,7 +16,7 @@ from ..attributes.attributes import Values
 from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
 from ..mesh.weld import welded
-from . import single
+from . import single_precision
 from .blocks import blocks
 from .raw import EMPTY_SET, RawMesh, on_one_line, parts_of, says_empty_set
 from .source import Source, as_text, quoted
@@ -225,7 +225,7 @@ def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
     OverflowError
         If a coordinate is beyond single precision.
     """
-    return single.losses(mesh, "binary STL")
+    return single_precision.losses(mesh, "binary STL")
 
 
 def _normals(corners: FloatArray) -> FloatArray:

@@ -14,7 +14,7 @@ from .._types import IndexArray
 from ..attributes.attributes import Values
 from ..attributes.colours import as_bytes, color_of, is_color
 from ..attributes.material import Material
-from .leaving import (
+from .library_export import (
     CORNER_FACES,
     CORNERS,
     MATERIALS,

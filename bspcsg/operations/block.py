@@ -30,7 +30,7 @@ from types import TracebackType
 
 from ..errors import InvalidMeshError, invalid_parameter
 from ..geometry.chain import UNMOVED
-from ..solid import counting
+from ..solid import ledger
 from ..solid.expression import ExpressionNode
 from ..solid.leaf import ConstantLeaf
 from ..solid.solid import Solid
@@ -47,7 +47,7 @@ class Block:
 
     def __init__(self, combined: Callable[[Sequence[Solid]], Solid]) -> None:
         self._combined = combined
-        self._ledger = counting.opened()
+        self._ledger = ledger.opened()
         self._solid: Solid | None = None
 
     @property
@@ -100,7 +100,7 @@ class Block:
 
         The result becomes an operand of the enclosing block, if there is one.
         """
-        counting.close(self._ledger)
+        ledger.close(self._ledger)
         if not failed:
             self._solid = self._combined(self.solids)
 

@@ -7,7 +7,7 @@ from ..errors import invalid_parameter
 from ..parameters import SEGMENTS, not_negative, positive
 from ..shapes.primitives import cylinder, prism
 from ..shapes.profile import revolve
-from ..solid.counting import counted
+from ..solid.ledger import counted
 from ..solid.solid import Solid
 from .metric import MetricSize, metric
 from .threads import play, radii, rod_between, tap

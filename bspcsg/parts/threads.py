@@ -15,7 +15,7 @@ from ..shapes.arrays import from_arrays
 from ..shapes.primitives import box
 from ..shapes.profile import revolve
 from ..shapes.sweep import unit_circle
-from ..solid.counting import counted
+from ..solid.ledger import counted
 from ..solid.solid import Solid
 from .metric import MetricSize, metric
 

@@ -18,7 +18,7 @@ from ..formats.raw import RawMesh
 from ..mesh.certificate import Certificate, Precision
 from ..mesh.mesh import Mesh, surfaces_of
 from ..mesh.weld import welded
-from ..solid.counting import uncounted
+from ..solid.ledger import uncounted
 from ..solid.measure import overlaps_of
 from ..solid.solid import Solid
 

@@ -23,7 +23,7 @@ from ..processes import run_program
 #: The steps of a repair in the order in which they are taken.
 STEPS = ("weld", "dedup", "drop", "split", "orient", "fill")
 
-_CHILD = Path(__file__).with_name("child.py")
+_CHILD = Path(__file__).with_name("pymeshlab_child.py")
 _MISSING = 6
 
 #: The largest limit of edges around a hole that pymeshlab accepts, a 32-bit number.
@@ -148,8 +148,8 @@ def losses_of(raw: RawMesh) -> tuple[Finding, ...]:
 
 
 def _asked(folder: Path, timeout: float | None) -> dict[str, Any]:
-    """Run ``child.py`` on a folder; return its report: failed steps, and removed triangles."""
-    # Without -P, modules in the folder of child.py would hide modules of the standard library.
+    """Run ``pymeshlab_child.py`` on a folder; return the failed steps and removed triangles."""
+    # Without -P, modules in the child's folder would hide modules of the standard library.
     command = [sys.executable, "-P", os.fspath(_CHILD), os.fspath(folder)]
     try:
         done = run_program(command, timeout)

@@ -14,7 +14,7 @@ from ..campaign.record import (
 )
 from ..campaign.summary import summary_of
 from ..errors import FormatError
-from .conformity import departure
+from .json_validation import departure
 
 
 def merged(paths: Sequence[str | os.PathLike[str]]) -> Results:

@@ -24,7 +24,7 @@ from ..geometry.chain import FactorChain
 from ..operations.setops import union
 from ..parameters import file_path, seconds, texts, values_by_name
 from ..processes import watched
-from ..solid.counting import counted, uncounted
+from ..solid.ledger import counted, uncounted
 from ..solid.solid import LastOperation, Solid, expression_of, with_record
 from .values import VALUES, compiled
 
@@ -77,7 +77,7 @@ def show(*solids: Any) -> None:
         If a solid is empty.
     """
     if _shown is None:
-        from ..report.viewer.showing import show as show_here
+        from ..report.viewer.show import show as show_here
 
         show_here(*_flat(solids))
     else:

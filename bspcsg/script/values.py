@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from types import CodeType
 
 from ..errors import FormatError
-from ..meant import question
+from ..suggestions import question
 
 #: The global variable of a script whose value is the dictionary of the caller's values.
 VALUES = "__defines__"

@@ -26,8 +26,8 @@ from ..parameters import (
     sides_around,
     truth_value,
 )
-from ..solid.counting import counted
 from ..solid.leaf import PlaneLeaf
+from ..solid.ledger import counted
 from ..solid.solid import Solid, from_leaf
 from .arrays import from_arrays
 from .profile import extrude, revolve

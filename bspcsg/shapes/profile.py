@@ -21,8 +21,8 @@ from ..parameters import (
     sides_around,
     truth_value,
 )
-from ..solid.counting import counted
 from ..solid.leaf import MeshLeaf
+from ..solid.ledger import counted
 from ..solid.solid import Solid, from_leaf
 from .sweep import RingLayout, strip
 from .twist import Rise, risen

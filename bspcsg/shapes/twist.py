@@ -87,7 +87,7 @@ def risen(contours: Sequence[FloatArray], rise: Rise) -> Solid:
     """
     lean, lost = _lean(contours, rise.inset)
     if lost is not None and rise.only_leans:
-        from ..modelling.making.leaning import leaning
+        from ..modelling.making.slanted_extrusion import leaning
 
         return leaning(contours, rise.height, rise.inset).translate(0, 0, rise.base)
     if lost is not None:

@@ -12,9 +12,9 @@ from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 from .._types import ProgramLine
+from ..caching import Once
 from ..errors import internal
 from ..geometry.chain import UNMOVED, FactorChain
-from ..once import Once
 from .leaf import ExpressionLeaf, Record, TreeLeaf, run
 from .program import Operator
 

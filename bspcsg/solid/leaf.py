@@ -19,14 +19,14 @@ from .._core import Tree
 from .._types import FloatArray, IndexArray, ProgramLine, WindingRule
 from ..attributes.attributes import Attributes
 from ..attributes.colours import COLOR, one_color
+from ..caching import Last, Once
 from ..errors import InvalidMeshError, LimitError, UnboundedError, core_errors
 from ..geometry import transform
 from ..geometry.chain import BLOCK, FactorBlock, FactorChain
 from ..geometry.hyperplane import DEFAULT_PITCH, Hyperplane, exact_number
-from ..once import Last, Once
 from ..parameters import MAX_PITCH
-from .extent import EXTENTS, Extent
-from .moving import AttributedMesh
+from .boundedness import EXTENTS, Extent
+from .mesh_transform import AttributedMesh
 from .program import COMPLEMENT
 from .sewing import sewn
 from .source_attributes import (

@@ -10,7 +10,7 @@ from ..errors import Finding, core_errors
 from ..mesh.boxes import boxes_of
 from ..mesh.mesh import Mesh, surfaces_of
 from ..parameters import at_least
-from .sides import sides_of
+from .point_classification import sides_of
 
 if TYPE_CHECKING:
     from .solid import Solid

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, Self
 
 from .._types import SideArray
 from ..errors import invalid_parameter
-from ..meant import no_attribute
 from ..parameters import shown
-from .counting import uncounted
+from ..suggestions import no_attribute
+from .ledger import uncounted
 
 
 class PointSet(ABC):

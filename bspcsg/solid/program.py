@@ -11,8 +11,8 @@ from typing import Generic, Literal, TypeAlias, TypeVar
 
 from .._types import ProgramLine
 from ..errors import invalid_parameter
-from ..meant import question
 from ..parameters import shown
+from ..suggestions import question
 
 Operator: TypeAlias = Literal["or", "and", "xor", "not"]
 

@@ -12,9 +12,9 @@ import numpy as np
 
 from .._core import Tree
 from .._types import IndexArray
-from ..attributes.carrying import Surface, carried, patches_of
+from ..attributes.transfer import Surface, carried, patches_of
 from ..errors import core_errors
-from .moving import AttributedMesh
+from .mesh_transform import AttributedMesh
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,9 +21,9 @@ from ..attributes.material import Material
 from ..errors import BspcsgError, Finding, core_errors, deprecated
 from ..geometry.chain import UNMOVED, FactorChain, common_prefix
 from ..geometry.transform import Factors
-from ..mesh import interop, leaving, visuals
+from ..mesh import interop, library_export, visuals
 from ..mesh.mesh import Mesh
-from ..owned import owning
+from ..method_ownership import owning
 from ..parameters import (
     SEGMENTS,
     no_options,
@@ -35,7 +35,6 @@ from ..parameters import (
     winding_rule,
 )
 from .components import Components
-from .counting import count, counted, uncounted
 from .describe import describe
 from .expression import ExpressionNode, Placed, complement, evaluate, operation
 from .leaf import (
@@ -49,6 +48,7 @@ from .leaf import (
     tagged,
     tree_of,
 )
+from .ledger import count, counted, uncounted
 from .measure import (
     LONGEST_VOLUME,
     exact_volume,
@@ -59,10 +59,10 @@ from .measure import (
     volume_residues,
 )
 from .movable import Movable
+from .point_classification import sides_of
 from .point_set import PointSet
 from .profile import Profile
 from .program import Operator
-from .sides import sides_of
 from .source_attributes import SourceAttributes, inherited, later_attributes
 from .triangles import Triangles, triangles_of
 
@@ -71,7 +71,7 @@ if TYPE_CHECKING:
     import trimesh
 
     from ..bsp import HitLists, Hits, Region
-    from ..modelling.bodies.placing import Anchor
+    from ..modelling.bodies.alignment import Anchor
     from ..modelling.making.edges import EdgeSelection
     from ..modelling.making.faces import FaceSelection
     from ..verify.check import CheckReport
@@ -612,7 +612,7 @@ class Solid(Movable, PointSet):
         >>> csg.cube(2).ray_cast((1, 0.5, -1), (0, 0, 1)).t
         array([1., 3.])
         """
-        from ..modelling.bodies.casting import ray_cast
+        from ..modelling.bodies.ray_casting import ray_cast
 
         return ray_cast(self, origin, direction)
 
@@ -813,7 +813,7 @@ class Solid(Movable, PointSet):
         >>> lamp.align(x="center", z=("min", "max"), to=table).bounds[0].tolist()
         [3.0, 0.0, 1.0]
         """
-        from ..modelling.bodies.placing import align
+        from ..modelling.bodies.alignment import align
 
         return align(self, {"x": x, "y": y, "z": z}, to)
 
@@ -857,7 +857,7 @@ class Solid(Movable, PointSet):
         >>> inside.volume, outside.volume
         (1.0, 7.0)
         """
-        from ..modelling.bodies.parts import split
+        from ..modelling.bodies.splitting import split
 
         return split(self, normal, offset)
 
@@ -882,7 +882,7 @@ class Solid(Movable, PointSet):
         >>> csg.cube(2).trim((0, 0, 1), 0.5).bounds[0].tolist()
         [0.0, 0.0, 0.5]
         """
-        from ..modelling.bodies.parts import trim
+        from ..modelling.bodies.splitting import trim
 
         return trim(self, normal, offset)
 
@@ -910,7 +910,7 @@ class Solid(Movable, PointSet):
         >>> [part.volume for part in pair.decompose()]
         [8.0, 1.0]
         """
-        from ..modelling.bodies.parts import decompose
+        from ..modelling.bodies.splitting import decompose
 
         return decompose(self)
 
@@ -1517,7 +1517,7 @@ class Solid(Movable, PointSet):
         >>> csg.torus(3, 1, segments=4).rotate(90, "x").project().bounds.tolist()
         [[-4.0, -1.0], [4.0, 1.0]]
         """
-        from ..modelling.planar.shadows import shadow
+        from ..modelling.planar.projection import shadow
 
         return shadow(self)
 
@@ -1535,7 +1535,7 @@ class Solid(Movable, PointSet):
             If a trimesh cannot show an attribute: colours of corners, pictures of several
             materials.
         """
-        return leaving.trimesh_of(self.normalized().to_mesh())
+        return library_export.trimesh_of(self.normalized().to_mesh())
 
     def to_manifold(self) -> "manifold3d.Manifold":
         """Return the mesh as a `manifold3d.Manifold`; its ``status()`` says if it was accepted.
@@ -1549,7 +1549,7 @@ class Solid(Movable, PointSet):
         LossWarning
             If an attribute is text, as materials are, or not finite.
         """
-        return leaving.manifold_of(self.normalized().to_mesh())
+        return library_export.manifold_of(self.normalized().to_mesh())
 
     def to_csg(self, *, flat: bool = False) -> str:
         """Return the solid's expression as an OpenSCAD `.csg` script (see `bspcsg.csg.dumps`)."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from .._core import Tree
 from ..attributes.attributes import Attributes, Given, Later, array_of
-from ..attributes.carrying import SourceArrays, Surface, carried, patches_of
+from ..attributes.transfer import SourceArrays, Surface, carried, patches_of
 from ..errors import core_errors
 from ..geometry import transform
 

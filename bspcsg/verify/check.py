@@ -33,13 +33,13 @@ from ..mesh.pieces import MeshPieces
 from ..operations.setops import OPERATIONS
 from ..parameters import of_kind
 from ..shapes.primitives import box as box_of
-from ..solid.counting import uncounted
+from ..solid.ledger import uncounted
 from ..solid.program import name_of, program_of
 from ..solid.solid import Solid, passing_mesh
 from . import oracle
 from .discrepancy import SetDifference, difference_of
-from .likeness import SUMMING, areas_differ, measures_differ, sides_differ, volume_of_film
 from .oracle import Answer
+from .quick_comparison import SUMMING, areas_differ, measures_differ, sides_differ, volume_of_film
 from .referee import Ruling, settle
 from .verdict import CheckReport, Facts, Verdict
 

@@ -14,7 +14,7 @@ from .._types import FloatArray
 from ..mesh.box_tree import BoxPairs, BoxTree, Nearness, squared_gaps
 from ..mesh.distance import distances_to_triangles
 from ..mesh.mesh import Mesh
-from ..solid.counting import uncounted
+from ..solid.ledger import uncounted
 from ..solid.solid import Solid
 from .discrepancy import SetDifference, measured
 from .verdict import Facts

@@ -11,7 +11,7 @@ from ..errors import BspcsgError
 from ..formats.raw import RawMesh
 from ..mesh.mesh import Mesh
 from ..mesh.weld import welded
-from ..solid.counting import uncounted
+from ..solid.ledger import uncounted
 from ..solid.solid import Solid
 
 #: The largest number of names in a message.

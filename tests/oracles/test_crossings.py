@@ -16,7 +16,7 @@ import trimesh
 import bspcsg as b
 from bspcsg._core import mesh_faults, mesh_in_single, mesh_moved
 from bspcsg._types import FloatArray
-from bspcsg.formats.single import _rounded, settled
+from bspcsg.formats.single_precision import _rounded, settled
 from bspcsg.geometry.transform import apply, rotation
 from bspcsg.mesh.weld import welded
 from support import DEEP, drawn
@@ -666,7 +666,7 @@ def test_placements_of_a_turned_part_look_once(monkeypatch: pytest.MonkeyPatch) 
         looks.append(len(faces))
         return mesh_moved(before, vertices, faces, pitch)
 
-    monkeypatch.setattr("bspcsg.solid.moving.mesh_moved", look)
+    monkeypatch.setattr("bspcsg.solid.mesh_transform.mesh_moved", look)
     turned = b.box((1, 2, 3)).rotate(33, (1, 2, 3))
     copies = [turned.translate(10 * k, 0.5, 0).to_mesh() for k in range(1000)]
     assert looks == [12] and all(mesh.certificate.ok for mesh in copies)

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import bspcsg as b
-from bspcsg.cli.pages.live import LiveServer, Site, stamp
+from bspcsg.cli.pages.live_server import LiveServer, Site, stamp
 from support.cli import Capture, process, put, ran
 from support.shapes import cuboid
 

@@ -12,7 +12,7 @@ import pytest
 
 import bspcsg as b
 from bspcsg.io import RawMesh, write
-from bspcsg.repair.marks import marks_of
+from bspcsg.repair.defective_elements import marks_of
 from support.browser import Browser
 from support.cli import Capture, put, ran
 from support.shapes import cube, cuboid, joined

@@ -14,9 +14,14 @@ import bspcsg as b
 from bspcsg.io import read
 from bspcsg.report.viewer.landmark import Landmark
 from bspcsg.report.viewer.layer import Layer
+from bspcsg.report.viewer.layer_making import (
+    layers_of_file,
+    layers_of_solid,
+    told_apart,
+    with_thickness,
+)
 from bspcsg.report.viewer.paint import Labels
-from bspcsg.report.viewer.parts import layers_of_file, layers_of_solid, told_apart, with_thickness
-from bspcsg.report.viewer.view import view_page
+from bspcsg.report.viewer.view_page import view_page
 from support.browser import Browser
 from support.shapes import icosphere
 

@@ -12,9 +12,9 @@ import pytest
 import bspcsg as b
 from bspcsg.campaign.engines import openscad as openscad_engine
 from bspcsg.campaign.engines import pymeshlab as pymeshlab_engine
-from bspcsg.campaign.engines.questions import NoOpinionError, Question
+from bspcsg.campaign.engines.engine_request import NoOpinionError, Question
 from bspcsg.campaign.judging.opinions import crossings_opinion, opinion, script_opinion
-from bspcsg.campaign.judging.ruling import ruled
+from bspcsg.campaign.judging.verdict import ruled
 from bspcsg.mesh.mesh import Mesh
 from bspcsg.verify.check import CheckReport, Facts, Verdict, examine
 

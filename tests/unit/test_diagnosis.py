@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from bspcsg.assembly.examining import examine
+from bspcsg.assembly.object_diagnosis import examine
 from bspcsg.io import RawMesh
 from bspcsg.repair.diagnosis import diagnose
 from support.shapes import Arrays, cube, cuboid, flipped, joined, moved

@@ -13,7 +13,7 @@ import pytest
 import bspcsg as b
 from bspcsg.formats.files import decoded
 from bspcsg.formats.glb import scene as glb
-from bspcsg.formats.placing import PlacedMesh, is_exact, placed, rescaled
+from bspcsg.formats.mesh_placement import PlacedMesh, is_exact, placed, rescaled
 from bspcsg.formats.raw import RawMesh
 from bspcsg.formats.scene import SceneNode
 from bspcsg.formats.solids import solid_of

@@ -19,7 +19,7 @@ from ..sets.region import Region
 from .dxf_curves import chains_of
 from .dxf_layouts import drawn_layout
 from .dxf_markers import module_of_ezdxf, with_markers
-from .left_out import LeftOut
+from .unread_content import LeftOut
 
 
 def load_dxf(

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..._types import FloatArray
 from .dxf_layouts import ANY_LAYER, WINDOW
-from .left_out import LeftOut
+from .unread_content import LeftOut
 
 #: The kinds of entities that are outlines, and the kind that inserts a block of entities.
 _CURVES = frozenset(["LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE", "LWPOLYLINE", "POLYLINE"])

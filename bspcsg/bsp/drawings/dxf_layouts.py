@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from .left_out import LeftOut
+from .unread_content import LeftOut
 
 #: The default layer of entities; entities of a block on it lie on the layer of the insertion.
 ANY_LAYER = "0"

@@ -19,10 +19,10 @@ from ...mesh.interop import optional
 from ...parameters import file_path, not_negative, of_kind, positive, shown, winding_rule
 from ..sets.region import Region
 from ..trees.facets import chosen_pitch
-from .left_out import LeftOut
 from .svg_curves import Steps, outlines, within
 from .svg_paths import Segments, path_segments, shape_segments
 from .svg_tree import NO_SHAPES, make_plain, name_of
+from .unread_content import LeftOut
 
 
 def load_svg(

@@ -12,7 +12,7 @@ from .camera import Camera
 from .clip import Polygons, clip, following, owners
 from .colours import ColourArray, lit
 from .creases import Facets
-from .hidden import visible
+from .hidden_lines import visible
 
 #: "shaded": lit facets with edges; "hidden": white facets with black edges that hide edges behind
 #: them; "edges": edges alone, hidden ones too.

@@ -12,7 +12,7 @@ from ...errors import InvalidMeshError, LimitError, core_errors, invalid_paramet
 from ...geometry.arrays import doubles
 from ...geometry.hyperplane import Hyperplane
 from ...geometry.transform import whole_steps
-from ...owned import owning
+from ...method_ownership import owning
 from ...parameters import number
 from ..trees.facets import chosen_pitch
 from .boundary import interval_rows

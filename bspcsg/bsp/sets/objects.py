@@ -14,7 +14,7 @@ from ..._core import ObjectTree as CoreTree
 from ..._types import FloatArray, Scalar, SetOp, WindingRule
 from ...errors import LimitError, core_errors, invalid_parameter
 from ...mesh import interop
-from ...owned import owning
+from ...method_ownership import owning
 from ...parameters import (
     SET_OPS,
     dimension_number,
@@ -25,7 +25,7 @@ from ...parameters import (
     winding_rule,
     word,
 )
-from ..trees.asking import pairs_of
+from ..trees.chosen_cuts import pairs_of
 from ..trees.facets import chosen_pitch
 from .boundary import boundary_arrays
 from .nearest import nearest_on_boundary

@@ -17,7 +17,7 @@ from ...geometry.arrays import doubles
 from ...geometry.per_axis import per_axis
 from ...geometry.transform import Factor
 from ...mesh import interop
-from ...owned import owning
+from ...method_ownership import owning
 from ...parameters import (
     SEGMENTS,
     file_path,

@@ -16,17 +16,17 @@ from ...formats.source import whole_content
 from ...geometry.arrays import doubles
 from ...geometry.polygon import convex_corners
 from ...parameters import at_least, not_negative, shown, word
-from .asking import Chooser, asked_tree, lattice_rows
+from .chosen_cuts import Chooser, asked_tree, lattice_rows
 from .cost import Query, Stats, cost, stats
 from .dump import parsed, to_dot, to_json, to_svg
 from .facets import chosen_pitch, corners_of, mesh_triangles, vector_rows
 from .fragments import Fragments
 from .leaf_form import LeafForm, leaf_form
-from .moving import moved_core
 from .node import Leaf, Node, RegionShape, Side, Visitor
 from .order import back_to_front, far_to_near, front_to_back, near_to_far, visit, walk
 from .policy import Policy, checked_policy, core_options
 from .trace import Construction, PointTrace, RayCosts, RayTrace, division, point_trace, ray_trace
+from .tree_motion import moved_core
 
 if TYPE_CHECKING:
     from ..._core import NodeArrays

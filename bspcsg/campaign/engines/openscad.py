@@ -12,7 +12,7 @@ from ...errors import BspcsgError
 from ...formats.files import read
 from ...mesh.mesh import Mesh
 from ...processes import run_program
-from .questions import EngineAnswer, NoOpinionError, Question, mesh_of
+from .engine_request import EngineAnswer, NoOpinionError, Question, mesh_of
 
 #: The number of significant digits of coordinates that OpenSCAD writes.
 _DIGITS = 6

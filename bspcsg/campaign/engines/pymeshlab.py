@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...processes import run_program
-from .questions import EngineAnswer, NoOpinionError, Question, mesh_of
+from .engine_request import EngineAnswer, NoOpinionError, Question, mesh_of
 
 _CHILD = Path(__file__).with_name("pymeshlab_child.py")
 _MISSING = 6

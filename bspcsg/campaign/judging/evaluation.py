@@ -23,7 +23,7 @@ from ..cases.case import SCRIPT, Case
 from ..cases.identities import identity_of
 from ..cases.meshes import packed
 from ..cases.operands import operands_of
-from ..engines.questions import Question
+from ..engines.engine_request import Question
 from ..record import (
     SCHEMA,
     CaseRecord,
@@ -32,9 +32,9 @@ from ..record import (
     HausdorffRecord,
     OracleRecord,
 )
-from .facts import facts_of
+from .mesh_facts import facts_of
 from .opinions import crossings_opinion, is_installed, opinion, script_opinion
-from .ruling import ruled
+from .verdict import ruled
 
 #: The verdicts of the comparison with manifold3d after which further engines are asked.
 _DOUBTFUL = frozenset({Verdict.DISAGREE, Verdict.ORACLE_REFUSED, Verdict.ORACLE_FAILED})

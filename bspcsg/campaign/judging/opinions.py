@@ -18,11 +18,11 @@ from ...solid.solid import Solid
 from ...verify.check import TOLERANCES, same_set_bound
 from ...verify.discrepancy import SetDifference, difference_of
 from ...verify.referee import count_agreeing
+from ..engines.engine_request import EngineAnswer, NoOpinionError, Question
 from ..engines.openscad import ask_openscad, run_script
 from ..engines.pymeshlab import ask_pymeshlab
-from ..engines.questions import EngineAnswer, NoOpinionError, Question
 from ..record import OracleRecord
-from .facts import facts_of
+from .mesh_facts import facts_of
 
 #: The engines by name, with the command that installs an optional one.
 ENGINES = {

@@ -22,7 +22,7 @@ _START_TIMEOUT = 300.0
 _EXIT_TIMEOUT = 5.0
 
 
-_BOOT = Path(__file__).with_name("boot.py")
+_BOOT = Path(__file__).with_name("start_worker.py")
 
 
 class TimedOutError(Exception):

@@ -15,7 +15,7 @@ from ...errors import (
     MissingPartError,
     harmless,
 )
-from . import status, terminal
+from . import status_line, terminal
 
 #: Version of the JSON documents.
 SCHEMA = 1
@@ -76,16 +76,16 @@ class Output:
     def result(self, line: str, document: dict[str, Any]) -> None:
         """Print a result: `document` as JSON if ``--json`` is given, else `line`."""
         if self.as_json:
-            with status.hidden():
+            with status_line.hidden():
                 click.echo(json.dumps({"schema": SCHEMA, **document}, allow_nan=False))
         elif line and not (self.taken and self.verbosity < 0):
-            with status.hidden():
+            with status_line.hidden():
                 click.echo(harmless(line), err=self.taken)
 
     def detail(self, line: str) -> None:
         """Print a line on standard error, but only with ``--verbose``."""
         if self.verbosity > 0:
-            with status.hidden():
+            with status_line.hidden():
                 click.echo(harmless(line), err=True)
 
     @property

@@ -8,7 +8,7 @@ from typing import TextIO
 import click
 
 from ...errors import harmless
-from . import status
+from . import status_line
 
 #: The colour of each label with which a line on standard error may begin.
 _COLOURS = {"error": "red", "warning": "yellow", "note": "cyan"}
@@ -43,7 +43,7 @@ def labelled(label: str, line: str) -> str:
 
 def say(label: str, line: str, before: str = "") -> None:
     """Print a line on standard error, after `before` and a label such as "note"."""
-    with status.hidden():
+    with status_line.hidden():
         told = before + labelled(label, harmless(line))
         click.echo(told, err=True, color=wants_colour(sys.stderr))
 

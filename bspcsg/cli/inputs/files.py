@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 import click
 
 from ...errors import Finding, FormatError, InvalidMeshError, unreadable
-from ..console import standard
+from ..console import standard_streams
 from ..console.output import Output, counted
 from .lengths import MILLIMETRES
 from .objects import ObjectNames
@@ -149,7 +149,7 @@ class Inputs:
         The result is in millimetres if the format states a unit or ``--unit`` was given.
         """
         from ...formats.files import decoded, read_as
-        from ...formats.placing import rescaled
+        from ...formats.mesh_placement import rescaled
 
         if self.is_script(path):
             raw = self._mesh_of_script(path)
@@ -168,7 +168,7 @@ class Inputs:
         return made_by(path, self.out, _text_of(path), self.suffix)
 
     def _mesh_of_script(self, path: Path) -> "RawMesh":
-        from ...formats.said import said_of, saying
+        from ...formats.storable_attributes import said_of, saying
 
         mesh = self._made_by(path).normalized().to_mesh()
         raw = saying(mesh, said_of(mesh))
@@ -216,7 +216,7 @@ class Inputs:
         return Solid.empty()
 
     def _repaired(self, raw: "RawMesh", path: Path) -> "Solid":
-        from ...assembly.mending import mended
+        from ...assembly.object_repair import mended
 
         made = mended(raw)
         try:
@@ -378,7 +378,7 @@ def put(
     if prove is not None:
         chunks = [b"".join(chunks)]
         prove(io.BytesIO(chunks[0]))
-    standard.put(chunks)
+    standard_streams.put(chunks)
 
 
 def stream_text() -> str:

@@ -92,7 +92,7 @@ def _raw(part: "Mesh", name: str) -> "RawMesh":
 
 
 def _settled(part: "Mesh") -> "tuple[Mesh, tuple[Finding, ...]]":
-    from ...formats.single import settled
+    from ...formats.single_precision import settled
 
     try:
         return settled(part)

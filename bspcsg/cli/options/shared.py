@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 from click.core import ParameterSource
 
-from ...meant import question
 from ...parameters import MAX_PITCH, MAX_SECONDS, MAX_THREADS
+from ...suggestions import question
 from ..inputs.lengths import MILLIMETRES, as_length
 from ..inputs.scripts import STREAMED, SUFFIXES
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import FormatError
-from ..console import output, status
+from ..console import output, status_line
 from ..console.tables import table_text
 from ..inputs.files import STREAM, refuse_folder
 from ..options.shared import SECONDS, FilePath, FiniteRange, further, verb
@@ -246,7 +246,7 @@ def _missing(wanted: list[str], named: list[str], kept: list[dict[str, Any]]) ->
 
 def _dense(cases: list[str]) -> list[str]:
     """Return the cases that have a bound on the growth of cost where faces are close together."""
-    from ...bench.cliffs import CLIFFS
+    from ...bench.dense_cases import CLIFFS
 
     found = [name for name in cases if name in CLIFFS]
     if not found:
@@ -302,7 +302,7 @@ def _measured(
     from ...bench.runner import run_case
 
     settings = _settings(given)
-    status.end()
+    status_line.end()
     told = _silence if given["quiet"] else _tell
     rows = {row["case"]: row for row in kept}
     for name in cases:

@@ -16,12 +16,12 @@ from ..inputs.files import STREAM, Inputs, is_among, is_dropped, repair_command,
 from ..inputs.lengths import as_length
 from ..options.patterns import files_argument, skipped_files
 from ..options.shared import FilePath, common, reading, verb
-from ..pages.written import refuse_page, write_page
+from ..pages.page_output import refuse_page, write_page
 
 if TYPE_CHECKING:
     from ...errors import Finding
     from ...repair.diagnosis import Diagnosis
-    from ...report.examined import CheckPage
+    from ...report.check_page import CheckPage
     from ...report.junit import JUnitCase
 
 #: The relative difference up to which volume and signed volume are printed as one.
@@ -148,12 +148,12 @@ class _Checking:
     def _page(self) -> "CheckPage | None":
         if not self._is_page:
             return None
-        from ...report.examined import CheckPage
+        from ...report.check_page import CheckPage
 
         return CheckPage(len(self._files), self._thin)
 
     def _checked(self, path: Path, page: "CheckPage | None") -> _Checked:
-        from ...assembly.examining import examine
+        from ...assembly.object_diagnosis import examine
 
         try:
             self._inputs.refuse_early([path])

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..job import Job
 from ..options.patterns import files_argument
 from ..options.shared import from_files, verb
+from ..solid_verb import Job
 
 if TYPE_CHECKING:
     from ...solid.solid import Solid

@@ -12,7 +12,7 @@ from ..inputs.files import Inputs, shown
 from ..inputs.lengths import as_length
 from ..options.patterns import file_argument
 from ..options.shared import SAMPLES, Renamed, common, reading, sets, verb
-from ..pages.written import PAGE, refuse_page, write_page
+from ..pages.page_output import PAGE, refuse_page, write_page
 
 if TYPE_CHECKING:
     from ...solid.solid import Solid
@@ -97,7 +97,7 @@ def _write_page(
     found: "SetComparison",
     same: bool,
 ) -> None:
-    from ...report.viewer.compared import compared_page
+    from ...report.viewer.comparison_page import compared_page
 
     first, second = (path.name for path in files)
     names = (first, second if first != second else f"{second} (2)")

@@ -166,7 +166,7 @@ class _Conversion:
     def _turned(self, path: Path, target: Target) -> "RawMesh":
         """Read a file, and rotate it so that the requested axis is up in the output."""
         from ...formats.registry import FORMATS
-        from ...formats.turning import turned
+        from ...formats.up_axis import turned
 
         raw = self._inputs.raw(path)
         usual_in = self._inputs.up_of(path)
@@ -180,7 +180,7 @@ class _Conversion:
 
     def _in_unit(self, raw: "RawMesh") -> "RawMesh":
         """Convert a mesh from millimetres to the unit of ``--to-unit``."""
-        from ...formats.placing import rescaled
+        from ...formats.mesh_placement import rescaled
 
         return rescaled(raw, 1, MILLIMETRES[self._settings["to_unit"] or "mm"])
 

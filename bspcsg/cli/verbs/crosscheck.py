@@ -13,7 +13,7 @@ import click
 
 from ...errors import harmless
 from ...parameters import SET_OPS
-from ..console import output, status
+from ..console import output, status_line
 from ..console.output import Output, counted
 from ..console.tables import table_text
 from ..inputs.files import STREAM, is_among, is_dropped, refuse_folder, shown
@@ -357,7 +357,7 @@ class _Campaign:
 
         from ...campaign.record import is_failure
 
-        status.end()
+        status_line.end()
         times = TimeElapsedColumn(), TimeRemainingColumn()
         columns = ("comparing", BarColumn(), MofNCompleteColumn(), *times)
         with Progress(*columns, console=Console(stderr=True), transient=True) as bar:

@@ -129,7 +129,7 @@ def _with_libraries(part: _Part) -> _Part:
 
     pymeshlab is loaded in a separate process.
     """
-    from ...repair.child import PLUGINS
+    from ...repair.pymeshlab_child import PLUGINS
     from ...repair.repair import remedy
 
     if not part.found:

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import BspcsgError
-from ..job import Job
 from ..options.formula import File, Formula, FormulaError, evaluated, files_of, parse, subtracted
 from ..options.patterns import matches
 from ..options.shared import from_files, verb
+from ..solid_verb import Job
 
 if TYPE_CHECKING:
     from ...solid.solid import Solid

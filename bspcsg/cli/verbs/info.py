@@ -78,7 +78,7 @@ class _Entry:
 
 
 def _described(inputs: Inputs, path: Path) -> _Entry:
-    from ...assembly.examining import examine
+    from ...assembly.object_diagnosis import examine
 
     try:
         raw = inputs.raw(path)

@@ -10,7 +10,7 @@ from ..console import output
 from ..console.output import Output
 from ..inputs.files import shown
 from ..options.shared import FilePath, common, verb
-from ..pages.written import refuse_page, write_page
+from ..pages.page_output import refuse_page, write_page
 
 _EPILOG = """\b
 Examples:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..inputs.lengths import as_length
-from ..job import Job
 from ..options.patterns import file_argument, files_argument
 from ..options.shared import ALLOW_EMPTY, OUTPUT, SIMPLIFY, common, reading, sets, verb, writing
+from ..solid_verb import Job
 
 if TYPE_CHECKING:
     from ...solid.solid import Solid

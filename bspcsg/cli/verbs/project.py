@@ -5,7 +5,7 @@ from typing import Any
 
 from ..console import output
 from ..console.output import counted
-from ..drawing import Drawing
+from ..drawing_verb import Drawing
 from ..inputs.files import shown
 from ..options.patterns import file_argument
 from ..options.shared import common, drawing, reading, sets, verb

@@ -8,11 +8,11 @@ import click
 
 from ...errors import BspcsgError
 from ..console.output import counted
-from ..drawing import Drawing
+from ..drawing_verb import Drawing
 from ..options.camera import camera_of, refuse_contradictions, seeing
 from ..options.patterns import files_argument
 from ..options.shared import SECONDS, common, drawing, further, is_given, numbers, reading, verb
-from ..pages.seen import layers_of
+from ..pages.file_layers import layers_of
 
 if TYPE_CHECKING:
     from ..._types import FloatArray
@@ -219,7 +219,7 @@ class _Rendering(Drawing):
 
     def _colours(self, layers: "list[Layer]") -> Any:
         """Return a colour for each face, one colour for all faces, or None for the default."""
-        from ...report.viewer.faces import are_textured, face_colours
+        from ...report.viewer.face_colours import are_textured, face_colours
 
         given = self.settings["colours"]
         if given is not None and given.startswith("#"):
@@ -238,7 +238,7 @@ class _Rendering(Drawing):
 
     def _picture(self, layers: "list[Layer]") -> "Picture":
         from ...bsp.painting.picture import picture
-        from ...report.viewer.faces import joined
+        from ...report.viewer.face_colours import joined
 
         mesh = joined(layers)
         width, height = self.settings["size"]
@@ -248,7 +248,7 @@ class _Rendering(Drawing):
     def _turn(self, layers: "list[Layer]") -> tuple[bytes, dict[str, Any], str]:
         from ...bsp import PartitionTree
         from ...bsp.painting.turntable import gif
-        from ...report.viewer.faces import joined
+        from ...report.viewer.face_colours import joined
 
         frames = self.settings["frames"]
         vertices, faces = joined(layers)

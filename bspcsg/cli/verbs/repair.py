@@ -113,8 +113,8 @@ class _Repairing:
 
     def _repaired(self, path: Path, target: Target, steps: list[str]) -> tuple[dict[str, Any], int]:
         """Repair one file; return its JSON document and the exit code."""
-        from ...assembly.examining import examine
-        from ...assembly.mending import mended_as_found
+        from ...assembly.object_diagnosis import examine
+        from ...assembly.object_repair import mended_as_found
 
         raw = self._inputs.raw(path)
         self._inputs.tell(path, raw.findings)

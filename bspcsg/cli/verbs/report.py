@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import FormatError
-from ..console import clock, output, standard, status
+from ..console import clock, output, standard_streams, status_line
 from ..console.output import Output, counted
 from ..inputs.files import STREAM, is_among, is_dropped, refuse_folder, shown
 from ..options.patterns import files_argument
@@ -141,7 +141,7 @@ class _Reporting:
 
     def _text(self, results: "Results") -> str:
         if self._form == "html":
-            from ...report.page import report_page
+            from ...report.campaign_page import report_page
 
             with _progress(self._out) as watch:
                 settings = self._settings
@@ -167,7 +167,7 @@ class _Reporting:
         from ...formats.atomic import write_file
 
         if self._is_stream:
-            standard.put([data])
+            standard_streams.put([data])
         else:
             write_file(self._target, [data])
 
@@ -181,7 +181,7 @@ def _progress(out: Output) -> "Iterator[Callable[[list[CaseRecord]], Iterable[Ca
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
 
-    status.end()
+    status_line.end()
     columns = ("drawing", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         yield bar.track

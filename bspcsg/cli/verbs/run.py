@@ -13,7 +13,6 @@ from ...errors import FormatError, InvalidMeshError
 from ..console.output import Output
 from ..inputs.files import ON_INVALID, STREAM, shown, stream_text
 from ..inputs.scripts import SUFFIXES, made_by
-from ..job import Job
 from ..options.patterns import file_argument
 from ..options.shared import (
     PORT,
@@ -25,7 +24,8 @@ from ..options.shared import (
     making_or_showing,
     verb,
 )
-from ..pages.watching import NOWHERE, Watching
+from ..pages.script_page import NOWHERE, Watching
+from ..solid_verb import Job
 
 if TYPE_CHECKING:
     from ...csg import Polish

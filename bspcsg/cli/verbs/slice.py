@@ -9,7 +9,7 @@ import click
 from ...errors import Finding
 from ..console import output
 from ..console.output import counted
-from ..drawing import Drawing
+from ..drawing_verb import Drawing
 from ..inputs.files import shown
 from ..options.patterns import file_argument
 from ..options.shared import common, drawing, numbers, reading, sets, verb

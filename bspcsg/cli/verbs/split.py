@@ -11,7 +11,6 @@ from ...errors import Finding
 from ..console import output
 from ..console.output import Output
 from ..inputs.files import Inputs, Target, expanded, is_dropped, refuse_inputs, shown
-from ..job import mesh_values, summary
 from ..options.patterns import files_argument
 from ..options.shared import (
     PATH,
@@ -24,6 +23,7 @@ from ..options.shared import (
     verb,
     writing,
 )
+from ..solid_verb import mesh_values, summary
 
 if TYPE_CHECKING:
     from ...mesh.mesh import Mesh

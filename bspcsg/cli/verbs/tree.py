@@ -98,7 +98,7 @@ class _Showing:
         return self._target is not None and str(self._target) != STREAM
 
     def run(self) -> int:
-        from ...csg.syntax.simplified import simplified
+        from ...csg.syntax.simplification import simplified
 
         refuse_unwritable(self._target or Path(STREAM), self._settings["overwrite"])
         found = self._read()

@@ -13,8 +13,8 @@ from ..console.output import Output, counted
 from ..inputs.files import STREAM, Inputs, is_dropped, shown
 from ..options.patterns import files_argument
 from ..options.shared import PORT, FilePath, common, is_given, reading, verb
-from ..pages.seen import layers_of
-from ..pages.written import refuse_page, write_page
+from ..pages.file_layers import layers_of
+from ..pages.page_output import refuse_page, write_page
 
 if TYPE_CHECKING:
     from ...report.viewer.layer import Layer
@@ -77,7 +77,7 @@ class _Viewing:
         self._inputs = Inputs.of(self._out, settings)
 
     def run(self) -> int:
-        from ...report.viewer.view import view_page
+        from ...report.viewer.view_page import view_page
 
         self._refuse_early()
         if self._settings["live"] or self._folder is not None:
@@ -104,7 +104,7 @@ class _Viewing:
         return self._files[0] if len(self._files) == 1 and self._files[0].is_dir() else None
 
     def _scene(self, files: Sequence[Path]) -> "tuple[list[Layer], str]":
-        from ...report.viewer.parts import with_thickness
+        from ...report.viewer.layer_making import with_thickness
 
         layers, unit = layers_of(self._inputs, files)
         if self._settings["thickness"]:
@@ -113,8 +113,8 @@ class _Viewing:
 
     def _served(self) -> int:
         """Serve the page until Ctrl-C, and return the exit code."""
-        from ..pages.live import LiveServer
-        from ..pages.showing import site_of_files, site_of_folder
+        from ..pages.file_pages import site_of_files, site_of_folder
+        from ..pages.live_server import LiveServer
 
         folder = self._folder
         site = (

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from ...bsp import Region
-from ...bsp.drawings.left_out import LeftOut
+from ...bsp.drawings.unread_content import LeftOut
 from ...formats.files import read
 from ...formats.registry import FORMATS
-from ...modelling.making.heights import (
+from ...modelling.making.height_maps import (
     BRIGHTEST,
     height_map,
     heights_of,
@@ -17,8 +17,8 @@ from ...modelling.making.heights import (
     read_picture,
 )
 from ...solid.solid import Solid
-from ..making.drawings import dxf_region
-from ..making.paper import svg_region
+from ..making.dxf_import import dxf_region
+from ..making.svg_import import svg_region
 from ..syntax.arguments import Arguments
 from ..syntax.tree import Node, Value
 from .registry import Evaluation, Geometry, node

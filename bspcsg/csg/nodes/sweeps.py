@@ -9,13 +9,13 @@ from ...bsp import Region
 from ...modelling.making import roofs
 from ...shapes.profile import extrude, least_segments
 from ...solid.solid import Solid
-from ..making.dividing import Stretch, divided
+from ..making.edge_subdivision import Stretch, divided
 from ..making.tessellation import Fineness
 from ..syntax.arguments import Arguments
 from ..syntax.tree import Node
 from .files import drawing_of
 from .registry import Evaluation, Geometry, node
-from .sets import union_of
+from .set_operations import union_of
 from .signature import Signature
 
 #: Arguments of extrusions in scripts from before 2013, which name the file of a drawing.

@@ -17,14 +17,14 @@ from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes, Values
 from ...errors import Finding
 from ...mesh.mesh import Mesh
-from .. import single
-from ..placing import PlacedMesh, is_exact, placed
+from .. import single_precision
+from ..mesh_placement import PlacedMesh, is_exact, placed
 from ..raw import RawMesh, compacted, parts_of, says_empty_set
-from ..said import said_of
 from ..source import Source
+from ..storable_attributes import said_of
+from .attribute_conversion import Pictures, called, columns_of, dropped_pictures
 from .container import container_of
 from .nodes import NodeMesh, shown
-from .said import Pictures, called, columns_of, dropped_pictures
 
 #: Matrices for column vectors from millimetres with z upwards to metres with y upwards, and back.
 TO_METRES = np.array(
@@ -328,4 +328,4 @@ def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
         "GLB uses metres with the y axis up; the model was assumed to be in millimetres with the"
         " z axis up, and converted."
     )
-    return Finding("unit", "note", message, (), 1), *single.losses(mesh, "GLB")
+    return Finding("unit", "note", message, (), 1), *single_precision.losses(mesh, "GLB")

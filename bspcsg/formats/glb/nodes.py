@@ -9,12 +9,12 @@ import numpy as np
 
 from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes
-from ...attributes.joining import MeshPart, concatenated
-from ..placing import SingleArray
+from ...attributes.concatenation import MeshPart, concatenated
+from ..mesh_placement import SingleArray
 from ..raw import compacted
 from .accessors import fractions, stored
+from .attribute_conversion import Named, materials_of, read_columns
 from .container import COMPONENTS, FAN, STRIP, TRIANGLES, Container, instances_of
-from .said import Named, materials_of, read_columns
 
 _Triangles: TypeAlias = "tuple[SingleArray, IndexArray, Attributes | None]"
 

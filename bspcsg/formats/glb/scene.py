@@ -13,11 +13,11 @@ from ...attributes.material import Material
 from ..raw import RawMesh
 from ..scene import SceneNode
 from ..source import Source
+from .attribute_conversion import Pictures, called, kept, materials_of
 from .container import Container, container_of, instances_of
 from .file import TO_METRES, TO_MILLIMETRES, Description, container
-from .light import as_read
+from .linear_colours import as_read
 from .nodes import local_matrix, places_of, triangles_of
-from .said import Pictures, called, kept, materials_of
 
 _IDENTITY = np.eye(4)
 

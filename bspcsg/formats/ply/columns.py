@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from ...attributes.attributes import Attributes, Kind, Values
-from ..said import chosen
+from ..storable_attributes import chosen
 
 #: The usual names of PLY columns, by the attribute that they form.
 _KNOWN = {

@@ -13,8 +13,8 @@ from ...errors import Finding, FormatError
 from ...mesh.mesh import Mesh
 from ..blocks import ROWS_PER_FILE_BLOCK, blocks, encoded_lines, listed
 from ..raw import IndexPolygons, RawMesh, says_empty_set
-from ..said import said_of
 from ..source import Source, integral, quoted
+from ..storable_attributes import said_of
 from .columns import TYPES, attributes_of, columns_of, corners_of, lists_of, names_in
 from .header import Element, Header, Order, read_header
 from .lists import read_mixed, read_uniform

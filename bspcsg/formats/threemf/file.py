@@ -9,7 +9,7 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...errors import Finding
-from ..placing import PlacedMesh, is_exact, placed
+from ..mesh_placement import PlacedMesh, is_exact, placed
 from ..raw import RawMesh, empty_set
 from ..source import Source
 from .objects import Objects

@@ -15,7 +15,7 @@ from ..._types import FloatArray
 from ...errors import BspcsgError, FormatError, InternalError, InvalidParameterError, held
 from ...solid.solid import Solid, combine, solid_with
 from ..raw import RawMesh
-from ..said import said_of
+from ..storable_attributes import said_of
 from .package import Package
 from .part import INSTANCE, Object, PlacedObject
 from .properties import properties_of

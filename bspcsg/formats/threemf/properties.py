@@ -16,7 +16,7 @@ from ...attributes.attributes import Attributes, Kind, Values
 from ...attributes.colours import as_bytes, is_color, opaque
 from ...attributes.material import Material
 from ...errors import InvalidMeshError
-from ..said import chosen
+from ..storable_attributes import chosen
 from .part import Base, ModelPart, Object
 from .textures import fit_for_parts, named_after
 from .write import called

@@ -21,7 +21,7 @@ from ...errors import Finding
 from ...mesh.mesh import Mesh
 from ..blocks import listed
 from ..raw import RawMesh, compacted, empty_set, parts_of, says_empty_set
-from ..said import said_of
+from ..storable_attributes import said_of
 from .textures import PackedPicture, Resources, content_types, relations
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"

@@ -10,9 +10,9 @@ from ...errors import LimitError, invalid_parameter
 from ...geometry.hyperplane import exact_number
 from ...mesh.box_tree import BoxTree, Nearness, squared_gaps
 from ...parameters import of_kind
-from ...solid.counting import uncounted
+from ...solid.ledger import uncounted
 from ...solid.solid import Solid, surfaces_meet
-from .triangles import least_gaps, nearest_points
+from .triangle_distance import least_gaps, nearest_points
 
 #: The largest error of a computed distance, relative to the largest absolute coordinate. It allows
 #: for about 50 roundings of doubles.

@@ -6,11 +6,11 @@ import numpy as np
 
 from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes
-from ...attributes.carrying import Surface, carried
+from ...attributes.transfer import Surface, carried
 from ...errors import LimitError, invalid_parameter
 from ...mesh.mesh import Mesh
 from ...parameters import at_least, positive
-from ...solid.counting import counted
+from ...solid.ledger import counted
 from ...solid.solid import Solid, given_pitch, keeping_pitch, solid_with
 
 #: A factor by which rounding never lengthens an edge.

@@ -8,7 +8,7 @@ from ..._types import FloatArray, IndexArray, Scalar
 from ...errors import invalid_parameter
 from ...mesh.mesh import Mesh, surfaces_of
 from ...parameters import not_negative
-from ...solid.counting import uncounted
+from ...solid.ledger import uncounted
 from ...solid.solid import Solid
 
 #: A bound of the rounding error of the cosine of an angle between faces.

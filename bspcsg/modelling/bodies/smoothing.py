@@ -6,8 +6,8 @@ from ..._types import FloatArray, Scalar
 from ...attributes.attributes import NORMALS
 from ...mesh.mesh import Mesh
 from ...parameters import at_least
-from ...solid.counting import counted
-from ...solid.moving import AttributedMesh
+from ...solid.ledger import counted
+from ...solid.mesh_transform import AttributedMesh
 from ...solid.solid import Solid, given_pitch, solid_with
 from .refining import attributes_on, divided, refuse_many, small_triangles
 from .shading import half_edges, next_side, normals, unit

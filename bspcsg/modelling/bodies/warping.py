@@ -11,8 +11,8 @@ from ...errors import InvalidMeshError, invalid_parameter
 from ...mesh.crossing import Crossings, crossings
 from ...mesh.interop import points_array
 from ...parameters import shown, winding_rule
-from ...solid.counting import counted
-from ...solid.moving import AttributedMesh
+from ...solid.ledger import counted
+from ...solid.mesh_transform import AttributedMesh
 from ...solid.solid import Solid, given_pitch, solid_with
 
 #: A function that maps all corners, (n, 3) float64, to points of the same shape.

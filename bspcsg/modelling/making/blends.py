@@ -22,15 +22,15 @@ from ...parameters import positive, refuse_many_corners, sides_around
 from ...shapes.primitives import half_space
 from ...solid.leaf import TreeLeaf
 from ...solid.solid import Solid, from_leaf
+from .blend_chains import ChainTools, closed_chains
+from .blend_fit import has_room, no_room, refuse_no_room
+from .blend_order import carried, ready, refused
 from .caps import cap_tool, is_cap
-from .chains import ChainTools, closed_chains
 from .edges import EdgeSelection, selection
 from .patches import arc_directions, patch_directions, patch_faces
+from .plane_faces import Skeleton, flatness, skeleton_of
 from .planes import Planes
 from .rings import walls
-from .rooms import has_room, no_room, refuse_no_room
-from .skeleton import Skeleton, flatness, skeleton_of
-from .stages import carried, ready, refused
 
 #: The largest number of edges in one call. Each adds a mesh and four half-spaces to one expression.
 _MAX_EDGES = 10_000

@@ -15,9 +15,9 @@ from ...errors import LimitError
 from ...operations.setops import union
 from ...solid.solid import Solid
 from ..planar.offsetting import offset_region
+from .blend_fit import face_loops, no_room
+from .plane_faces import Skeleton
 from .roofs import roof
-from .rooms import face_loops, no_room
-from .skeleton import Skeleton
 
 #: Walls count as perpendicular to a face if their angle differs from 90 by less, in degrees.
 _SQUARE = 1e-4

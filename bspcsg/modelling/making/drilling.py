@@ -18,7 +18,7 @@ from ...shapes.arrays import from_arrays
 from ...shapes.sweep import surface_of_revolution
 from ...solid.solid import Solid
 from .faces import FaceSelection, flat_face
-from .skeleton import Skeleton, flatness, skeleton_of
+from .plane_faces import Skeleton, flatness, skeleton_of
 
 #: A hole begins above its face, so that no thin skin remains: by this many times the rounding error
 #: of corners or the lattice step, whichever is larger.

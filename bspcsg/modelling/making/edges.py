@@ -5,11 +5,11 @@ from typing import ClassVar
 import numpy as np
 
 from ..._types import BoolArray, FloatArray, IndexArray, Scalar
-from ...owned import owning
+from ...method_ownership import owning
 from ...parameters import truth_value
 from ...solid.solid import Solid
+from .plane_faces import Skeleton, skeleton_of
 from .selection import Selection, as_bend, bends
-from .skeleton import Skeleton, skeleton_of
 
 
 @owning

@@ -6,12 +6,12 @@ import numpy as np
 
 from ..._types import BoolArray, FloatArray, IndexArray, Scalar
 from ...errors import invalid_parameter
-from ...owned import owning
+from ...method_ownership import owning
 from ...parameters import truth_value
-from ...solid.counting import uncounted
+from ...solid.ledger import uncounted
 from ...solid.solid import Solid
+from .plane_faces import Skeleton, groups, members, skeleton_of
 from .selection import Selection, as_bend, bends
-from .skeleton import Skeleton, groups, members, skeleton_of
 
 #: The largest ratio of the widths of two neighbouring facets that count as one round face. A plane
 #: face beside a round edge is usually wider than that.

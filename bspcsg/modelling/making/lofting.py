@@ -9,7 +9,7 @@ from ..._types import FloatArray, IndexArray
 from ...errors import invalid_parameter
 from ...geometry.polygon import directed_edges
 from ...parameters import refuse_many_corners, truth_value
-from ...solid.counting import counted
+from ...solid.ledger import counted
 from ...solid.solid import Solid
 from .rings import solid_of, walls
 from .sections import Section, aligned, section_of, shortest_band

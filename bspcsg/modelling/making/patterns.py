@@ -13,7 +13,7 @@ from ...geometry.hyperplane import exact_number
 from ...geometry.transform import vector3
 from ...operations.setops import union
 from ...parameters import at_least, number, shown, truth_value
-from ...solid.counting import counted
+from ...solid.ledger import counted
 from ...solid.solid import Solid
 
 #: The largest number of copies in one pattern. Each takes about 2 kB, as a node of the expression

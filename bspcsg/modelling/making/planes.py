@@ -10,7 +10,7 @@ from ...geometry.hyperplane import Hyperplane, exact_number
 from ...geometry.transform import whole_steps
 from ...solid.leaf import PlaneLeaf
 from ...solid.solid import Solid, from_leaf
-from .skeleton import Skeleton
+from .plane_faces import Skeleton
 
 #: Lattice steps by which a half-space extends past a face whose plane is not exact. Rounding moves
 #: the face's corners by less than one step.

@@ -11,7 +11,7 @@ from ...errors import LimitError
 from ...geometry.polygon import signed_area, triangulate
 from ...operations import setops
 from ...solid.solid import Solid
-from .fronts import Front, Meeting, Piece, Walls, meeting
+from .shrinking_outlines import Front, Meeting, Piece, Walls, meeting
 
 #: The largest number of corners of one connected part of a figure. The time grows with its cube.
 _MAX_CORNERS = 1000

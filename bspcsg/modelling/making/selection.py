@@ -11,7 +11,7 @@ from ...errors import invalid_parameter
 from ...geometry.arrays import axes_of, doubles_or_none
 from ...geometry.transform import axis_vector
 from ...parameters import number, shown
-from .skeleton import Skeleton, extent, flatness
+from .plane_faces import Skeleton, extent, flatness
 
 #: The least cosine between lines that count as parallel, for an angle of 0.001 radians: snapping to
 #: the lattice may rotate an edge of a thousand steps so much.

@@ -21,7 +21,7 @@ from ...parameters import (
     sides_around,
 )
 from ...shapes.sweep import unit_circle
-from ...solid.counting import counted
+from ...solid.ledger import counted
 from ...solid.solid import Solid
 from .rings import solid_of, walls
 from .spine import Along, Frame, Spine, divided, path_points, slipped, spine_of

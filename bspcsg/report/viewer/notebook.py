@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from ...errors import BspcsgError, MissingPartError, held
 from .layer import Layer
-from .sharing import NOTEBOOK, is_notebook, running_cell, viewer_name
-from .still import rough_picture
-from .view import view_page
+from .shared_script import NOTEBOOK, is_notebook, running_cell, viewer_name
+from .still_pictures import rough_picture
+from .view_page import view_page
 
 if TYPE_CHECKING:
     from ...bsp import Picture, Region
