@@ -28,7 +28,7 @@ with _Quietly():
 
     import sys as _sys
 
-    from .suggestions import no_attribute as _no_attribute
+    from .suggestions import attribute_error as _no_attribute
 
 if TYPE_CHECKING:
     from ._core import __version__

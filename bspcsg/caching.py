@@ -12,7 +12,7 @@ _Key = TypeVar("_Key")
 _Value = TypeVar("_Value")
 
 
-class Once(Generic[_Value]):
+class LazyValue(Generic[_Value]):
     """A value that is computed on first use, and then shared by all threads."""
 
     __slots__ = ("_made",)
@@ -29,7 +29,7 @@ class Once(Generic[_Value]):
         return self._made[0]
 
 
-class Last(Generic[_Key, _Value]):
+class LastValueCache(Generic[_Key, _Value]):
     """A cache of one entry: the last value, and its key."""
 
     __slots__ = ("_kept",)

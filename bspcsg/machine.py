@@ -58,7 +58,7 @@ def _installed_gb() -> float:
         return 0.0
 
 
-def held_mb() -> float:
+def memory_mb() -> float:
     """Return the current memory of this process in 10^6 bytes; if unknown, the peak memory."""
     return _status("VmRSS") or peak_mb()
 

@@ -6,7 +6,7 @@ from typing import TypeVar
 _Kind = TypeVar("_Kind", bound=type)
 
 
-def owning(kind: _Kind) -> _Kind:
+def with_own_methods(kind: _Kind) -> _Kind:
     """Decorate a class: give it copies of the public methods that it inherits from this package.
 
     Python's error messages about calls, such as for a missing argument, then name this class. A

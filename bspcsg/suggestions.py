@@ -4,7 +4,7 @@ import sys
 from collections.abc import Collection, Iterable
 
 #: For names of this package, the names of the same function or property in other libraries.
-_ELSEWHERE = {
+_SYNONYMS = {
     "difference": "diff subtract subtraction minus cut sub remove",
     "union": "add fuse join merge unite combine plus append",
     "intersection": "intersect common and_ inter overlap intersects_with",
@@ -44,29 +44,29 @@ _ELSEWHERE = {
 }
 
 
-def meant(word: str, known: Iterable[str]) -> str | None:
+def closest_name(word: str, known: Iterable[str]) -> str | None:
     """Return the known name that is a synonym of a word or is spelled like it; None without any."""
     from difflib import get_close_matches
 
     names = [name for name in known if not name.startswith("_")]
     key = word.lower().replace("-", "_")
     close = get_close_matches(key, names, n=1)
-    return _elsewhere(key, names) or (close[0] if close else None)
+    return _name_in_other_library(key, names) or (close[0] if close else None)
 
 
-def _elsewhere(word: str, names: Collection[str]) -> str | None:
+def _name_in_other_library(word: str, names: Collection[str]) -> str | None:
     """Return this package's name for a name of other libraries, if it is in `names`, else None."""
-    found = (name for name, others in _ELSEWHERE.items() if word in others.split())
+    found = (name for name, others in _SYNONYMS.items() if word in others.split())
     return next((name for name in found if name in names), None)
 
 
-def question(word: object, known: Iterable[str]) -> str:
+def suggestion_text(word: object, known: Iterable[str]) -> str:
     """Return " Is NAME meant?" for the end of an error message; empty if no known name is close."""
-    name = meant(word, known) if isinstance(word, str) else None
+    name = closest_name(word, known) if isinstance(word, str) else None
     return f" Is {name} meant?" if name else ""
 
 
-def no_attribute(owner: object, name: str, what: str) -> AttributeError:
+def attribute_error(owner: object, name: str, what: str) -> AttributeError:
     """Return the error for a missing attribute.
 
     Parameters
@@ -83,13 +83,13 @@ def no_attribute(owner: object, name: str, what: str) -> AttributeError:
     if name.startswith("_"):
         return AttributeError(text)
     known = dir(owner)
-    asks = question(name, known)
-    if not _elsewhere(name, known):
-        asks = _function(name) or asks
+    asks = suggestion_text(name, known)
+    if not _name_in_other_library(name, known):
+        asks = _function_suggestion(name) or asks
     return AttributeError(f"{text}{asks and '.'}{asks}")
 
 
-def _function(name: str) -> str:
+def _function_suggestion(name: str) -> str:
     """Return a question that suggests the package's function of a name; empty if there is none."""
     functions = getattr(sys.modules.get("bspcsg"), "__all__", ())
     return f" Is the function bspcsg.{name} meant?" if name in functions else ""

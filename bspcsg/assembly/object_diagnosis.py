@@ -92,7 +92,7 @@ def examine(raw: RawMesh) -> Examination:
     findings = [*raw.findings, *_findings(objects, [rows for _, rows in groups])]
     findings += _clash_finding(clashes)
     return Examination(
-        raw, _summed(raw, objects, clashes, findings), tuple(objects), tuple(clashes)
+        raw, _file_diagnosis(raw, objects, clashes, findings), tuple(objects), tuple(clashes)
     )
 
 
@@ -192,7 +192,7 @@ def _clash_finding(clashes: Sequence[Clash]) -> Iterator[Finding]:
         yield Finding("clash", "warning", message, (), len(clashes))
 
 
-def _summed(
+def _file_diagnosis(
     raw: RawMesh,
     objects: Sequence[ExaminedObject],
     clashes: Sequence[Clash],
@@ -200,7 +200,7 @@ def _summed(
 ) -> Diagnosis:
     """Return the diagnosis of a file, summed up from the diagnoses of its objects."""
     each = [one.found for one in objects]
-    overlaps = _all([one.self_overlapping for one in each])
+    overlaps = _all_known([one.self_overlapping for one in each])
     boxes = np.array([one.bounds for one in each])
     low, high = boxes[:, 0].min(axis=0).tolist(), boxes[:, 1].max(axis=0).tolist()
     return Diagnosis(
@@ -210,20 +210,20 @@ def _summed(
         oriented=all(one.oriented for one in each),
         manifold=all(one.manifold for one in each),
         self_overlapping=None if overlaps is None else any(overlaps) or bool(clashes),
-        precision=_coarsest(each),
+        precision=_coarsest_precision(each),
         crossings=_sum([one.crossings for one in each]),
         verdict=min((one.verdict for one in each), key=_VERDICTS.index),
         findings=by_severity(findings),
         signed_volume=sum(one.signed_volume for one in each),
         area=sum(one.area for one in each),
-        volume=_volume(objects, clashes),
+        volume=_union_volume(objects, clashes),
         surfaces=sum(one.surfaces for one in each),
         genus=_sum([one.genus for one in each]),
         bounds=(tuple(low), tuple(high)),
     )
 
 
-def _coarsest(each: Sequence[Diagnosis]) -> Precision | None:
+def _coarsest_precision(each: Sequence[Diagnosis]) -> Precision | None:
     """Return the coarsest precision that represents all objects; None if one has none."""
     found = {one.precision for one in each}
     if None in found:
@@ -231,7 +231,7 @@ def _coarsest(each: Sequence[Diagnosis]) -> Precision | None:
     return "double" if "double" in found else "single"
 
 
-def _volume(objects: Sequence[ExaminedObject], clashes: Sequence[Clash]) -> float | None:
+def _union_volume(objects: Sequence[ExaminedObject], clashes: Sequence[Clash]) -> float | None:
     """Return the volume of the union of all objects; None if an object's volume is unknown."""
     total = _sum([one.found.volume for one in objects])
     if total is None or not clashes:
@@ -239,12 +239,12 @@ def _volume(objects: Sequence[ExaminedObject], clashes: Sequence[Clash]) -> floa
     return union(*(_part(one).solid for one in objects if one.found.is_solid)).volume
 
 
-def _all(values: "Sequence[_Any | None]") -> "list[_Any] | None":
+def _all_known(values: "Sequence[_Any | None]") -> "list[_Any] | None":
     """Return the values, or None if one of them is None."""
     known = [value for value in values if value is not None]
     return known if len(known) == len(values) else None
 
 
 def _sum(values: "Sequence[_Number | None]") -> "_Number | None":
-    known = _all(values)
+    known = _all_known(values)
     return None if known is None else sum(known)

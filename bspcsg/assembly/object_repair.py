@@ -7,7 +7,7 @@ from ..repair.repair import Repair, losses_of, repair
 from .object_diagnosis import Examination, ExaminedObject, examine
 
 
-def mended(raw: RawMesh, **options: Any) -> Repair:
+def repaired(raw: RawMesh, **options: Any) -> Repair:
     """Repair a mesh; if it has several objects, repair each of them separately.
 
     Parameters
@@ -16,15 +16,15 @@ def mended(raw: RawMesh, **options: Any) -> Repair:
     **options
         The options of `repair`.
     """
-    return mended_as_found(examine(raw), **options)
+    return repaired_objects(examine(raw), **options)
 
 
-def mended_as_found(whole: Examination, **options: Any) -> Repair:
+def repaired_objects(whole: Examination, **options: Any) -> Repair:
     """Repair a mesh that was already examined, object by object; objects keep their names."""
     raw = whole.mesh
     if not whole.objects:
         return repair(raw, **options)
-    each = [_mended(one, **options) for one in whole.objects]
+    each = [_repaired_object(one, **options) for one in whole.objects]
     mesh = joined([one.mesh for one in each])
     return Repair(
         RawMesh(mesh.vertices, mesh.faces, raw.name, (), mesh.objects, raw.unit),
@@ -35,7 +35,7 @@ def mended_as_found(whole: Examination, **options: Any) -> Repair:
     )
 
 
-def _mended(one: ExaminedObject, **options: Any) -> Repair:
+def _repaired_object(one: ExaminedObject, **options: Any) -> Repair:
     if all(found.severity == "note" for found in one.found.findings):
         # The object needs no repair.
         return Repair(RawMesh(one.mesh.vertices, one.mesh.faces, one.name), {}, 0)

@@ -8,7 +8,7 @@ import numpy as np
 from .._types import IndexArray
 from .attributes import Attributes, Kind, Values
 from .material import Material
-from .transfer import colors_alike, common_type, default_of
+from .transfer import common_type, default_of, uniform_colors
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ def _values(name: str, kind: Kind, parts: Sequence[MeshPart]) -> Values:
     }[kind]
     held = [_values_of(name, kind, part.attributes) for part in parts]
     depth = 2 if kind == "corner" else 1
-    known = colors_alike(name, [values for values in held if values is not None], depth)
+    known = uniform_colors(name, [values for values in held if values is not None], depth)
     given = iter(known)
     dtype = common_type(name, known, depth)
     shape = known[0].shape[depth:]

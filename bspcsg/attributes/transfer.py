@@ -25,11 +25,11 @@ from .material import Material
 SourceArrays: TypeAlias = tuple[FloatArray, FloatArray, IndexArray, IndexArray]
 
 #: A barycentric coordinate below minus this means that a corner was moved out of its source face.
-_OUTSIDE = 0.125
+_MAX_OUTSIDE = 0.125
 
 #: The largest difference, relative to the largest value, of values at one vertex that count as
 #: equal. Each is interpolated with an error of 2**-49, and positions are rounded to doubles.
-_ONE_FIELD = 2.0**-40
+_MAX_DIFFERENCE = 2.0**-40
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +54,7 @@ class Surface:
 
 
 @dataclass(frozen=True, eq=False)
-class _Inner:
+class _NewCorners:
     """Corners of triangles that are not corners of the source faces that contain them.
 
     Parameters
@@ -97,7 +97,7 @@ class _SourceTriangles:
     rows: IndexArray
     origins: IndexArray
     corners: IndexArray
-    inner: _Inner
+    inner: _NewCorners
     flips: BoolArray
 
     def values(self, name: str) -> Values:
@@ -108,7 +108,7 @@ class _SourceTriangles:
         found = np.take_along_axis(flat, np.maximum(self.corners, 0)[:, :, None], axis=1)
         if len(inner := self.inner.faces):
             ends = self.attributes.at_corners(name, inner).reshape(len(inner), 3, width)
-            between = _between(ends, self.inner.places)
+            between = _interpolated(ends, self.inner.places)
             found[self.inner.triangles, self.inner.corners] = between
         return self._faced(name, found.reshape(given.shape))
 
@@ -146,7 +146,7 @@ def patches_of(sources: Sequence[Attributes | None]) -> list[npt.NDArray[np.uint
     return found
 
 
-def carried(
+def inherited_attributes(
     surface: Surface,
     sources: Sequence[Attributes | None],
     arrays_of: Callable[[int], SourceArrays | None],
@@ -207,24 +207,24 @@ def _triangles_of(
     origins = surface.source[rows, 1]
     triangles = faces[np.searchsorted(numbers, origins)]
     points = surface.vertices[surface.faces[rows]]
-    corners = _matches(points, doubles[triangles])
-    corners = np.where(corners < 0, _matches(points, lattice[triangles]), corners)
+    corners = _matching_corners(points, doubles[triangles])
+    corners = np.where(corners < 0, _matching_corners(points, lattice[triangles]), corners)
     at, corner = np.nonzero(corners < 0)
     places = weights(points[at, corner], lattice[triangles[at]])
-    inner = _Inner(at, corner, origins[at], places)
+    inner = _NewCorners(at, corner, origins[at], places)
     inner = _brought_inside(inner, surface.faces[rows], corners, origins)
     return _SourceTriangles(attributes, rows, origins, corners, inner, surface.flips[rows])
 
 
-def _matches(points: FloatArray, corners: FloatArray) -> IndexArray:
+def _matching_corners(points: FloatArray, corners: FloatArray) -> IndexArray:
     """Return the corner of a face, 0 to 2, that equals each corner of a triangle, or -1; (k, 3)."""
     same = (points[:, :, None] == corners[:, None]).all(axis=3)
     return np.where(same.any(axis=2), same.argmax(axis=2), -1)
 
 
 def _brought_inside(
-    inner: _Inner, vertices: IndexArray, corners: IndexArray, origins: IndexArray
-) -> _Inner:
+    inner: _NewCorners, vertices: IndexArray, corners: IndexArray, origins: IndexArray
+) -> _NewCorners:
     """Replace positions outside their source faces.
 
     Such a corner gets the position of another triangle's corner at the same vertex, or else a
@@ -232,7 +232,7 @@ def _brought_inside(
     triangle.
     """
     with np.errstate(invalid="ignore"):
-        outside = np.flatnonzero(~(inner.places.min(axis=1, initial=1) >= -_OUTSIDE))
+        outside = np.flatnonzero(~(inner.places.min(axis=1, initial=1) >= -_MAX_OUTSIDE))
     if len(outside) == 0:
         return inner
     faces, places = inner.faces.copy(), inner.places.copy()
@@ -250,10 +250,10 @@ def _brought_inside(
         else:
             place = np.clip(np.nan_to_num(inner.places[k], nan=1 / 3), 0, 1)
             places[k] = place / place.sum()
-    return _Inner(inner.triangles, inner.corners, faces, places)
+    return _NewCorners(inner.triangles, inner.corners, faces, places)
 
 
-def _between(values: Values, places: FloatArray) -> Values:
+def _interpolated(values: Values, places: FloatArray) -> Values:
     """Interpolate between the values at three corners, (k, 3, w), with (k, 3) weights, to (k, w).
 
     A value that is equal at all three corners stays exact. Whole numbers are rounded; for truth
@@ -279,9 +279,9 @@ def _joined(name: str, lots: list[_SourceTriangles], surface: Surface) -> tuple[
     kinds = {lot.attributes.kind_of(name) for lot in lots}
     if kinds == {"face"}:
         parts = [lot.of_faces(name) for lot in lots]
-        return "face", _filled(name, lots, parts, (len(surface.faces),), 1)
+        return "face", _values_of_all_triangles(name, lots, parts, (len(surface.faces),), 1)
     parts = [lot.values(name) for lot in lots]
-    values = _filled(name, lots, parts, (len(surface.faces), 3), 2)
+    values = _values_of_all_triangles(name, lots, parts, (len(surface.faces), 3), 2)
     if kinds == {"vertex"}:
         common = _of_vertices(name, values, lots, surface)
         if common is not None:
@@ -289,14 +289,14 @@ def _joined(name: str, lots: list[_SourceTriangles], surface: Surface) -> tuple[
     return "corner", values
 
 
-def _filled(
+def _values_of_all_triangles(
     name: str, lots: list[_SourceTriangles], parts: list[Values], shape: tuple[int, ...], depth: int
 ) -> Values:
     """Return the values of an attribute for all triangles of a result.
 
     Triangles from sources without the attribute get the default value.
     """
-    parts = colors_alike(name, parts, depth)
+    parts = uniform_colors(name, parts, depth)
     kind = common_type(name, parts, depth)
     blank = default_of(name, parts[0].astype(kind, copy=False), depth)
     filled = np.full(shape + parts[0].shape[depth:], blank, dtype=kind)
@@ -305,7 +305,7 @@ def _filled(
     return filled
 
 
-def colors_alike(name: str, parts: Sequence[Values], depth: int) -> list[Values]:
+def uniform_colors(name: str, parts: Sequence[Values], depth: int) -> list[Values]:
     """Return the colours of several meshes in one type and width; return other values unchanged.
 
     Whole numbers of one type are unchanged; mixed types become floats from 0 to 1. If colours of
@@ -387,17 +387,17 @@ def _of_vertices(
     order = np.argsort(is_given.ravel(), kind="stable")
     common = np.full((count, flat.shape[1]), default_of(name, values, 2), dtype=values.dtype)
     common[vertices[order]] = flat[order]
-    if not _agree(common[vertices], flat):
+    if not _are_nearly_equal(common[vertices], flat):
         return None
     whole: Values = common.reshape(count, *values.shape[2:])
     return whole
 
 
-def _agree(one: Values, other: Values) -> bool:
+def _are_nearly_equal(one: Values, other: Values) -> bool:
     same = one == other
     if one.dtype.kind == "f":
         largest = np.nanmax(np.abs(one), initial=0, where=np.isfinite(one))
         with np.errstate(invalid="ignore"):
-            same |= np.abs(one - other) <= _ONE_FIELD * largest
+            same |= np.abs(one - other) <= _MAX_DIFFERENCE * largest
         same |= np.isnan(one) & np.isnan(other)
     return bool(same.all())

@@ -7,7 +7,7 @@ from .._types import MeshArrays
 from . import public_meshes, shapes
 from .case import BenchCase, WorkMaker
 from .command_line import CommandLine
-from .dense_cases import CLIFFS
+from .dense_cases import DENSE_CASES
 from .targets import (
     MAIN_RIVAL,
     OURS,
@@ -383,7 +383,7 @@ CASES: dict[str, BenchCase] = {
         (OURS,),
         alone=True,
     ),
-    **CLIFFS,
+    **DENSE_CASES,
 }
 
 #: The default cases, which take one or two minutes.

@@ -14,10 +14,10 @@ from ..formats import stl
 from ..formats.raw import RawMesh
 from ..formats.source import Source
 from .engines import ENGINES, Engine, EngineError
-from .meter import metered
+from .meter import run_metered
 from .result_facts import mesh_volume
 from .targets import MAIN_RIVAL
-from .workloads import Evidence, Outcome, SurfaceExtent, Tell, Work, extent_of
+from .workloads import Evidence, Outcome, StepCallback, SurfaceExtent, Work, extent_of
 
 _BOOT = Path(__file__).with_name("start_worker.py")
 
@@ -54,11 +54,11 @@ class CommandLine(Work):
                 path.write_bytes(b"".join(stl.binary(RawMesh(*mesh, path.stem))))
         return [str(path) for path in paths]
 
-    def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+    def run(self, engine: Engine, prepared: Any, tell: StepCallback) -> Outcome:
         """Run the command and read its output file."""
         answer = self.folder / "c.stl"
         asked = ["difference", *prepared, "-o", str(answer), "-q", *self.options]
-        used = metered([*_ours(), *asked])
+        used = run_metered([*_ours(), *asked])
         if used.code:
             raise EngineError(used.said)
         return Outcome(_read(answer), process=used)

@@ -66,7 +66,7 @@ def _doubled(title: str, make: _Maker, count: int, small: int) -> BenchCase:
 
 
 #: The cases by name; manifold3d takes seconds for these counts.
-CLIFFS: dict[str, BenchCase] = {
+DENSE_CASES: dict[str, BenchCase] = {
     "dense-half-spaces": _doubled(
         "cubes around a ball, one side of each touching it, intersected",
         _intersection(dense_meshes.cubes_around_ball),

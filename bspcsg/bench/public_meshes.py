@@ -13,7 +13,7 @@ from .shapes import generator, moved, random_rotation, scaled, turned, unit_vect
 LARGE, SMALL = (10_000, 500_000), (10, 30_000)
 
 #: The distance between the box centres of two meshes, in multiples of their half diagonal.
-_APART = 0.3
+_CENTRE_DISTANCE = 0.3
 
 
 def swept_capsules(shared: Path) -> tuple[MeshArrays, list[MeshArrays]]:
@@ -49,7 +49,7 @@ def _posed(
     shared: Path, names: tuple[str, str], random: np.random.Generator
 ) -> tuple[MeshArrays, MeshArrays]:
     posed = [turned(_unit(shared / "meshes" / name), random_rotation(random)) for name in names]
-    return posed[0], moved(posed[1], _APART * unit_vector(random))
+    return posed[0], moved(posed[1], _CENTRE_DISTANCE * unit_vector(random))
 
 
 @cache

@@ -28,7 +28,7 @@ class Volume:
 
 
 @dataclass(frozen=True)
-class AnswerFacts:
+class ResultFacts:
     """The numbers of triangles and open edges, the Euler number and the volume of a result.
 
     Parameters
@@ -48,11 +48,11 @@ class AnswerFacts:
     volume_error: float
 
 
-def facts_of(mesh: MeshArrays) -> AnswerFacts:
+def facts_of(mesh: MeshArrays) -> ResultFacts:
     """Return the facts about a mesh."""
     faces = np.asarray(mesh[1], dtype=np.int64)
     volume = mesh_volume((mesh[0], faces))
-    return AnswerFacts(
+    return ResultFacts(
         triangles=len(faces),
         euler_number=len(np.unique(faces)) - len(faces) // 2,
         open_edges=_open_edges(faces, len(mesh[0])),

@@ -10,7 +10,7 @@ from importlib.util import module_from_spec, spec_from_file_location
 from runpy import run_module
 
 
-def put_in_place(core: str) -> None:
+def load_core(core: str) -> None:
     """Load a compiled module from this file as the package's core."""
     name = "bspcsg._core"
     spec = spec_from_file_location(name, core, loader=ExtensionFileLoader(name, core))
@@ -27,7 +27,7 @@ if __name__ == "__main__":
     root, core, task, *arguments = sys.argv[1:]
     sys.path.insert(0, root)
     if core:
-        put_in_place(core)
+        load_core(core)
     if task == "--":
         sys.argv = ["bspcsg", *arguments]
         # Like `python -m bspcsg`.

@@ -17,7 +17,7 @@ from .result_facts import area, mesh_volume, size_of
 from .shapes import generator
 
 #: A function that is called with the number of finished steps of a chain.
-Tell = Callable[[int], None]
+StepCallback = Callable[[int], None]
 
 
 @dataclass
@@ -76,7 +76,7 @@ class Work(ABC):
         return None
 
     @abstractmethod
-    def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+    def run(self, engine: Engine, prepared: Any, tell: StepCallback) -> Outcome:
         """Do the work with an engine and return the outcome."""
 
     def counted(self, engine: Engine, outcome: Outcome) -> dict[str, int]:
@@ -100,7 +100,7 @@ class Pair(Work):
         """Return the total extent of both operands."""
         return extent_of([self.first, self.second])
 
-    def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+    def run(self, engine: Engine, prepared: Any, tell: StepCallback) -> Outcome:
         """Combine both meshes with an engine."""
         return Outcome(engine.boolean(self.first, self.second, self.operation))
 
@@ -162,7 +162,7 @@ class BuiltPair(Pair):
         """Return both operands as solids of the engine."""
         return [engine.solid(self.first), engine.solid(self.second)]
 
-    def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+    def run(self, engine: Engine, prepared: Any, tell: StepCallback) -> Outcome:
         """Combine both solids with an engine."""
         made = engine.combine(self.operation, prepared)
         return Outcome(engine.arrays(made), solid=made)
@@ -180,9 +180,9 @@ class Expression(Work):
         """Return the total extent of all operands."""
         return extent_of([self.base, *(mesh for group in self.groups for mesh in group)])
 
-    def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+    def run(self, engine: Engine, prepared: Any, tell: StepCallback) -> Outcome:
         """Evaluate the expression with an engine."""
-        laps = Laps()
+        laps = Stopwatch()
         operands = [engine.solid(self.base)]
         for group in self.groups:
             solids = [engine.solid(mesh) for mesh in group]
@@ -204,7 +204,7 @@ class OneMesh(Work):
         """Return the total extent of all parts."""
         return extent_of(self.parts)
 
-    def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+    def run(self, engine: Engine, prepared: Any, tell: StepCallback) -> Outcome:
         """Unite the parts with an engine."""
         made = engine.united(self.parts)
         return Outcome(engine.arrays(made), solid=made)
@@ -226,9 +226,9 @@ class Chain(Work):
         """Return the work of computing the same set as one expression."""
         return Expression(self.base, [[tool] for tool in self.tools], self.operation)
 
-    def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+    def run(self, engine: Engine, prepared: Any, tell: StepCallback) -> Outcome:
         """Carry out the chain with an engine."""
-        laps = Laps()
+        laps = Stopwatch()
         solid = engine.solid(self.base)
         tools = [engine.solid(tool) for tool in self.tools]
         laps.end("build")
@@ -262,7 +262,7 @@ class Carving(Work):
         """Return the work of computing the same set as one expression."""
         return Expression(self.base, [[tool] for tool in self.tools()])
 
-    def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+    def run(self, engine: Engine, prepared: Any, tell: StepCallback) -> Outcome:
         """Carry out the chain with an engine."""
         solid = engine.solid(self.base)
         steps = []
@@ -272,13 +272,13 @@ class Carving(Work):
             engine.volume(solid)
             steps.append(time.perf_counter() - began)
             tell(done)
-        laps = Laps()
+        laps = Stopwatch()
         mesh = engine.arrays(solid)
         laps.end("mesh out")
         return Outcome(mesh, {"steps": sum(steps), **laps.seconds}, steps, solid)
 
 
-class Laps:
+class Stopwatch:
     """A stopwatch that records the seconds of each part of a run."""
 
     def __init__(self) -> None:
@@ -293,7 +293,7 @@ class Laps:
 
 
 def stepwise(
-    engine: Engine, operation: Operation, solid: Any, tools: Iterable[Any], tell: Tell
+    engine: Engine, operation: Operation, solid: Any, tools: Iterable[Any], tell: StepCallback
 ) -> tuple[Any, list[float]]:
     """Return the solid after combining it with all tools in turn, and the seconds of each step.
 

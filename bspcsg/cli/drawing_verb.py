@@ -10,13 +10,13 @@ import click
 from ..errors import FormatError
 from .console import clock, output
 from .console.output import Output
-from .inputs.files import STREAM, Inputs, is_dropped, put, refuse_unwritable, shown
+from .inputs.files import STREAM, Inputs, display_name, is_dropped, refuse_unwritable, write_output
 
 if TYPE_CHECKING:
     from ..bsp import Region
 
 
-class Drawing(ABC):
+class DrawingVerb(ABC):
     """A verb's work of making a drawing from a file and writing it; subclasses implement `drawn`.
 
     Parameters
@@ -54,11 +54,11 @@ class Drawing(ABC):
         refuse_unwritable(self.target, self.settings["overwrite"])
         self.inputs.refuse_early(self.sources())
         data, words, values = self.drawn()
-        put(self.target, [data], self.settings["overwrite"])
+        write_output(self.target, [data], self.settings["overwrite"])
         seconds = clock.elapsed()
         names = {"file": str(self.file), "output": str(self.target)}
         document = {**names, **values, "seconds": round(seconds, 4)}
-        self.out.result(f"{shown(self.target)}  {words}  {seconds:.2f} s", document)
+        self.out.result(f"{display_name(self.target)}  {words}  {seconds:.2f} s", document)
         return output.DONE
 
     def data(self, region: "Region") -> bytes:
@@ -94,7 +94,8 @@ class Drawing(ABC):
             )
         if suffix not in self._suffixes:
             message = (
-                f"{shown(self.target)}: the format is unknown; the output name must end in {known}."
+                f"{display_name(self.target)}: the format is unknown; the output name must end in"
+                f" {known}."
             )
             raise FormatError(message, "unknown_format")
         return suffix

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from .console import clock, output, status_line
 from .console.output import Output, counted
-from .inputs.files import Inputs, Target, shown
+from .inputs.files import Inputs, Target, display_name
 
 if TYPE_CHECKING:
     from ..errors import Finding
@@ -26,7 +26,7 @@ _MAX_EXACT_FACES, _MAX_EXACT_BITS = 500, 10_000
 _MAX_CROSSINGS_NAMED = 8
 
 
-class Job(ABC):
+class SolidVerb(ABC):
     """A verb's work of making a solid from files and writing it; subclasses implement `combined`.
 
     Parameters
@@ -74,7 +74,7 @@ class Job(ABC):
     @property
     def name(self) -> str:
         """The name of the output in messages."""
-        return shown(self.target.path)
+        return display_name(self.target.path)
 
     def run(self) -> int:
         """Read, combine, check and write; report the result and return the exit code."""
@@ -83,14 +83,14 @@ class Job(ABC):
         set_threads(self.settings["threads"])
         self.target.refuse_early(self.out.as_json)
         self.refuse_inputs()
-        status_line.tell(f"{self.op}: evaluating")
+        status_line.set_text(f"{self.op}: evaluating")
         result = self.made = self.combined()
         mesh = self._mesh_of(result)
         self.lap("combine")
         for line in result.profile().lines():
             self.out.detail(f"  {line}")
         is_checked = self.settings["check"] != "off"
-        status_line.tell(f"{self.op}: comparing with manifold3d" if is_checked else self.op)
+        status_line.set_text(f"{self.op}: comparing with manifold3d" if is_checked else self.op)
         report = self.compared(result) if is_checked else None
         self.lap("check")
         if report is not None and report.verdict == "subject failed":
@@ -98,10 +98,10 @@ class Job(ABC):
             return output.FOUND
         if self.settings["tolerance"]:
             result, mesh = self._simplified(result, mesh)
-        status_line.tell(f"{self.op}: writing {shown(self.target.path)}")
+        status_line.set_text(f"{self.op}: writing {display_name(self.target.path)}")
         self._lost = self._write(result, mesh)
         for finding in self._lost:
-            self.out.finding(shown(self.target.path), finding)
+            self.out.finding(display_name(self.target.path), finding)
         self.lap("write")
         self._tell(result, mesh, report, written=True)
         return output.DONE if report is None or report.ok else output.FOUND
@@ -125,7 +125,8 @@ class Job(ABC):
         simple = result.simplify(self.settings["tolerance"])
         if simple is result:
             self.out.note(
-                f"{shown(self.target.path)}: no edge or triangle is small enough to be simplified"
+                f"{display_name(self.target.path)}: no edge or triangle is small enough to be"
+                " simplified"
                 " within the tolerance"
             )
             self._noticed = ()
@@ -142,7 +143,7 @@ class Job(ABC):
         mesh = result.normalized().to_mesh()
         if len(mesh.faces) == 0 and not self.settings["allow_empty"]:
             raise output.EmptyResultError(
-                f"{shown(self.target.path)}: the result is empty, so nothing was written;"
+                f"{display_name(self.target.path)}: the result is empty, so nothing was written;"
                 " --allow-empty writes an empty file.",
                 "empty_result",
             )

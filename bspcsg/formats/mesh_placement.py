@@ -14,7 +14,7 @@ from ..solid.sewing import Sewn, sewn
 from .raw import RawMesh, compacted, joined
 
 #: A function that transforms points, (n, 3) float64.
-Image: TypeAlias = Callable[[FloatArray], FloatArray]
+PointMap: TypeAlias = Callable[[FloatArray], FloatArray]
 
 SingleArray: TypeAlias = "np.ndarray[tuple[int, ...], np.dtype[np.float32]]"
 
@@ -36,7 +36,7 @@ class PlacedMesh:
     """
 
     mesh: RawMesh
-    image: Image
+    image: PointMap
     keeps: bool = True
     map: bytes = b""
 
@@ -84,7 +84,7 @@ def _is_sum_exact(values: FloatArray, offset: float) -> bool:
     return bool((total - values == offset).all() and (total - offset == values).all())
 
 
-def placed(pieces: Sequence[PlacedMesh]) -> RawMesh:
+def placed_meshes(pieces: Sequence[PlacedMesh]) -> RawMesh:
     """Return transformed meshes as one mesh, in which each is an object with its name.
 
     If rounding makes surfaces cross that did not cross before, they are mended by changes as small
@@ -108,8 +108,8 @@ def placed(pieces: Sequence[PlacedMesh]) -> RawMesh:
         own = joined([pieces[number].mesh for number in members])
         found = _mended(own, pieces[members[0]].image, pitch)
         if found is not None:
-            _take(found, members, meshes, crossing)
-            flat += _left_out(own, found)
+            _replace_with_mended(found, members, meshes, crossing)
+            flat += _lost_triangle_count(own, found)
             whole = replace(whole, is_mended=True)
     return _with_findings(joined(meshes), meshes, crossing, flat) if whole.is_mended else whole
 
@@ -153,8 +153,8 @@ def _with_mended(raw: RawMesh, found: Mended) -> RawMesh:
         objects=tuple(zip(names, counts, strict=True)),
         findings=(
             *raw.findings,
-            *_crossing(found.left.tolist()),
-            *_flat(_left_out(raw, found)),
+            *_crossing_finding(found.left.tolist()),
+            *_flat_finding(_lost_triangle_count(raw, found)),
         ),
         is_mended=True,
     )
@@ -168,7 +168,7 @@ def _pitch_of(whole: RawMesh) -> int | None:
         return None
 
 
-def _mended(raw: RawMesh, image: Image, pitch: int) -> Mended | None:
+def _mended(raw: RawMesh, image: PointMap, pitch: int) -> Mended | None:
     """Return a transformed mesh, mended; None if transforming its vertices is enough."""
     mesh = AttributedMesh(raw.vertices, raw.faces, raw.attributes)
     divided = _sewn(mesh)
@@ -194,7 +194,7 @@ def _sewn(mesh: AttributedMesh) -> Sewn | None:
     return sewn(mesh, tree)
 
 
-def _take(
+def _replace_with_mended(
     found: Mended, members: list[int], meshes: list[RawMesh], crossing: dict[int, list[int]]
 ) -> None:
     """Replace some of `meshes` by their parts of a mesh into which they were joined and mended.
@@ -222,15 +222,17 @@ def _with_findings(
 ) -> RawMesh:
     starts = np.cumsum([0] + [len(mesh.faces) for mesh in meshes]).tolist()
     places = sorted(starts[number] + row for number, rows in crossing.items() for row in rows)
-    return replace(whole, is_mended=True, findings=(*_crossing(places), *_flat(flat)))
+    return replace(
+        whole, is_mended=True, findings=(*_crossing_finding(places), *_flat_finding(flat))
+    )
 
 
-def _left_out(raw: RawMesh, found: Mended) -> int:
+def _lost_triangle_count(raw: RawMesh, found: Mended) -> int:
     """Return the number of triangles of `raw` of which the mended mesh has no part."""
     return len(raw.faces) - len(np.unique(found.kept))
 
 
-def _flat(count: int) -> tuple[Finding, ...]:
+def _flat_finding(count: int) -> tuple[Finding, ...]:
     """Return the finding that `count` triangles were dropped, nothing if there are none."""
     if not count:
         return ()
@@ -241,7 +243,7 @@ def _flat(count: int) -> tuple[Finding, ...]:
     return (Finding("zero_area", "note", message, (), count),)
 
 
-def _crossing(places: list[int]) -> tuple[Finding, ...]:
+def _crossing_finding(places: list[int]) -> tuple[Finding, ...]:
     """Return the finding that the triangles `places` still cross others, nothing without any."""
     if not places:
         return ()

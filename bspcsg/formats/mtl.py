@@ -133,7 +133,9 @@ def _picture(source: Source, words: Sequence[bytes], found: Libraries) -> bytes 
     return None
 
 
-def written(materials: Mapping[str, Material], stem: str) -> tuple[str, dict[str, bytes]]:
+def library_and_companions(
+    materials: Mapping[str, Material], stem: str
+) -> tuple[str, dict[str, bytes]]:
     """Return the name of the MTL file for an OBJ file called `stem`, and all companion files.
 
     The companion files are a dictionary of name to content.

@@ -11,16 +11,16 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from .._types import FloatArray, IndexArray
-from ..attributes.attributes import Attributes, Kind, Values, with_even_faces
+from ..attributes.attributes import Attributes, Kind, Values, corners_to_faces
 from ..attributes.colours import COLOR, as_bytes, as_floats, is_color, is_opaque, opaque
 from ..attributes.material import Material
 from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
 from . import mtl
 from .blocks import encoded_lines, listed
-from .raw import EMPTY_SET, IndexPolygons, RawMesh, on_one_line, parts_of, says_empty_set
-from .source import Source, as_text, quoted, whole
-from .storable_attributes import chosen, said_of
+from .raw import EMPTY_SET, IndexPolygons, RawMesh, on_one_line, parts_of, represents_empty_set
+from .source import Source, as_text, quoted, to_integer
+from .storable_attributes import attributes_or_none, selected_attributes
 
 #: Keywords of statements that are not read, and what they define.
 _DROPPED = {
@@ -157,7 +157,7 @@ def _row(parts: list[bytes], place: int, known: int) -> int:
     Negative numbers count back from the last of `known` entries.
     """
     try:
-        number = whole(parts[place])
+        number = to_integer(parts[place])
     except (ValueError, IndexError):
         return -1
     return number - 1 if number > 0 else max(known + number, -1) if number < 0 else -1
@@ -285,7 +285,7 @@ def _references(source: Source, number: int, words: list[bytes], known: int) -> 
     Negative numbers in the file count back from the last of `known` vertices.
     """
     try:
-        references = [whole(word.partition(b"/")[0]) for word in words[1:]]
+        references = [to_integer(word.partition(b"/")[0]) for word in words[1:]]
     except ValueError:
         message = (
             f"expected integer vertex numbers after “f”, found {quoted(b' '.join(words[1:]))}."
@@ -324,12 +324,12 @@ def _curved(count: int) -> tuple[Finding, ...]:
     return (Finding("curves_ignored", "warning", message, (), count),)
 
 
-def called(name: str) -> str:
+def stored_name(name: str) -> str:
     """Return a name with “_” instead of characters that end or continue a line of OBJ."""
     return on_one_line(name).replace("#", "_").replace("\\", "_")
 
 
-def kept(said: Attributes) -> Attributes:
+def storable(said: Attributes) -> Attributes:
     """Return the attributes that OBJ can store.
 
     These are colours of vertices, without opacity; materials of faces, or else colours of faces;
@@ -337,7 +337,7 @@ def kept(said: Attributes) -> Attributes:
     """
     said = _with_colors_of_vertices(said.without_empty_material())
     given = _named_materials(said)
-    names = _held_names({*np.unique(given).tolist(), *said.materials})
+    names = _storable_names({*np.unique(given).tolist(), *said.materials})
 
     def keep(kind: Kind, name: str, values: Values) -> Values | None:
         depth = 2 if kind == "corner" else 1
@@ -353,7 +353,7 @@ def kept(said: Attributes) -> Attributes:
             return _whole_rows(values)
         return None
 
-    held = chosen(said, keep)
+    held = selected_attributes(said, keep)
     used = set(held.face["material"].tolist()) if "material" in held.face else set()
     named = {names[name]: material for name, material in said.materials.items()}
     materials = {name: material for name, material in named.items() if name in used}
@@ -365,7 +365,7 @@ def _with_colors_of_vertices(said: Attributes) -> Attributes:
 
     If faces at a vertex have different colours, the attributes stay unchanged.
     """
-    said = with_even_faces(said, COLOR)
+    said = corners_to_faces(said, COLOR)
     colors = said.face.get(COLOR)
     if colors is None or not is_color(COLOR, colors, 1) or not is_opaque(colors):
         return said
@@ -442,13 +442,13 @@ def _whole_rows(values: Values) -> Values | None:
     return rows if is_known.any() else None
 
 
-def _held_names(names: set[str]) -> dict[str, str]:
+def _storable_names(names: set[str]) -> dict[str, str]:
     """Return a distinct name that OBJ can store for each of the given material names."""
     held = {"": ""}
     taken = {""}
     # Names that need no change come first, so that they stay as they are.
-    for name in sorted(names - {""}, key=lambda name: (called(name) != name, name)):
-        fit = called(name) or "_"
+    for name in sorted(names - {""}, key=lambda name: (stored_name(name) != name, name)):
+        fit = stored_name(name) or "_"
         # A material whose name looks like a colour must not be read back as a colour.
         fit = free = f"{fit}_" if _COLORED.fullmatch(fit) else fit
         number = 1
@@ -464,19 +464,19 @@ def _held_names(names: set[str]) -> dict[str, str]:
 _CORNERS = {"uv": 2, "normal": 3}
 
 
-def beside(mesh: RawMesh, stem: str) -> tuple[bytes, dict[str, bytes]]:
+def companion_files(mesh: RawMesh, stem: str) -> tuple[bytes, dict[str, bytes]]:
     """Return an OBJ's statement that names the material library, and the companion files by name.
 
     Both are empty if there are no materials.
     """
-    said = with_materials(said_of(mesh))
+    said = with_materials(attributes_or_none(mesh))
     if said is None or not said.materials:
         return b"", {}
-    library, files = mtl.written(said.materials, _as_word(stem))
+    library, files = mtl.library_and_companions(said.materials, _escaped_stem(stem))
     return f"mtllib {library}\n".encode(), files
 
 
-def _as_word(stem: str) -> str:
+def _escaped_stem(stem: str) -> str:
     """Return the stem of a file with blanks and special characters escaped.
 
     Other programs take a name with a blank for two names. Distinct stems stay distinct.
@@ -489,8 +489,8 @@ def _as_word(stem: str) -> str:
 
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the bytes of an OBJ file; every coordinate reads back as the same double."""
-    said = with_materials(said_of(mesh))
-    if says_empty_set(mesh):
+    said = with_materials(attributes_or_none(mesh))
+    if represents_empty_set(mesh):
         yield EMPTY_SET
     if said is not None and "color" in said.vertex:
         for point in listed(np.concatenate([mesh.vertices, said.vertex["color"]], axis=1)):
@@ -503,7 +503,7 @@ def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     parts = parts_of(mesh)
     for name, faces in parts:
         if name or len(parts) > 1:
-            yield f"o {called(name)}\n".encode()
+            yield f"o {stored_name(name)}\n".encode()
         corners = listed(faces + np.int64(1))
         yield from encoded_lines(f"f {a} {b} {c}\n" for a, b, c in corners)
 
@@ -523,7 +523,7 @@ def _text_with_attributes(mesh: Mesh | RawMesh, said: Attributes) -> Iterator[by
     parts = parts_of(mesh)
     for name, faces in parts:
         if name or len(parts) > 1:
-            yield f"o {called(name)}\n".encode()
+            yield f"o {stored_name(name)}\n".encode()
         for row, face in enumerate(listed(faces), start):
             if names is not None and names[row] != current:
                 current = str(names[row])

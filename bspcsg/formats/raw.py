@@ -69,7 +69,7 @@ class RawMesh:
         return tuple(found.message for found in self.findings if found.code in _PASSED_BY)
 
 
-def says_empty_set(mesh: Mesh | RawMesh) -> bool:
+def represents_empty_set(mesh: Mesh | RawMesh) -> bool:
     """Say whether a mesh is the empty set, so that a file of it must be marked as such.
 
     A `RawMesh` without triangles is the empty set only if `is_empty_set` is true.

@@ -11,7 +11,7 @@ from ..errors import Finding
 from ..mesh.mesh import Mesh
 from .raw import RawMesh
 from .source import Source
-from .verification import Called, Scan
+from .verification import NameInFile, ObjectReader
 
 Encoder: TypeAlias = Callable[[Mesh | RawMesh], Iterator[bytes]]
 Keeper: TypeAlias = Callable[[Attributes, FloatArray], Attributes]
@@ -50,8 +50,8 @@ class Form:
     """
 
     encode: Encoder
-    scan: Scan
-    called: Called | None = None
+    scan: ObjectReader
+    called: NameInFile | None = None
     losses: LossFinder | None = None
     repeats: bool = True
     is_single: bool = False
@@ -88,7 +88,7 @@ def _stl() -> Format:
 
     return Format(
         stl.read,
-        Form(stl.text, stl_obj_off_ply.text_stl, stl.called),
+        Form(stl.text, stl_obj_off_ply.text_stl, stl.stored_name),
         Form(stl.binary, stl_obj_off_ply.binary_stl, losses=stl.losses, is_single=True),
     )
 
@@ -100,9 +100,9 @@ def _obj() -> Format:
     text = Form(
         obj.text,
         stl_obj_off_ply.obj,
-        obj.called,
-        keeps=lambda attributes, _: obj.kept(attributes),
-        beside=obj.beside,
+        obj.stored_name,
+        keeps=lambda attributes, _: obj.storable(attributes),
+        beside=obj.companion_files,
         needs_vertices=True,
     )
     return Format(obj.read, text)
@@ -117,13 +117,13 @@ def _ply() -> Format:
         Form(
             file.text,
             stl_obj_off_ply.text_ply,
-            keeps=lambda attributes, _: columns.kept(attributes),
+            keeps=lambda attributes, _: columns.storable(attributes),
         ),
         Form(
             file.binary,
             stl_obj_off_ply.binary_ply,
-            keeps=lambda attributes, _: columns.kept(attributes),
-            beyond=file.beyond,
+            keeps=lambda attributes, _: columns.storable(attributes),
+            beyond=file.size_problem,
         ),
     )
 
@@ -137,7 +137,7 @@ def _off() -> Format:
         Form(
             off.text,
             stl_obj_off_ply.off,
-            keeps=lambda attributes, _: off.kept(attributes),
+            keeps=lambda attributes, _: off.storable(attributes),
         ),
     )
 
@@ -149,10 +149,10 @@ def _threemf() -> Format:
     binary = Form(
         write.binary,
         threemf.archive,
-        write.called,
+        write.stored_name,
         write.losses,
         repeats=False,
-        keeps=lambda attributes, _: properties.kept(attributes),
+        keeps=lambda attributes, _: properties.storable(attributes),
     )
     return Format(file.read, None, binary, "mm")
 
@@ -164,11 +164,11 @@ def _glb() -> Format:
     binary = Form(
         file.binary,
         glb.objects,
-        attribute_conversion.called,
+        attribute_conversion.stored_name,
         file.losses,
         is_single=True,
-        keeps=attribute_conversion.kept,
-        beyond=file.beyond,
+        keeps=attribute_conversion.storable,
+        beyond=file.size_problem,
     )
     return Format(file.read, None, binary, "mm", "y")
 

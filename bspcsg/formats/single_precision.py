@@ -55,7 +55,7 @@ def losses(mesh: Mesh | RawMesh, format_name: str) -> tuple[Finding, ...]:
     )
 
 
-def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
+def in_single_precision(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
     """Return a solid's mesh in single precision, with crossings mended where possible.
 
     Rounding moves every corner, so close surfaces may cross and thin triangles may lose their area.
@@ -85,12 +85,12 @@ def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
     result, mended, crossing = _mended(mesh)
     changed = _mending(mended)
     if len(mesh.faces) and not len(result.faces):
-        result, changed, crossing = _kept(mesh)
+        result, changed, crossing = _thickened_and_rounded(mesh)
     left = tuple(finding for finding in (changed, _crossing(crossing)) if finding.count)
     return (result if changed.count else mesh), left
 
 
-def _kept(mesh: Mesh) -> tuple[Mesh, Finding, IndexArray]:
+def _thickened_and_rounded(mesh: Mesh) -> tuple[Mesh, Finding, IndexArray]:
     """Thicken a mesh that rounding would erase; return it rounded, a finding, and crossings.
 
     Crossings are the numbers of triangles that still cross others.
@@ -100,7 +100,7 @@ def _kept(mesh: Mesh) -> tuple[Mesh, Finding, IndexArray]:
     if len(result.faces):
         return result, _thickening(len(result.faces), spacing), crossing
     rounded = mesh.vertices.astype(np.float32).astype(np.float64)
-    return mesh, _mending(0), _faulty(certify(rounded, mesh.faces))
+    return mesh, _mending(0), _faulty_triangles(certify(rounded, mesh.faces))
 
 
 def _mended(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
@@ -116,7 +116,7 @@ def _mended(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
         result, more, _ = _rounded(_united(result))
         # The lattice on which surfaces are united does not contain all numbers of single precision.
         # Faces that stay unchanged there may cross, so all are checked.
-        crossing = _faulty(result.certificate)
+        crossing = _faulty_triangles(result.certificate)
         mended += more
     return result, mended, crossing
 
@@ -138,16 +138,16 @@ def _rounded(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
     used, faces = compacted(found["triangles"])
     carried = mesh.carried and made(mesh.attributes.onto(faces, kept))
     result = Mesh(found["vertices"][used], faces, mesh.source[kept], carried)
-    faulty = np.searchsorted(kept, _either(found["crossings"], found["flat"]))
+    faulty = np.searchsorted(kept, _in_either(found["crossings"], found["flat"]))
     return result, found["mended"], faulty
 
 
-def _faulty(proof: Certificate) -> IndexArray:
+def _faulty_triangles(proof: Certificate) -> IndexArray:
     """Return the numbers of the triangles that cross others or have no area, ascending."""
-    return _either(np.array(proof.crossings), np.array(proof.flat))
+    return _in_either(np.array(proof.crossings), np.array(proof.flat))
 
 
-def _either(some: IndexArray, others: IndexArray) -> IndexArray:
+def _in_either(some: IndexArray, others: IndexArray) -> IndexArray:
     """Return the numbers that are in at least one of two lists, ascending."""
     # Not numpy.unique: it imports numpy.ma, a tenth of the time of a small boolean operation.
     return np.array(sorted({*some.ravel().tolist(), *others.tolist()}), dtype=np.int64)

@@ -187,7 +187,7 @@ def limited_content(path: str | os.PathLike[str]) -> bytes:
         raise FormatError(
             f"{name}: the file is larger than the limit of {_MAX_TEXT_BYTES:,} bytes.", "too_large"
         )
-    return present(name, data)
+    return refuse_pointer_file(name, data)
 
 
 def whole_content(path: str | os.PathLike[str]) -> bytes:
@@ -201,10 +201,10 @@ def whole_content(path: str | os.PathLike[str]) -> bytes:
     name = file_path(path)
     with _readable(name):
         data = content_of(Path(name))
-    return present(name, data)
+    return refuse_pointer_file(name, data)
 
 
-def present(name: str, data: bytes) -> bytes:
+def refuse_pointer_file(name: str, data: bytes) -> bytes:
     """Return the bytes of a file unchanged, unless they are a pointer of Git LFS.
 
     Raises
@@ -250,17 +250,17 @@ def as_text(name: bytes) -> str:
         return name.decode("latin-1")
 
 
-def whole(word: bytes) -> int:
+def to_integer(word: bytes) -> int:
     """Convert a word to an integer; raise a `ValueError` for other words, such as ``1_0``."""
     if b"_" in word or len(word) > _MAX_INTEGER_CHARACTERS:
         raise ValueError(word)
     return int(word)
 
 
-def integral(word: bytes) -> int:
+def to_integral(word: bytes) -> int:
     """Convert a word to an integer, also one like ``1.0``; raise a `ValueError` for others."""
     try:
-        return whole(word)
+        return to_integer(word)
     except ValueError:
         number = float(word)
         if b"_" in word or not number.is_integer() or abs(number) > _MAX_EXACT_INTEGER:

@@ -12,21 +12,23 @@ from ..mesh.mesh import Mesh
 from .raw import RawMesh
 
 
-def said_of(mesh: Mesh | RawMesh) -> Attributes | None:
+def attributes_or_none(mesh: Mesh | RawMesh) -> Attributes | None:
     """Return the attributes of a mesh; None if it has no attributes or no triangles."""
     has_none = isinstance(mesh, Mesh) and mesh.carried is None
     said = None if has_none or not len(mesh.faces) else mesh.attributes
     return None if said is None or said.is_empty else said
 
 
-def saying(mesh: Mesh | RawMesh, attributes: Attributes | None) -> RawMesh:
+def with_attributes(mesh: Mesh | RawMesh, attributes: Attributes | None) -> RawMesh:
     """Return a mesh as a `RawMesh` whose attributes are replaced by `attributes`."""
     if isinstance(mesh, RawMesh):
         return replace(mesh, attributes=attributes)
     return RawMesh(mesh.vertices, mesh.faces, attributes=attributes)
 
 
-def chosen(said: Attributes, keep: Callable[[Kind, str, Values], Values | None]) -> Attributes:
+def selected_attributes(
+    said: Attributes, keep: Callable[[Kind, str, Values], Values | None]
+) -> Attributes:
     """Return the attributes for which `keep` returns values, with these values.
 
     `keep` returns None for an attribute to drop.
@@ -44,17 +46,17 @@ def chosen(said: Attributes, keep: Callable[[Kind, str, Values], Values | None])
     return Attributes(said.faces, vertex, corner, face, materials)
 
 
-def left_out(said: Attributes, kept: Attributes | None, suffix: str) -> tuple[Finding, ...]:
+def attribute_losses(said: Attributes, kept: Attributes | None, suffix: str) -> tuple[Finding, ...]:
     """Return findings about attributes of `said` that are missing or changed in `kept`."""
     held = Attributes(said.faces) if kept is None else kept
     lost = [name for name in said.names if name not in held.names]
     told = [f"“{name}” of {_PLURAL[said.kind_of(name) or 'face']}" for name in lost]
     if COLOR in lost and "material" in held.names:
         told[lost.index(COLOR)] += " beside “material”"
-    return (*not_held(told, suffix), *_changed_color(said, held, suffix))
+    return (*unstorable_finding(told, suffix), *_changed_color(said, held, suffix))
 
 
-def not_held(told: Sequence[str], suffix: str) -> tuple[Finding, ...]:
+def unstorable_finding(told: Sequence[str], suffix: str) -> tuple[Finding, ...]:
     """Return the finding that a format cannot store the attributes which `told` describes.
 
     Return nothing if `told` is empty.

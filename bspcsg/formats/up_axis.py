@@ -7,7 +7,7 @@ import numpy as np
 from .raw import RawMesh
 
 
-def turned(raw: RawMesh, quarters: int) -> RawMesh:
+def rotated_about_x(raw: RawMesh, quarters: int) -> RawMesh:
     """Return a mesh rotated about x by quarter turns, exactly; one quarter takes y to z.
 
     Parameters

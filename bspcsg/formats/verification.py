@@ -12,24 +12,24 @@ import numpy as np
 import numpy.typing as npt
 
 from .._types import IndexArray
-from ..errors import FormatError, words_of
+from ..errors import FormatError, message_of
 from ..mesh.mesh import Mesh
 from .blocks import blocks
 from .raw import RawMesh, parts_of
 from .readback.stored_mesh import StoredMesh, StoredRows
 
 #: A function that returns the objects of a file; raises any exception if the file is not valid.
-Scan: TypeAlias = Callable[[BinaryIO], Sequence[StoredMesh | StoredRows]]
+ObjectReader: TypeAlias = Callable[[BinaryIO], Sequence[StoredMesh | StoredRows]]
 
 #: A function that returns the name that a file has for an object of a given name.
-Called: TypeAlias = Callable[[str], str]
+NameInFile: TypeAlias = Callable[[str], str]
 
 
-def prove(
+def verify(
     path: str,
     mesh: Mesh | RawMesh,
-    scan: Scan,
-    called: Called | None,
+    scan: ObjectReader,
+    called: NameInFile | None,
     repeats: bool,
     file: BinaryIO,
 ) -> None:
@@ -77,14 +77,14 @@ def _reading(path: str) -> Iterator[None]:
     except MemoryError:
         raise
     except Exception as error:
-        raise _mismatch(path, f"it cannot be read back ({words_of(error)})") from error
+        raise _mismatch(path, f"it cannot be read back ({message_of(error)})") from error
 
 
-def prove_with_attributes(
+def verify_with_attributes(
     path: str,
     mesh: RawMesh,
     read: Callable[[str, bytes], RawMesh],
-    called: Called | None,
+    called: NameInFile | None,
     repeats: bool,
     file: BinaryIO,
 ) -> None:
@@ -101,7 +101,7 @@ def prove_with_attributes(
     read : callable
         Returns the mesh that the bytes of a file contain.
     called, repeats, file
-        As for `prove`.
+        As for `verify`.
 
     Raises
     ------
@@ -151,7 +151,7 @@ def _mismatch(path: str, reason: str, where: tuple[int, ...] = ()) -> FormatErro
 
 
 def _expected_objects(
-    mesh: Mesh | RawMesh, called: Called | None, repeats: bool
+    mesh: Mesh | RawMesh, called: NameInFile | None, repeats: bool
 ) -> list[tuple[str, IndexArray]]:
     """Return name and triangles of each object that the written file must contain."""
     parts = [("", mesh.faces)] if called is None else parts_of(mesh)

@@ -12,11 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from .._types import IndexArray
-from ..attributes.attributes import Attributes, Kind, Values, with_even_faces
+from ..attributes.attributes import Attributes, Kind, Values, corners_to_faces
 from ..attributes.colours import COLOR, as_bytes, as_floats, is_color, opaque
 from ..attributes.material import Material
 from ..errors import Finding, InvalidMeshError, warn_of_losses
-from .interop import optional, to_manifold
+from .interop import import_optional, to_manifold
 from .mesh import Mesh
 
 if TYPE_CHECKING:
@@ -33,28 +33,28 @@ _PLAIN = (102, 102, 102, 255)
 
 def trimesh_of(mesh: Mesh) -> "trimesh.Trimesh":
     """Return a `trimesh.Trimesh` with copies of a mesh's vertices, faces and attributes."""
-    made: trimesh.Trimesh = optional("trimesh", "trimesh").Trimesh(
+    made: trimesh.Trimesh = import_optional("trimesh", "trimesh").Trimesh(
         mesh.vertices.copy(), mesh.faces.copy(), process=False
     )
-    said = _said_of(mesh, "trimesh")
+    said = _consistent_attributes(mesh, "trimesh")
     if said is not None:
         _TrimeshAttributes(made, said).run()
     return made
 
 
-def _said_of(mesh: Mesh, library: str) -> Attributes | None:
+def _consistent_attributes(mesh: Mesh, library: str) -> Attributes | None:
     """Return the attributes of a mesh, or None; inconsistent ones give None and a warning."""
     if mesh.carried is None:
         return None
     try:
         said = mesh.attributes.without_empty_material()
     except InvalidMeshError as error:
-        _tell(f"the attributes were not passed to {library}: {error.message}", 1)
+        _warn_of_loss(f"the attributes were not passed to {library}: {error.message}", 1)
         return None
     return None if said.is_empty or not len(mesh.faces) else said
 
 
-def _tell(message: str, count: int) -> None:
+def _warn_of_loss(message: str, count: int) -> None:
     warn_of_losses([Finding("attributes_left_out", "warning", message, (), count)])
 
 
@@ -63,7 +63,7 @@ class _TrimeshAttributes:
 
     def __init__(self, made: "trimesh.Trimesh", said: Attributes) -> None:
         self._made = made
-        self._said = with_even_faces(said)
+        self._said = corners_to_faces(said)
         self._is_colored = False
 
     def run(self) -> None:
@@ -90,7 +90,7 @@ class _TrimeshAttributes:
             self._show(vertex_colors=opaque(as_bytes(values)))
             return
         if kind == "corner":
-            _tell(
+            _warn_of_loss(
                 "trimesh cannot store colours of corners, so each face gets the mean colour"
                 f" of its corners; metadata[{CORNERS!r}] has the full colours.",
                 1,
@@ -100,7 +100,7 @@ class _TrimeshAttributes:
         self._show(face_colors=opaque(as_bytes(values)))
 
     def _show(self, **colors: Values) -> None:
-        visual = optional("trimesh.visual", "trimesh").ColorVisuals
+        visual = import_optional("trimesh.visual", "trimesh").ColorVisuals
         self._made.visual = visual(self._made, **colors)
 
     def _materials(self) -> None:
@@ -113,12 +113,12 @@ class _TrimeshAttributes:
         material = said.materials.get(names[0]) if len(names) == 1 else None
         uv = said.vertex.get("uv")
         if material is not None and _are_places(uv) and not (self._is_colored and not has_picture):
-            visual = optional("trimesh.visual", "trimesh").TextureVisuals
+            visual = import_optional("trimesh.visual", "trimesh").TextureVisuals
             self._made.visual = visual(uv=np.array(uv), material=_material(names[0], material))
             self._color_as_array()
             return
         if has_picture:
-            _tell(
+            _warn_of_loss(
                 "trimesh shows a texture only if all faces have one material and the texture"
                 " coordinates belong to vertices, so the pictures were stored in its metadata"
                 " only.",
@@ -162,7 +162,7 @@ def colors_by_materials(names: Values, materials: Mapping[str, Material]) -> Val
 
 def _material(name: str, material: Material) -> Any:
     """Return a material as a `trimesh.visual.material.PBRMaterial`."""
-    kind = optional("trimesh.visual.material", "trimesh").PBRMaterial
+    kind = import_optional("trimesh.visual.material", "trimesh").PBRMaterial
     picture = None if material.texture is None else picture_of(material.texture)
     color = as_bytes(np.array(material.color))
     mode = "BLEND" if material.color[3] < 1 else None
@@ -171,7 +171,7 @@ def _material(name: str, material: Material) -> Any:
 
 def picture_of(data: bytes) -> Any:
     """Return the bytes of a picture file as a `PIL.Image.Image`."""
-    return optional("PIL.Image", "pillow").open(io.BytesIO(data))
+    return import_optional("PIL.Image", "pillow").open(io.BytesIO(data))
 
 
 @dataclass(frozen=True)
@@ -231,13 +231,13 @@ def layout_of(ids: Iterable[int]) -> tuple[Column, ...] | None:
 
 def manifold_of(mesh: Mesh) -> "manifold3d.Manifold":
     """Return a `manifold3d.Manifold` of a mesh; numeric attributes become vertex properties."""
-    said = _said_of(mesh, "manifold3d")
+    said = _consistent_attributes(mesh, "manifold3d")
     if said is None:
         return to_manifold(mesh)
     others = [name for name in said.names if not _are_finite(said, name)]
     if others:
         told = ", ".join(f"“{name}”" for name in others)
-        _tell(
+        _warn_of_loss(
             f"manifold3d stores finite numbers only, so the attributes {told} were left out.",
             len(others),
         )
@@ -252,7 +252,7 @@ def _are_finite(said: Attributes, name: str) -> bool:
     return values.dtype.kind != "U" and bool(np.isfinite(values).all())
 
 
-_NONE: IndexArray = np.zeros(0, dtype=np.int64)
+_NO_INDICES: IndexArray = np.zeros(0, dtype=np.int64)
 
 
 def _in_order(said: Attributes) -> list[str]:
@@ -264,7 +264,7 @@ def _in_order(said: Attributes) -> list[str]:
 
 
 def _column(said: Attributes, name: str) -> Column:
-    values = said.at_corners(name, _NONE)
+    values = said.at_corners(name, _NO_INDICES)
     # Colours with and without opacity have four columns, so that both may occur in one mesh.
     shape = (4,) if is_color(name, values, 2) else values.shape[2:]
     return Column(name, said.kind_of(name) or "face", values.dtype, shape)

@@ -56,7 +56,7 @@ def attributes_from(mesh: Any, vertices: Any, faces: Any) -> dict[str, Any]:
         _take_visual(getattr(mesh, "visual", None), len(faces), found)
         if isinstance(mesh, Mesh):
             found["materials"].update(mesh.materials)
-    return _fitting(found, len(vertices), faces)
+    return _fitting_arrays(found, len(vertices), faces)
 
 
 #: The Python attributes with dictionaries of arrays: of trimesh and `Mesh`, of pyvista and meshio.
@@ -82,7 +82,7 @@ def _one_array(values: Any) -> Any:
     return np.asarray(values)
 
 
-def _fitting(
+def _fitting_arrays(
     found: dict[str, dict[str, Any]], vertex_count: int, faces: Any
 ) -> dict[str, dict[str, Any]]:
     """Return keyword arguments of `Solid` with the arrays that fit the mesh, each name once.

@@ -15,7 +15,7 @@ from .diagnosis import EdgeUses, connected, flat_faces, repeated_faces
 
 
 @dataclass(frozen=True, eq=False)
-class Marks:
+class DefectiveElements:
     """A mesh whose equal vertices are joined, and all edges and triangles that have a defect.
 
     Parameters
@@ -45,7 +45,7 @@ class Marks:
 
 
 @uncounted
-def marks_of(raw: RawMesh) -> Marks:
+def defective_elements_of(raw: RawMesh) -> DefectiveElements:
     """Return all edges and triangles of a mesh that have a defect.
 
     If a coordinate is not finite, no crossings are found.
@@ -54,7 +54,7 @@ def marks_of(raw: RawMesh) -> Marks:
     faces = same[raw.faces]
     edges = EdgeUses(faces, len(vertices))
     mesh = Mesh(vertices, faces, np.zeros((len(faces), 2), dtype=np.int64))
-    return Marks(
+    return DefectiveElements(
         vertices,
         faces,
         edges.ends[edges.open],

@@ -110,7 +110,7 @@ def repair(
             faces=raw.faces,
             settings=np.array(json.dumps(settings)),
         )
-        said = _asked(Path(folder), timeout)
+        said = _run_child(Path(folder), timeout)
         with np.load(Path(folder) / "repaired.npz", allow_pickle=False) as found:
             vertices = np.ascontiguousarray(found["vertices"], dtype=np.float64).reshape(-1, 3)
             faces = np.ascontiguousarray(found["faces"], dtype=np.int64).reshape(-1, 3)
@@ -147,7 +147,7 @@ def losses_of(raw: RawMesh) -> tuple[Finding, ...]:
     return tuple(found)
 
 
-def _asked(folder: Path, timeout: float | None) -> dict[str, Any]:
+def _run_child(folder: Path, timeout: float | None) -> dict[str, Any]:
     """Run ``pymeshlab_child.py`` on a folder; return the failed steps and removed triangles."""
     # Without -P, modules in the child's folder would hide modules of the standard library.
     command = [sys.executable, "-P", os.fspath(_CHILD), os.fspath(folder)]

@@ -9,10 +9,10 @@ from ..campaign.record import CaseRecord, Results, is_failure
 from ..errors import BspcsgError
 from .formatting import tone, whole
 from .merging import rank
-from .stored_meshes import Stored, stored_meshes
+from .stored_meshes import StoredMeshes, stored_meshes
 from .viewer.layer import Layer
 from .viewer.packing import packed
-from .viewer.still_pictures import camera_for, rings, still
+from .viewer.still_pictures import camera_for, rings, still_picture
 
 #: A page may have 1 450 000 characters if it has up to 40 cards; with more cards, more in
 #: proportion.
@@ -101,7 +101,7 @@ class PageBudget:
         return min(free, _MAX_VIEW_SHARES * free / cards)
 
 
-def picked(results: Results, count: int) -> list[CaseRecord]:
+def cases_for_cards(results: Results, count: int) -> list[CaseRecord]:
     """Return the first `count` cases for cards: failures, then cases with meshes, worst first."""
     return sorted(results.cases.values(), key=_urgency)[:count]
 
@@ -140,7 +140,7 @@ def cards_of(cases: Iterable[CaseRecord], results: Results, budget: PageBudget) 
         yield Card(address, case, tone(case["verdict"]), figures, model, note)
 
 
-def _figures(case: CaseRecord, stored: Stored) -> list[Figure]:
+def _figures(case: CaseRecord, stored: StoredMeshes) -> list[Figure]:
     """Return pictures of a case's operands, result and difference, all with the same camera."""
     if not stored.layers:
         return []
@@ -148,15 +148,17 @@ def _figures(case: CaseRecord, stored: Stored) -> list[Figure]:
     names = [Path(operand["file"] or operand["name"]).name for operand in case["operands"]]
     named = dict(zip((layer.name for layer in stored.operands), names, strict=False))
     figures = [
-        _figure(f"{layer.name} · {named.get(layer.name, '')}", layer, still([layer], camera))
+        _figure(
+            f"{layer.name} · {named.get(layer.name, '')}", layer, still_picture([layer], camera)
+        )
         for layer in stored.operands
     ]
-    result = still([stored.result], camera)
+    result = still_picture([stored.result], camera)
     figures.append(_figure("result", stored.result, result))
     if len(stored.difference.faces):
         found = case["set_difference"]
         place = found["place"] if found else None
-        images = [result, still([stored.difference], camera, edges=False)]
+        images = [result, still_picture([stored.difference], camera, edges=False)]
         images += [] if place is None else [rings([place], camera)]
         caption = f"difference, {found['thickness']:.2g} thick" if found else "difference"
         return [*figures, Figure(caption, [image for image in images if image])]

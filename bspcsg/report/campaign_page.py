@@ -7,7 +7,7 @@ from typing import Any
 from ..campaign.record import CaseRecord, FactsRecord, Results, is_failure
 from ..campaign.summary import counts_by_verdict
 from .assets import asset, bundle, rendered
-from .campaign_cards import PageBudget, cards_of, picked
+from .campaign_cards import PageBudget, cards_of, cases_for_cards
 from .case_table import table
 from .charts import Chart, share_below
 from .formatting import meaning, milliseconds, number, tone, vector, whole
@@ -54,7 +54,7 @@ def report_page(
         If Jinja2 is not installed.
     """
     cases = ordered(results)
-    chosen = picked(results, cards)
+    chosen = cases_for_cards(results, cards)
     columns, rows = table(cases, {case["key"]: f"case-{k + 1}" for k, case in enumerate(chosen)})
     # Besides its text, each cell and each row has tags.
     spent = sum(60 + sum(4 + len(cell) for cell in row.cells) for row in rows)

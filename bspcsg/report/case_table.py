@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from ..campaign.record import CaseRecord
-from .formatting import NOTHING, milliseconds, number, tone, whole
+from .formatting import NO_NUMBER, milliseconds, number, tone, whole
 from .merging import rank
 
 
@@ -38,36 +38,36 @@ class Row(NamedTuple):
 def _triangles_in(case: CaseRecord) -> str:
     counts = [operand["triangles"] for operand in case["operands"]]
     known = [count for count in counts if count is not None]
-    return whole(sum(known)) if known else NOTHING
+    return whole(sum(known)) if known else NO_NUMBER
 
 
 def _triangles_out(case: CaseRecord) -> str:
-    return whole(facts["triangles"]) if (facts := case["ours"]) else NOTHING
+    return whole(facts["triangles"]) if (facts := case["ours"]) else NO_NUMBER
 
 
 def _volume(case: CaseRecord) -> str:
-    return number(facts["volume"]) if (facts := case["ours"]) else NOTHING
+    return number(facts["volume"]) if (facts := case["ours"]) else NO_NUMBER
 
 
 def _euler(case: CaseRecord) -> str:
-    return whole(facts["euler_number"]) if (facts := case["ours"]) else NOTHING
+    return whole(facts["euler_number"]) if (facts := case["ours"]) else NO_NUMBER
 
 
 def _parts(case: CaseRecord) -> str:
-    return whole(facts["components"]) if (facts := case["ours"]) else NOTHING
+    return whole(facts["components"]) if (facts := case["ours"]) else NO_NUMBER
 
 
 def _difference(case: CaseRecord) -> str:
-    return number(found["volume"], 3) if (found := case["set_difference"]) else NOTHING
+    return number(found["volume"], 3) if (found := case["set_difference"]) else NO_NUMBER
 
 
 def _thickness(case: CaseRecord) -> str:
-    return number(found["thickness"], 3) if (found := case["set_difference"]) else NOTHING
+    return number(found["thickness"], 3) if (found := case["set_difference"]) else NO_NUMBER
 
 
 def _distance(case: CaseRecord) -> str:
     found = case["hausdorff"]
-    return number(max(found["forward"], found["backward"]), 3) if found else NOTHING
+    return number(max(found["forward"], found["backward"]), 3) if found else NO_NUMBER
 
 
 def _oracle_time(case: CaseRecord) -> str:
@@ -75,7 +75,7 @@ def _oracle_time(case: CaseRecord) -> str:
 
 
 def _memory(case: CaseRecord) -> str:
-    return NOTHING if case["memory_mb"] is None else whole(round(case["memory_mb"]))
+    return NO_NUMBER if case["memory_mb"] is None else whole(round(case["memory_mb"]))
 
 
 COLUMNS = (
@@ -106,7 +106,7 @@ def table(cases: Sequence[CaseRecord], cards: dict[str, str]) -> tuple[list[Colu
         The ids of cards in the page, by the keys of their cases.
     """
     rows = [[column.shown(case) for column in COLUMNS] for case in cases]
-    used = [k for k in range(len(COLUMNS)) if k < 3 or any(row[k] != NOTHING for row in rows)]
+    used = [k for k in range(len(COLUMNS)) if k < 3 or any(row[k] != NO_NUMBER for row in rows)]
     return [COLUMNS[k] for k in used], [
         Row(
             tone(case["verdict"]),

@@ -14,12 +14,12 @@ from ..formats.raw import RawMesh
 from ..repair.diagnosis import Diagnosis
 from .assets import asset, bundle, rendered
 from .campaign_cards import Figure, PageBudget, model_within
-from .formatting import NOTHING, number, vector, whole
-from .viewer.defect_layers import assembled, marked
+from .formatting import NO_NUMBER, number, vector, whole
+from .viewer.defect_layers import layers_of_defects, layers_of_objects
 from .viewer.face_colours import OWN
 from .viewer.landmark import Landmark
 from .viewer.layer import Layer, drawn_points
-from .viewer.still_pictures import camera_for, rings, still
+from .viewer.still_pictures import camera_for, rings, still_picture
 
 #: The largest number of characters of a page: browsers take seconds to open a longer one.
 _MAX_PAGE_CHARACTERS = 20_000_000
@@ -111,12 +111,12 @@ class CheckPage:
         """Add a card for a file, and one for each of its objects if there are several."""
         allowance = self._budget.allowance() / (1 + len(whole_file.objects))
         if whole_file.objects:
-            scene = assembled(whole_file)
+            scene = layers_of_objects(whole_file)
         else:
-            scene = marked(whole_file.mesh, whole_file.found, self._thin)
+            scene = layers_of_defects(whole_file.mesh, whole_file.found, self._thin)
         self._show(file, "", whole_file.mesh, whole_file.found, scene, allowance)
         for one in whole_file.objects:
-            scene = marked(one.mesh, one.found, self._thin)
+            scene = layers_of_defects(one.mesh, one.found, self._thin)
             self._show(file, one.name, one.mesh, one.found, scene, allowance)
 
     def add_unreadable(self, file: str, error: str) -> None:
@@ -225,8 +225,8 @@ def _facts(found: Diagnosis, unit: str) -> dict[str, str]:
         "pairs that cross": whole(found.crossings),
         named: number(volume, 9) + (f"{after}³" if unit else ""),
         "area": number(found.area, 9) + (f"{after}²" if unit else ""),
-        "size": size or NOTHING,
-        "from": vector(found.bounds[0]) if found.bounds else NOTHING,
+        "size": size or NO_NUMBER,
+        "from": vector(found.bounds[0]) if found.bounds else NO_NUMBER,
     }
 
 
@@ -247,7 +247,7 @@ _COLUMNS = (
 
 def _row(sheet: Sheet) -> Row:
     rank = list(_MEANINGS).index(sheet.verdict)
-    facts = [sheet.facts.get(name, NOTHING) for name, _ in _COLUMNS[3:]]
+    facts = [sheet.facts.get(name, NO_NUMBER) for name, _ in _COLUMNS[3:]]
     return Row(sheet.tone, rank, sheet.address, [sheet.verdict, sheet.file, sheet.name, *facts])
 
 
@@ -270,7 +270,7 @@ def _behind(front: Camera, layers: Sequence[Layer]) -> Camera:
 def _figure(
     caption: str, camera: Camera, layers: Sequence[Layer], places: list[list[float]]
 ) -> Figure:
-    image = still(layers, camera, _SIZE)
+    image = still_picture(layers, camera, _SIZE)
     if not image:
         return Figure(caption, text="too large for a picture")
     return Figure(caption, [image, rings(places, camera, _SIZE)] if places else [image])

@@ -28,7 +28,7 @@ _MEANINGS = {
 }
 
 #: The text of a cell without a number.
-NOTHING = "–"
+NO_NUMBER = "–"
 
 #: The space between thousands.
 _THIN = "\N{NARROW NO-BREAK SPACE}"
@@ -56,7 +56,7 @@ def number(value: float | None, digits: int = 6) -> str:
     Very large and very small numbers have a power of ten; None becomes a dash.
     """
     if value is None:
-        return NOTHING
+        return NO_NUMBER
     power = math.floor(math.log10(abs(value))) if value and math.isfinite(value) else 0
     if not _PLAIN[0] <= power < max(_PLAIN[1], digits) or not math.isfinite(value):
         return f"{value:.{digits}g}"
@@ -67,13 +67,13 @@ def number(value: float | None, digits: int = 6) -> str:
 
 def whole(value: int | None) -> str:
     """Return an integer as text with separated thousands; None becomes a dash."""
-    return NOTHING if value is None else f"{value:,}".replace(",", _THIN)
+    return NO_NUMBER if value is None else f"{value:,}".replace(",", _THIN)
 
 
 def milliseconds(seconds: float | None) -> str:
     """Return a time, given in seconds, as text in milliseconds; None becomes a dash."""
     return (
-        NOTHING
+        NO_NUMBER
         if seconds is None
         else f"{seconds * 1e3:.3g}"
         if seconds < 1
@@ -83,4 +83,4 @@ def milliseconds(seconds: float | None) -> str:
 
 def vector(values: Sequence[float] | None) -> str:
     """Return the coordinates of a point as text, separated by commas; None becomes a dash."""
-    return NOTHING if values is None else ", ".join(f"{value:.6g}" for value in values)
+    return NO_NUMBER if values is None else ", ".join(f"{value:.6g}" for value in values)

@@ -17,7 +17,7 @@ from .viewer.layer import COLOURS, DIFFERENCE, RESULT, Layer
 _OPERAND_OPACITY = 0.4
 
 
-class Stored(NamedTuple):
+class StoredMeshes(NamedTuple):
     """The stored meshes of one case: the operands in order, the result and the difference.
 
     `difference` is the symmetric difference of our result and the oracle's; empty if both are
@@ -39,7 +39,7 @@ class Stored(NamedTuple):
         return [layer for layer in layers if len(layer.faces)]
 
 
-def stored_meshes(folder: Path, name: str) -> Stored:
+def stored_meshes(folder: Path, name: str) -> StoredMeshes:
     """Read the stored meshes of a case.
 
     Parameters
@@ -69,7 +69,7 @@ def stored_meshes(folder: Path, name: str) -> Stored:
             for number, (letter, mesh) in enumerate(sorted(meshes.operands.items()))
         ]
         result = _layer(meshes.result, "result", RESULT)
-        return Stored(operands, result, _layer(meshes.difference, "difference", DIFFERENCE))
+        return StoredMeshes(operands, result, _layer(meshes.difference, "difference", DIFFERENCE))
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise FormatError(f"{name}: cannot read these meshes: {error}.", "unreadable") from error
 

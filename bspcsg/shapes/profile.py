@@ -15,17 +15,17 @@ from ..parameters import (
     at_least,
     not_negative,
     number,
-    pair,
     positive,
     refuse_many_corners,
     sides_around,
     truth_value,
+    two_values,
 )
 from ..solid.leaf import MeshLeaf
 from ..solid.ledger import counted
 from ..solid.solid import Solid, from_leaf
 from .sweep import RingLayout, strip
-from .twist import Rise, risen
+from .twist import Rise, extruded
 
 #: The default number of slices for a full turn of twist, equal to the default sides of a circle.
 _SLICES_OF_A_TURN = 32
@@ -101,7 +101,7 @@ def extrude(
     count = len(points)
     if not rise.is_upright:
         refuse_many_corners((rise.slices + 1) * count, "This extrusion")
-        return risen(contours, rise)
+        return extruded(contours, rise)
     levels = [
         np.column_stack([points, np.full(count, z)]) for z in (rise.base, rise.base + rise.height)
     ]
@@ -122,7 +122,7 @@ def _rise(
     turn, lean = number(twist, "twist"), number(taper, "taper")
     if abs(lean) >= 90:
         raise invalid_parameter(f"taper must be between -90 and 90 degrees, not {lean:g}.")
-    x, y = (not_negative(end, "scale") for end in pair(scale, "scale"))
+    x, y = (not_negative(end, "scale") for end in two_values(scale, "scale"))
     wanted = math.ceil(abs(turn) / 360 * _SLICES_OF_A_TURN) if slices is None else slices
     count = at_least(1, max(wanted, 1) if slices is None else wanted, "slices")
     base = -height / 2 if truth_value(center, "center") else 0.0

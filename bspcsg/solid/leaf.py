@@ -1,9 +1,9 @@
 """Leaves of expressions: operands that are partition trees, or can become one directly.
 
 A leaf returns its tree on the lattice of a pitch, and its image under a transform, which is a chain
-of affine maps (factors). Images follow one rule (`_place`): the outermost factors that are lattice
-motions move the tree exactly; the other factors transform the coordinates of the leaf's mesh, which
-are rounded once and snapped to the lattice again.
+of affine maps (factors). Images follow one rule (`_transformed_leaf`): the outermost factors that
+are lattice motions move the tree exactly; the other factors transform the coordinates of the leaf's
+mesh, which are rounded once and snapped to the lattice again.
 """
 
 from collections.abc import Callable, Generator, Mapping, Sequence
@@ -19,7 +19,7 @@ from .._core import Tree
 from .._types import FloatArray, IndexArray, ProgramLine, WindingRule
 from ..attributes.attributes import Attributes
 from ..attributes.colours import COLOR, one_color
-from ..caching import Last, Once
+from ..caching import LastValueCache, LazyValue
 from ..errors import InvalidMeshError, LimitError, UnboundedError, core_errors
 from ..geometry import transform
 from ..geometry.chain import BLOCK, FactorBlock, FactorChain
@@ -44,7 +44,7 @@ def _crosses_there(tree: Tree, motion: transform.LatticeMotion) -> bool:
         return tree.moving_crosses(list(motion.axes), list(motion.shift))
 
 
-class Pitches(Last[int, Tree]):
+class Pitches(LastValueCache[int, Tree]):
     """A cache of one tree on a finer lattice, the last one used, so that its users share it."""
 
     __slots__ = ()
@@ -97,13 +97,13 @@ class MeshLeaf:
         self._chosen_pitch = pitch
         self._trusted = trusted
         self._winding = winding
-        self._tree: Once[Tree] = Once()
+        self._tree: LazyValue[Tree] = LazyValue()
         self._rounded: str | None = None
         self._is_moved = False
         #: The pitch that transforms keep if its lattice has the range; None to choose by size.
         self.given_pitch = pitch
         self._pitches = Pitches()
-        self.last_moved: Last[FactorChain, ExpressionLeaf] = Last()
+        self.last_moved: LastValueCache[FactorChain, ExpressionLeaf] = LastValueCache()
 
     @property
     def pitch(self) -> int | None:
@@ -143,7 +143,7 @@ class MeshLeaf:
 
     def placed(self, factors: FactorChain) -> "ExpressionLeaf":
         """Return the leaf's image under a chain of affine maps, the outermost map first."""
-        return _place(self, factors)
+        return _transformed_leaf(self, factors)
 
     def coarsened(self, pitch: int) -> "MeshLeaf | None":
         """Return the leaf on a coarser lattice, with a finding if its corners must be rounded.
@@ -265,7 +265,7 @@ class _Moved:
     mesh: AttributedMesh
     before: FloatArray
     pitch: int
-    _result: Once[_Settled] = field(default_factory=Once, init=False, repr=False)
+    _result: LazyValue[_Settled] = field(default_factory=LazyValue, init=False, repr=False)
 
     def mended(self) -> _Settled:
         """Return the mesh without the crossings that rounding caused; computed once."""
@@ -311,8 +311,8 @@ class TreeLeaf:
     given_pitch: int | None = None
     tags: Mapping[str, object] = field(default_factory=dict)
     _pitches: Pitches = field(default_factory=Pitches, init=False, repr=False)
-    last_moved: "Last[FactorChain, ExpressionLeaf]" = field(
-        default_factory=Last, init=False, repr=False
+    last_moved: "LastValueCache[FactorChain, ExpressionLeaf]" = field(
+        default_factory=LastValueCache, init=False, repr=False
     )
 
     @property
@@ -326,7 +326,7 @@ class TreeLeaf:
 
     def placed(self, factors: FactorChain) -> "ExpressionLeaf":
         """Return the leaf's image under a chain of affine maps, the outermost map first."""
-        return self if self.is_constant else _place(self, factors)
+        return self if self.is_constant else _transformed_leaf(self, factors)
 
     def transformed(self, factors: FactorChain) -> "ExpressionLeaf | None":
         """Return the leaf of the solid's mesh after a transform; shared vertices stay shared.
@@ -402,7 +402,9 @@ class PlaneLeaf:
     _images: WeakKeyDictionary[FactorBlock, Hyperplane] = field(
         default_factory=WeakKeyDictionary, init=False, repr=False
     )
-    _trees: Last[int, Tree] = field(default_factory=Last, init=False, repr=False)
+    _trees: LastValueCache[int, Tree] = field(
+        default_factory=LastValueCache, init=False, repr=False
+    )
 
     def tree(self, pitch: int) -> Tree:
         """Return the leaf's partition tree on the lattice of step ``10**pitch``."""
@@ -607,12 +609,12 @@ def _moved_output(leaf: TreeLeaf, factors: FactorChain) -> MeshLeaf:
 
 #: A generator that transforms a leaf: it yields operands to transform, each with its factors, is
 #: sent their images, and returns the image of the leaf.
-_Moving: TypeAlias = Generator[tuple["ExpressionLeaf", FactorChain], "ExpressionLeaf", Any]
+_TransformSteps: TypeAlias = Generator[tuple["ExpressionLeaf", FactorChain], "ExpressionLeaf", Any]
 
 
-def _place(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> ExpressionLeaf:
+def _transformed_leaf(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> ExpressionLeaf:
     """Return a leaf's image under a transform, by a stack of generators, not by recursion."""
-    waiting = [_placing(leaf, factors)]
+    waiting = [_transform_steps(leaf, factors)]
     answer: Any = None
     while waiting:
         try:
@@ -622,7 +624,7 @@ def _place(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> ExpressionLeaf:
             answer = ended.value
             continue
         if isinstance(operand, TreeLeaf) and not operand.is_constant:
-            waiting.append(_placing(operand, under))
+            waiting.append(_transform_steps(operand, under))
             answer = None
         else:
             answer = operand.placed(under)
@@ -630,20 +632,20 @@ def _place(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> ExpressionLeaf:
     return moved
 
 
-def _placing(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
+def _transform_steps(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _TransformSteps:
     """Transform a leaf: its mesh by the inner factors, then its tree by the outer lattice motion.
 
     Transform the mesh by all factors if the outer ones are no exact motion of the tree.
     """
     inner = factors.inner
     if len(inner) == len(factors):
-        return (yield from _transforming(leaf, factors)) if factors else leaf
-    base = (yield from _base(leaf, inner)) if inner else leaf
+        return (yield from _operand_steps(leaf, factors)) if factors else leaf
+    base = (yield from _inner_image(leaf, inner)) if inner else leaf
     motion = factors.outer_motion(_common_pitch([base]))
     if motion is None:
-        return (yield from _transforming(leaf, factors))
+        return (yield from _operand_steps(leaf, factors))
     if isinstance(base, (MeshLeaf, TreeLeaf)) and base.touches_itself(motion):
-        return (yield from _transforming(leaf, factors))
+        return (yield from _operand_steps(leaf, factors))
     try:
         with core_errors():
             moved = tree_of(base).moved(list(motion.axes), list(motion.shift))
@@ -652,18 +654,18 @@ def _placing(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
     except (LimitError, UnboundedError):
         # The leaf leaves this lattice; its coordinates let the core choose a coarser one. Or it is
         # cut off by the border of the lattice, which does not move with it.
-        return (yield from _transforming(leaf, factors))
+        return (yield from _operand_steps(leaf, factors))
 
 
-def _base(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
+def _inner_image(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _TransformSteps:
     """Transform a leaf by the inner factors, and cache the result for other outer motions."""
     known = leaf.last_moved.get(factors)
     if known is not None:
         return known
-    return leaf.last_moved.keep(factors, (yield from _transforming(leaf, factors)))
+    return leaf.last_moved.keep(factors, (yield from _operand_steps(leaf, factors)))
 
 
-def _transforming(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
+def _operand_steps(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _TransformSteps:
     """Transform the mesh of a leaf; if it has none, transform its operands and combine them."""
     moved = leaf.transformed(factors)
     if moved is not None:

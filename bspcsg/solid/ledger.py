@@ -62,7 +62,7 @@ class Ledger:
 _current: ContextVar[Ledger | None] = ContextVar("bspcsg_block", default=None)
 
 
-def current() -> Ledger | None:
+def current_ledger() -> Ledger | None:
     """Return the ledger of the innermost open block of this thread or task, None without one."""
     ledger = _current.get()
     # A task may outlive the block in which it was started.
@@ -71,14 +71,14 @@ def current() -> Ledger | None:
     return ledger
 
 
-def opened() -> Ledger:
+def open_ledger() -> Ledger:
     """Open a ledger for a block inside the current block, make it current and return it."""
-    ledger = Ledger(current())
+    ledger = Ledger(current_ledger())
     _current.set(ledger)
     return ledger
 
 
-def close(ledger: Ledger) -> None:
+def close_ledger(ledger: Ledger) -> None:
     """Close the ledger of a block, and make that of the enclosing block current again."""
     ledger.is_open = False
     _current.set(ledger.outer)
@@ -95,7 +95,7 @@ def _apart() -> Iterator[None]:
 
 def count(made: "Solid", operands: Iterable["Solid"] = ()) -> None:
     """Add a solid to the current block, and remove its operands from all open blocks."""
-    ledger = current()
+    ledger = current_ledger()
     if ledger is None:
         return
     given = list(operands)

@@ -9,7 +9,7 @@ from ..errors import core_errors
 from ..geometry.transform import LATTICE_REACH
 
 
-class Classifying(Protocol):
+class PointClassifier(Protocol):
     """The interface of a tree of the core that classifies points."""
 
     @property
@@ -24,7 +24,7 @@ class Classifying(Protocol):
         """Return +1 (inside), 0 (boundary) or -1 (outside) for points in the lattice's range."""
 
 
-def sides_of(points: FloatArray, tree: Classifying) -> SideArray:
+def sides_of(points: FloatArray, tree: PointClassifier) -> SideArray:
     """Return +1 for each point inside the tree's set, 0 on the boundary, -1 outside.
 
     Points outside the range of the lattice are outside a bounded set.

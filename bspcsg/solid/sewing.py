@@ -12,7 +12,7 @@ import numpy as np
 
 from .._core import Tree
 from .._types import IndexArray
-from ..attributes.transfer import Surface, carried, patches_of
+from ..attributes.transfer import Surface, inherited_attributes, patches_of
 from ..errors import core_errors
 from .mesh_transform import AttributedMesh
 
@@ -49,7 +49,7 @@ def sewn(mesh: AttributedMesh, tree: Tree) -> Sewn | None:
     with core_errors():
         shown = tree.patched(patches_of(attributes)) if attributes else tree
         surface = Surface(*shown.to_mesh(), shown.origins(), shown.flips())
-    said = carried(surface, attributes, shown.source_arrays) if attributes else None
+    said = inherited_attributes(surface, attributes, shown.source_arrays) if attributes else None
     order = np.argsort(surface.source[:, 1], kind="stable")
     said = said and said.taken(order)
     divided = AttributedMesh(surface.vertices, surface.faces[order], said)

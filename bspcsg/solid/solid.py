@@ -16,19 +16,19 @@ from typing import TYPE_CHECKING, Any, overload
 
 from .._core import Tree
 from .._types import FloatArray, ProgramLine, Scalar, SideArray, Vector, WindingRule
-from ..attributes.attributes import Attributes, Given
+from ..attributes.attributes import Attributes, GivenAttributes
 from ..attributes.material import Material
 from ..errors import BspcsgError, Finding, core_errors, deprecated
-from ..geometry.chain import UNMOVED, FactorChain, common_prefix
+from ..geometry.chain import IDENTITY_CHAIN, FactorChain, common_prefix
 from ..geometry.transform import Factors
 from ..mesh import interop, library_export, visuals
 from ..mesh.mesh import Mesh
-from ..method_ownership import owning
+from ..method_ownership import with_own_methods
 from ..parameters import (
     SEGMENTS,
+    instance_of,
     no_options,
     not_negative,
-    of_kind,
     optional_pitch,
     positive,
     truth_value,
@@ -36,7 +36,7 @@ from ..parameters import (
 )
 from .components import Components
 from .describe import describe
-from .expression import ExpressionNode, Placed, complement, evaluate, operation
+from .expression import ExpressionNode, PlacedNode, complement, evaluate, operation
 from .leaf import (
     ConstantLeaf,
     ExpressionLeaf,
@@ -81,7 +81,7 @@ if TYPE_CHECKING:
 _MAX_FACES_FOR_REPR = 20_000
 
 
-@owning
+@with_own_methods
 class Solid(Movable, PointSet):
     """A closed triangle mesh as a set of points.
 
@@ -166,7 +166,7 @@ class Solid(Movable, PointSet):
     ) -> None:
         rule, chosen = winding_rule(winding), optional_pitch(pitch)
         arrays = interop.mesh_arrays(vertices, faces)
-        given = Given(vertex_attributes, corner_attributes, face_attributes, materials)
+        given = GivenAttributes(vertex_attributes, corner_attributes, face_attributes, materials)
         said = given.over(len(arrays[0]), arrays[1])
         leaf = MeshLeaf(
             *arrays,
@@ -178,7 +178,7 @@ class Solid(Movable, PointSet):
         # Raise errors in a mesh here, on the user's line, not in the first query.
         leaf.grown()
         leaf.let_go()
-        self._set(ExpressionNode(leaf), UNMOVED)
+        self._set(ExpressionNode(leaf), IDENTITY_CHAIN)
         count(self)
 
     def _set(self, node: ExpressionNode, factors: FactorChain) -> None:
@@ -189,7 +189,7 @@ class Solid(Movable, PointSet):
         self._reduced: Solid | None = None
 
     @classmethod
-    def _of(cls, node: ExpressionNode, factors: FactorChain = UNMOVED) -> "Solid":
+    def _of(cls, node: ExpressionNode, factors: FactorChain = IDENTITY_CHAIN) -> "Solid":
         solid = cls.__new__(cls)
         solid._set(node, factors)
         return solid
@@ -249,7 +249,7 @@ class Solid(Movable, PointSet):
         if isinstance(mesh, (bytes, bytearray, memoryview)) or hasattr(mesh, "readable"):
             from ..io import loads
 
-            suffix = None if format is None else of_kind(str, format, "format")
+            suffix = None if format is None else instance_of(str, format, "format")
             return loads(mesh, suffix, **options)
         arrays = interop.arrays_from(mesh, positive(tolerance, "tolerance"))
         if interop.are_empty(arrays):
@@ -306,7 +306,7 @@ class Solid(Movable, PointSet):
     @counted
     def __invert__(self) -> "Solid":
         """Complement: all of space outside this solid."""
-        return from_node(*complement(Placed(self._node, self._factors)))
+        return from_node(*complement(PlacedNode(self._node, self._factors)))
 
     # Results
 
@@ -469,12 +469,12 @@ class Solid(Movable, PointSet):
     @uncounted
     def equals(self, other: "Solid") -> bool:
         """Return true if both solids are exactly the same set of points, as ``==`` does."""
-        return (self ^ of_kind(Solid, other, "other")).is_empty
+        return (self ^ instance_of(Solid, other, "other")).is_empty
 
     @uncounted
     def isdisjoint(self, other: "Solid") -> bool:
         """Return true if the two solids have no volume in common; they may touch."""
-        return (self & of_kind(Solid, other, "other")).is_empty
+        return (self & instance_of(Solid, other, "other")).is_empty
 
     def intersects(self, other: "Solid") -> bool:
         """Return true if the solids have a point in common; it suffices that their surfaces touch.
@@ -1606,7 +1606,7 @@ class Solid(Movable, PointSet):
         mesh = self._mesh_at_hand()
         if self._placed is None:
             return f"Solid({describe(self._node, self._factors, mesh)})"
-        return f"Solid({describe(ExpressionNode(self._placed), UNMOVED, mesh)})"
+        return f"Solid({describe(ExpressionNode(self._placed), IDENTITY_CHAIN, mesh)})"
 
     def _mesh_at_hand(self) -> Mesh | None:
         """Return the mesh if it is cached, or if it is small and the solid is evaluated."""
@@ -1644,7 +1644,7 @@ class Solid(Movable, PointSet):
         """
         leaf, factors = evaluate(self._node), self._factors
         if leaf.extent is None:
-            leaf, factors = self._leaf(), UNMOVED
+            leaf, factors = self._leaf(), IDENTITY_CHAIN
         tree = tree_of(leaf)
         told = (_kept(tree, leaf.source_attributes), leaf.given_pitch)
         needed = 2 if leaf.given_pitch is not None else 1 if leaf.source_attributes else 0
@@ -1670,7 +1670,7 @@ class LastOperation:
     result: Solid
 
 
-def from_node(node: ExpressionNode, factors: FactorChain = UNMOVED) -> Solid:
+def from_node(node: ExpressionNode, factors: FactorChain = IDENTITY_CHAIN) -> Solid:
     """Return the solid of an expression under a transform."""
     return Solid._of(node, factors)
 
@@ -1719,9 +1719,9 @@ def from_leaf(leaf: ExpressionLeaf) -> Solid:
     return Solid._of(ExpressionNode(leaf))
 
 
-def expression_of(solid: Solid) -> Placed:
+def expression_of(solid: Solid) -> PlacedNode:
     """Return the node of a solid's expression, and the transform that is applied to it."""
-    return Placed(solid._node, solid._factors)
+    return PlacedNode(solid._node, solid._factors)
 
 
 def surfaces_meet(first: Solid, second: Solid) -> bool:
@@ -1750,7 +1750,7 @@ def with_record(last: LastOperation, factors: FactorChain) -> Solid:
 def combine(operator: Operator, solids: Sequence[Solid]) -> Solid:
     """Combine solids by an operator, lazily; a transform common to all applies to the result."""
     prefix = common_prefix([solid._factors for solid in solids])
-    operands = [Placed(solid._node, solid._factors.without(len(prefix))) for solid in solids]
+    operands = [PlacedNode(solid._node, solid._factors.without(len(prefix))) for solid in solids]
     return from_node(operation(operator, operands), prefix)
 
 

@@ -7,8 +7,8 @@ from typing import TypeAlias
 import numpy as np
 
 from .._core import Tree
-from ..attributes.attributes import Attributes, Given, Later, array_of
-from ..attributes.transfer import SourceArrays, Surface, carried, patches_of
+from ..attributes.attributes import Attributes, GivenAttributes, Later, array_of
+from ..attributes.transfer import SourceArrays, Surface, inherited_attributes, patches_of
 from ..errors import core_errors
 from ..geometry import transform
 
@@ -25,7 +25,7 @@ def attributes_of(tree: Tree, source_attributes: SourceAttributes) -> Attributes
     """Return the attributes of a tree's mesh."""
     with core_errors():
         surface = Surface(*tree.to_mesh(), tree.origins(), tree.flips())
-    return carried(surface, source_attributes, tree.source_arrays)
+    return inherited_attributes(surface, source_attributes, tree.source_arrays)
 
 
 def later_attributes(tree: Tree, source_attributes: SourceAttributes) -> Later | None:
@@ -69,7 +69,7 @@ def _tagged(
     face = {
         name: np.broadcast_to(value, (len(faces), *value.shape)) for name, value in given.items()
     }
-    more = Given(face=face).over(0, faces)
+    more = GivenAttributes(face=face).over(0, faces)
     return said if more is None else replace(said, face={**said.face, **more.face})
 
 

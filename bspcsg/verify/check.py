@@ -31,7 +31,7 @@ from ..errors import BspcsgError, InternalError, invalid_parameter
 from ..mesh.mesh import Mesh
 from ..mesh.pieces import MeshPieces
 from ..operations.setops import OPERATIONS
-from ..parameters import of_kind
+from ..parameters import instance_of
 from ..shapes.primitives import box as box_of
 from ..solid.ledger import uncounted
 from ..solid.program import name_of, program_of
@@ -85,7 +85,7 @@ def validate(op: SetOp, *operands: Solid) -> CheckReport:
     """
     program_of(op, len(operands))
     for operand in operands:
-        of_kind(Solid, operand, "An operand")
+        instance_of(Solid, operand, "An operand")
     return check_result(OPERATIONS[op](*operands), op, operands)
 
 
@@ -224,7 +224,7 @@ class _Check:
         # A generator, so that each mesh is freed once manifold3d has its own copy.
         given = (self._reduced(n, solid) for n, solid in enumerate(self.came, 1))
         try:
-            return oracle.ask(self.program, given, inside)
+            return oracle.manifold_result(self.program, given, inside)
         except oracle.OracleRefusedError:
             deque(given, maxlen=0)
             raise
@@ -305,7 +305,7 @@ class _Check:
             reason = f"the meshes could not be compared: {error.message}"
             return self._report(Verdict.ORACLE_FAILED, reason, ours, theirs)
         self.difference = None if pieces is None else pieces.mesh
-        verdict, reason = _judged(ours, theirs, found, same, rounding, mesh)
+        verdict, reason = _verdict_on(ours, theirs, found, same, rounding, mesh)
         if (
             verdict is Verdict.DISAGREE
             and pieces is not None
@@ -347,7 +347,7 @@ class _Check:
             self.set_volume,
             found,
             *bounds,
-            oracle.name(),
+            oracle.versioned_name(),
             tuple(self.notes),
             probes,
         )
@@ -357,7 +357,7 @@ def _meshes_of(solids: Sequence[Solid]) -> list[Mesh]:
     return [solid.to_mesh() for solid in solids]
 
 
-def _judged(
+def _verdict_on(
     ours: Facts,
     theirs: Facts,
     found: SetDifference,

@@ -386,7 +386,9 @@ def test_code_5_when_standard_output_is_full(
             raise OSError(number, "no more")
 
     with monkeypatch.context() as place_of_output:
-        place_of_output.setattr("bspcsg.cli.console.standard_streams.discard", lambda *_: None)
+        place_of_output.setattr(
+            "bspcsg.cli.console.standard_streams.redirect_to_null", lambda *_: None
+        )
         raw = standard_streams._CompleteWriter(Full(), None, standard_streams._refuse)
         place_of_output.setattr(sys, "stdout", io.TextIOWrapper(io.BufferedWriter(raw)))
         assert run(["info", "a.off"]) == 5

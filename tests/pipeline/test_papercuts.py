@@ -373,12 +373,12 @@ def test_long_work_says_for_how_long_at_a_terminal(folder: Path) -> None:
 
 def test_nothing_is_under_way_in_pipes(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(status_line, "_LINE_DELAY", 0.0)
-    with status_line.watched("work", quiet=False):
+    with status_line.displayed("work", quiet=False):
         assert status_line._line is None
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     for name, quiet in (("dumb", False), ("xterm", True)):
         monkeypatch.setenv("TERM", name)
-        with status_line.watched("work", quiet):
+        with status_line.displayed("work", quiet):
             assert status_line._line is None
 
 

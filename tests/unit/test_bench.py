@@ -24,9 +24,9 @@ from bspcsg.bench import (
     table,
 )
 from bspcsg.bench.cases import CASES, SHORT
-from bspcsg.bench.dense_cases import CLIFFS
+from bspcsg.bench.dense_cases import DENSE_CASES
 from bspcsg.bench.result_facts import facts_of, mesh_volume
-from bspcsg.bench.runner import judged
+from bspcsg.bench.runner import with_volumes_compared
 from bspcsg.bench.targets import (
     DoublingTarget,
     Faster,
@@ -62,9 +62,9 @@ def test_all_shapes_are_closed() -> None:
         assert facts.volume > 0
 
 
-@pytest.mark.parametrize("name", CLIFFS)
+@pytest.mark.parametrize("name", DENSE_CASES)
 def test_operands_of_dense_places_are_closed_and_twice_as_many(name: str, tmp_path: Path) -> None:
-    less, more = (make(tmp_path) for make in CLIFFS[name].small.values())
+    less, more = (make(tmp_path) for make in DENSE_CASES[name].small.values())
     for work in (less, more):
         for mesh in _operands(work):
             facts = facts_of(mesh)
@@ -136,7 +136,9 @@ def _result(seconds: float, volume: float = 1.0, **more: Any) -> dict[str, Any]:
 
 def _item(ours: float, theirs: float, volume: float = 1.0, **more: Any) -> dict[str, Any]:
     engines = {"bspcsg": _result(ours), "manifold3d": _result(theirs, volume)}
-    return judged({"item": "x", "area": 6.0, "size": 1.0, "engines": engines, **more})
+    return with_volumes_compared(
+        {"item": "x", "area": 6.0, "size": 1.0, "engines": engines, **more}
+    )
 
 
 def test_ratios_count_only_if_answers_agree() -> None:
@@ -266,7 +268,7 @@ def test_the_command_line_is_metered_in_a_process_of_its_own(
 def test_a_meter_tells_exit_codes_and_memory_of_the_command_alone() -> None:
     held = np.ones(30_000_000)
     said = "import sys; a = b'x' * 50_000_000; sys.stderr.write('no'); sys.exit(3)"
-    found = meter.metered([sys.executable, "-c", said])
+    found = meter.run_metered([sys.executable, "-c", said])
     assert (found.code, found.said) == (3, "no")
     assert 50 < found.peak_mb < held.nbytes / 1e6
 

@@ -175,7 +175,7 @@ def test_errors_leave_no_solid_and_no_open_block() -> None:
     with pytest.raises(b.InvalidMeshError) as caught:
         _ = inner.solid
     assert caught.value.code == "open_block"
-    assert ledger.current() is None
+    assert ledger.current_ledger() is None
 
 
 def test_an_open_block_has_no_solid_yet() -> None:

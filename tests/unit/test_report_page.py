@@ -84,7 +84,7 @@ def test_cards_are_as_many_as_asked_for(results: Results) -> None:
 def test_views_are_simplified_or_left_out_to_stay_within_the_size(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(campaign_cards, "still", lambda *_, **__: "a picture")
+    monkeypatch.setattr(campaign_cards, "still_picture", lambda *_, **__: "a picture")
     # Shuffled, because regular meshes are packed into next to nothing.
     rng = np.random.default_rng(5)
     vertices, faces = icosphere(4)

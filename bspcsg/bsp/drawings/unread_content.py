@@ -1,4 +1,4 @@
-"""`LeftOut`: counts of drawing content that was not read, reported by one warning."""
+"""`UnreadContent`: counts of drawing content that was not read, reported by one warning."""
 
 import os
 import warnings
@@ -19,7 +19,7 @@ class DrawingWarning(UserWarning):
 
 
 @dataclass
-class LeftOut:
+class UnreadContent:
     """The counts of the content of one drawing that is not in the region.
 
     Parameters

@@ -9,11 +9,11 @@ from ..trees.fragments import ranges
 from .clip import Polygons, following, owners
 
 #: A part of a segment as two parameters: 0 is the segment's start, 1 its end.
-Stretch: TypeAlias = tuple[float, float]
+SegmentPart: TypeAlias = tuple[float, float]
 
 #: Visibility is tested this many pixels to both sides of an edge: an edge at the border of a
 #: polygon that is painted later is visible, an edge under the seam of two such polygons is hidden.
-_ASIDE = 0.02
+_TEST_OFFSET = 0.02
 
 #: The shortest visible part of an edge, in pixels. The test to both sides of an edge finds shorter,
 #: wrong parts at the ends of hidden edges.
@@ -23,10 +23,10 @@ _MIN_VISIBLE_PIXELS = 0.2
 _MAX_NEAR_PAIRS = 4_000_000
 
 #: The width, in pixels, of the grid squares that find pairs of an edge and a nearby polygon.
-_SQUARE = 12.0
+_GRID_WIDTH = 12.0
 
 
-def visible(polygons: Polygons, ends: FloatArray, owner: IndexArray) -> FloatArray | None:
+def visible_parts(polygons: Polygons, ends: FloatArray, owner: IndexArray) -> FloatArray | None:
     """Return the parts of segments that no later polygon covers, in pixels.
 
     Parameters
@@ -51,7 +51,7 @@ def visible(polygons: Polygons, ends: FloatArray, owner: IndexArray) -> FloatArr
     lengths = np.hypot(along[:, 0], along[:, 1])
     kept = lengths > 0
     unit = along / np.where(kept, lengths, 1)[:, None]
-    aside = _ASIDE * np.column_stack([-unit[:, 1], unit[:, 0]])[:, None]
+    aside = _TEST_OFFSET * np.column_stack([-unit[:, 1], unit[:, 0]])[:, None]
     left, right = (_covered(polygons, ends + shift, *pairs) for shift in (aside, -aside))
     parts, rows = [], []
     for row in np.flatnonzero(kept).tolist():
@@ -68,8 +68,8 @@ def _near_pairs(
     polygons: Polygons, ends: FloatArray, owner: IndexArray
 ) -> tuple[IndexArray, IndexArray] | None:
     """Return pairs (segment, later polygon) whose boxes meet, or None if they are too many."""
-    low = np.minimum.reduceat(polygons.corners, polygons.offsets[:-1]) - _ASIDE
-    high = np.maximum.reduceat(polygons.corners, polygons.offsets[:-1]) + _ASIDE
+    low = np.minimum.reduceat(polygons.corners, polygons.offsets[:-1]) - _TEST_OFFSET
+    high = np.maximum.reduceat(polygons.corners, polygons.offsets[:-1]) + _TEST_OFFSET
     squares, members = _squares(low, high)
     order = np.argsort(squares, kind="stable")
     squares, members = squares[order], members[order]
@@ -88,8 +88,8 @@ def _near_pairs(
 
 def _squares(low: FloatArray, high: FloatArray) -> tuple[IndexArray, IndexArray]:
     """Return all pairs (number of a grid square, index of a box) that overlap."""
-    first = np.floor(low / _SQUARE).astype(np.int64)
-    sides = np.floor(high / _SQUARE).astype(np.int64) - first + 1
+    first = np.floor(low / _GRID_WIDTH).astype(np.int64)
+    sides = np.floor(high / _GRID_WIDTH).astype(np.int64) - first + 1
     counts = sides[:, 0] * sides[:, 1]
     box = np.repeat(np.arange(len(low)), counts)
     place = ranges(np.zeros_like(counts), counts)
@@ -100,18 +100,18 @@ def _squares(low: FloatArray, high: FloatArray) -> tuple[IndexArray, IndexArray]
 
 def _covered(
     polygons: Polygons, ends: FloatArray, segment: IndexArray, polygon: IndexArray
-) -> dict[int, list[Stretch]]:
+) -> dict[int, list[SegmentPart]]:
     """Return the parts of segments that convex polygons cover, by the segment's index."""
-    low, high = _inside(polygons, ends, segment, polygon)
+    low, high = _clip_parameters(polygons, ends, segment, polygon)
     some = high > low
-    found: dict[int, list[Stretch]] = {}
+    found: dict[int, list[SegmentPart]] = {}
     rows = zip(segment[some].tolist(), low[some].tolist(), high[some].tolist(), strict=True)
     for row, start, end in rows:
         found.setdefault(row, []).append((start, end))
-    return {row: _united(parts) for row, parts in found.items()}
+    return {row: _merged_parts(parts) for row, parts in found.items()}
 
 
-def _inside(
+def _clip_parameters(
     polygons: Polygons, ends: FloatArray, segment: IndexArray, polygon: IndexArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return where segments enter and leave convex polygons, from 0 to 1 (Cyrus, Beck 1978).
@@ -154,8 +154,8 @@ def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
     return product
 
 
-def _united(parts: list[Stretch]) -> list[Stretch]:
-    united: list[Stretch] = []
+def _merged_parts(parts: list[SegmentPart]) -> list[SegmentPart]:
+    united: list[SegmentPart] = []
     for start, end in sorted(parts):
         # Adjacent parts share an end, up to rounding.
         if united and start <= united[-1][1] + 1e-9:
@@ -165,13 +165,13 @@ def _united(parts: list[Stretch]) -> list[Stretch]:
     return united
 
 
-def _common(first: list[Stretch], second: list[Stretch]) -> list[Stretch]:
+def _common(first: list[SegmentPart], second: list[SegmentPart]) -> list[SegmentPart]:
     """Return the intersection of two sorted lists of disjoint parts of a segment."""
     pairs = ((max(a, c), min(b, d)) for a, b in first for c, d in second)
     return [(start, end) for start, end in pairs if start < end]
 
 
-def _gaps(parts: list[Stretch], shortest: float) -> list[Stretch]:
+def _gaps(parts: list[SegmentPart], shortest: float) -> list[SegmentPart]:
     """Return the gaps longer than `shortest` between sorted disjoint parts of a segment."""
     if not parts:
         return [(0.0, 1.0)]

@@ -71,7 +71,7 @@ def _row(normal: Any, offset: Any, dimension: int, pitch: int) -> list[int]:
     return Hyperplane.from_numbers(entries, offset).on_lattice(pitch).row
 
 
-def asked_tree(
+def tree_with_chosen_cuts(
     facets: Corners,
     policy: Chooser,
     sample: int,

@@ -8,7 +8,7 @@ import numpy as np
 from ..._types import FloatArray, IndexArray, SideArray
 from ...errors import core_errors, invalid_parameter
 from ...geometry.arrays import doubles
-from ...parameters import shown, word
+from ...parameters import one_of, shown
 from .fragments import Fragments, ranges
 from .node import Leaf, Node, Visitor
 
@@ -81,7 +81,7 @@ def _by_distance(
 def walk(tree: "PartitionTree", order: Literal["pre", "in", "post"]) -> Iterator[Node | Leaf]:
     """Yield all nodes and leaves, minus child first; "in": a node between its two children."""
     orders = ("pre", "in", "post")
-    place = orders.index(word(orders, order, "order"))
+    place = orders.index(one_of(orders, order, "order"))
 
     def arranged(node: Node) -> Sequence[Node | Leaf]:
         steps: list[Node | Leaf] = list(node.children)

@@ -1,4 +1,4 @@
-"""`Question` and `EngineAnswer`: an operation for another engine, and the engine's result."""
+"""`EngineRequest` and `EngineAnswer`: an operation for another engine, and the engine's result."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ class NoOpinionError(Exception):
 
 
 @dataclass(frozen=True, eq=False)
-class Question:
+class EngineRequest:
     """An operation on operands for another engine, with our result.
 
     Parameters

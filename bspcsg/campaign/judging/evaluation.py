@@ -23,7 +23,7 @@ from ..cases.case import SCRIPT, Case
 from ..cases.identities import identity_of
 from ..cases.meshes import packed
 from ..cases.operands import operands_of
-from ..engines.engine_request import Question
+from ..engines.engine_request import EngineRequest
 from ..record import (
     SCHEMA,
     CaseRecord,
@@ -34,13 +34,13 @@ from ..record import (
 )
 from .mesh_facts import facts_of
 from .opinions import crossings_opinion, is_installed, opinion, script_opinion
-from .verdict import ruled
+from .verdict import verdict_of
 
 #: The verdicts of the comparison with manifold3d after which further engines are asked.
 _DOUBTFUL = frozenset({Verdict.DISAGREE, Verdict.ORACLE_REFUSED, Verdict.ORACLE_FAILED})
 
 #: The verdicts of cases that are not interesting, so that their meshes are not written.
-_DULL = frozenset({str(Verdict.AGREE), str(Verdict.OTHER_TOPOLOGY)})
+_UNINTERESTING = frozenset({str(Verdict.AGREE), str(Verdict.OTHER_TOPOLOGY)})
 
 #: The largest fraction of a case's time limit that one additional engine may take.
 _MAX_ENGINE_SHARE = 0.4
@@ -73,7 +73,7 @@ class EvaluationSettings:
 
 
 @dataclass
-class _Clock:
+class _Stopwatch:
     """A stopwatch that records the seconds of each part of a case."""
 
     began: float = field(default_factory=time.perf_counter)
@@ -134,7 +134,7 @@ def evaluate(case: Case, settings: EvaluationSettings, keep: bool = False) -> Ca
         True to write the meshes even if the case is not interesting.
     """
     forget_peak()
-    clock = _Clock()
+    clock = _Stopwatch()
     try:
         record = _Evaluation(case, settings, clock).run(keep)
     except InternalError as error:
@@ -153,7 +153,7 @@ def evaluate(case: Case, settings: EvaluationSettings, keep: bool = False) -> Ca
 class _Evaluation:
     """The evaluation of one case: computes our result, compares it and makes the record."""
 
-    def __init__(self, case: Case, settings: EvaluationSettings, clock: _Clock) -> None:
+    def __init__(self, case: Case, settings: EvaluationSettings, clock: _Stopwatch) -> None:
         self._case, self._settings, self._clock = case, settings, clock
         self._is_script = case.operation == SCRIPT
 
@@ -168,7 +168,7 @@ class _Evaluation:
         asked = time.perf_counter() - began
         identity = None if self._is_script else identity_of(self._case.operation, solids, result)
         others = self._further(found, solids, result)
-        verdict, reason = ruled(found.report, others, identity, self._is_script)
+        verdict, reason = verdict_of(found.report, others, identity, self._is_script)
         record = blank_record(self._case, verdict, reason)
         self._describe_operands(record, solids, rows)
         record["ours"] = facts_of(found.ours, found.report.ours, crossings=True)
@@ -180,7 +180,7 @@ class _Evaluation:
             bounds = found.report.same_set_bound, found.report.rounding_bound
             record["bounds"] = {"same_set": bounds[0], "rounding": bounds[1]}
         self._clock.lap("check")
-        if self._settings.meshes and (keep or verdict not in _DULL):
+        if self._settings.meshes and (keep or verdict not in _UNINTERESTING):
             record["meshes"] = self._kept(found)
         return record
 
@@ -217,7 +217,7 @@ class _Evaluation:
             return []
         operands = [solid.normalized().to_mesh() for solid in solids]
         asked = (self._case.operation, found.program, operands, found.ours)
-        question = Question(*asked, result.pitch, limit, result.tree.snapped_by)
+        question = EngineRequest(*asked, result.pitch, limit, result.tree.snapped_by)
         said = [opinion(name, question) for name in wanted]
         if doubtful or any(record["agrees"] is False for record in said):
             said.append(crossings_opinion(question))
@@ -253,7 +253,7 @@ class _Evaluation:
 
 def _manifold_record(found: Examination, seconds: float) -> OracleRecord:
     report = found.report
-    name, _, version = oracle.name().partition(" ")
+    name, _, version = oracle.versioned_name().partition(" ")
     return {
         "name": name,
         "version": version,

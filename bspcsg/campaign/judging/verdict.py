@@ -6,7 +6,7 @@ from ...verify.verdict import CheckReport, Verdict
 from ..record import IdentityRecord, OracleRecord
 
 
-def ruled(
+def verdict_of(
     report: CheckReport,
     others: Sequence[OracleRecord],
     identity: IdentityRecord | None,
@@ -45,10 +45,10 @@ def ruled(
     if is_script and any(engine["agrees"] is False for engine in engines):
         said = "; ".join(f"{engine['name']} {engine['says']}" for engine in engines)
         return str(Verdict.DISAGREE), _joined(reason, said)
-    return _weighed(verdict, reason, engines, bool(counts and counts[0]["agrees"]))
+    return _weighed_verdict(verdict, reason, engines, bool(counts and counts[0]["agrees"]))
 
 
-def _weighed(
+def _weighed_verdict(
     verdict: Verdict, reason: str, engines: Sequence[OracleRecord], counted: bool
 ) -> tuple[str, str]:
     """Return the verdict and its reason after weighing which engines support our result."""
@@ -56,7 +56,7 @@ def _weighed(
     against = [engine for engine in engines if engine["agrees"] is False]
     if verdict is Verdict.DISAGREE:
         if for_us and not against:
-            said = f"{_and(for_us)} agrees with bspcsg, so only manifold3d differs"
+            said = f"{_joined_names(for_us)} agrees with bspcsg, so only manifold3d differs"
             return str(Verdict.ORACLE_FAILED), _joined(reason, said)
         alone = (
             "all other engines differ from bspcsg"
@@ -65,7 +65,7 @@ def _weighed(
         )
         return str(verdict), _joined(reason, alone)
     if not against:
-        said = f"{_and(for_us)} agrees with bspcsg" if for_us and reason else ""
+        said = f"{_joined_names(for_us)} agrees with bspcsg" if for_us and reason else ""
         return str(verdict), _joined(reason, said)
     said = "; ".join(f"{engine['name']} {engine['says']}" for engine in against)
     if verdict in (Verdict.ORACLE_FAILED, Verdict.ORACLE_REFUSED) and not counted:
@@ -74,7 +74,7 @@ def _weighed(
         return str(Verdict.ORACLE_FAILED), _joined(
             reason, said, "crossing counts confirm the result of bspcsg"
         )
-    names = _and([engine["name"] for engine in against])
+    names = _joined_names([engine["name"] for engine in against])
     return str(verdict), _joined(reason, said, f"only {names} differs")
 
 
@@ -82,5 +82,5 @@ def _joined(*parts: str) -> str:
     return "; ".join(part for part in parts if part)
 
 
-def _and(names: Sequence[str]) -> str:
+def _joined_names(names: Sequence[str]) -> str:
     return " and ".join(names)

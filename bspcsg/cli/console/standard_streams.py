@@ -69,7 +69,7 @@ class _CompleteWriter(io.RawIOBase):
                 done += count
 
 
-def take_over(errors: str) -> None:
+def replace_streams(errors: str) -> None:
     """Replace standard output and error by streams that write completely.
 
     `errors` is the name of the codec's error handler.
@@ -95,16 +95,16 @@ def _raw_of(stream: object) -> io.FileIO | None:
 
 
 def _refuse(error: OSError) -> None:
-    discard("stdout")
+    redirect_to_null("stdout")
     raise FullOutputError(error.errno, error.strerror, "standard output") from error
 
 
 def _pass_by(_: OSError) -> None:
     # The error cannot be reported anywhere; the work and its exit code matter more than messages.
-    discard("stderr")
+    redirect_to_null("stderr")
 
 
-def put(chunks: Iterable[bytes]) -> None:
+def write_bytes(chunks: Iterable[bytes]) -> None:
     """Write bytes to standard output.
 
     Raises
@@ -117,7 +117,7 @@ def put(chunks: Iterable[bytes]) -> None:
     sys.stdout.buffer.flush()
 
 
-def discard(name: str = "stdout") -> None:
+def redirect_to_null(name: str = "stdout") -> None:
     """Redirect a standard stream to the null device, so that flushing it does not fail again."""
     nothing = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nothing, getattr(sys, name).fileno())

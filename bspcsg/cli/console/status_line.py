@@ -60,7 +60,7 @@ _line: _Line | None = None
 
 
 @contextmanager
-def watched(what: str, quiet: bool) -> Iterator[None]:
+def displayed(what: str, quiet: bool) -> Iterator[None]:
     """Show the status line while the `with` block runs, if standard error is a terminal.
 
     It is not shown if `quiet` is true.
@@ -76,7 +76,7 @@ def watched(what: str, quiet: bool) -> Iterator[None]:
         end()
 
 
-def tell(what: str) -> None:
+def set_text(what: str) -> None:
     """Set the text of the status line, if there is one."""
     if _line is not None:
         _line.what = what

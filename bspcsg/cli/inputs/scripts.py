@@ -17,7 +17,7 @@ SUFFIXES = (".csg", ".json", ".scad", ".py")
 STREAMED = (".csg", ".json")
 
 
-def made_by(
+def solid_of_script(
     path: Path, out: Output, text: str | None = None, suffix: str | None = None, **options: Any
 ) -> "Solid":
     """Return the solid that a script makes; print warnings about parts of it that are ignored.

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..inputs.files import Inputs, shown
+from ..inputs.files import Inputs, display_name
 
 if TYPE_CHECKING:
     from ...report.viewer.layer import Layer
@@ -19,14 +19,14 @@ def layers_of(
     Findings about the files are printed. Meshes need not be closed, unless a section (nx, ny, nz,
     d) is given: then only the part with nx x + ny y + nz z <= d is shown.
     """
-    from ...report.viewer.layer_making import told_apart
+    from ...report.viewer.layer_making import with_distinct_colours
 
     found: list[tuple[Path, list[Layer]]] = []
     units = set()
     for path in files:
         layers, unit = _layers_of(inputs, path, section)
         if not any(len(layer.faces) for layer in layers):
-            inputs.out.warning(f"{shown(path)}: the file has no triangles to show.")
+            inputs.out.warning(f"{display_name(path)}: the file has no triangles to show.")
         found.append((path, layers))
         units.add(unit)
     several = len(found) > 1
@@ -35,7 +35,7 @@ def layers_of(
         for path, layers in found
         for layer in layers
     ]
-    return told_apart(named), units.pop() if len(units) == 1 else ""
+    return with_distinct_colours(named), units.pop() if len(units) == 1 else ""
 
 
 def _layers_of(
@@ -43,7 +43,7 @@ def _layers_of(
 ) -> "tuple[list[Layer], str]":
     from ...report.viewer.layer_making import layers_of_file, layers_of_solid, with_origin
 
-    name = shown(path) if shown(path) == "-" else path.name
+    name = display_name(path) if display_name(path) == "-" else path.name
     unit = "" if inputs.unit is None else "mm"
     if section is not None:
         *normal, offset = section

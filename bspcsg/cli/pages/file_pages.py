@@ -7,18 +7,18 @@ from urllib.parse import quote, unquote
 
 from ...errors import BspcsgError
 from ..inputs.scripts import SUFFIXES
-from .live_server import Site, stamp
+from .live_server import Site, change_stamp
 
 if TYPE_CHECKING:
     from ...report.viewer.layer import Layer
 
 #: A function that reads files, and returns the layers of a view and their unit.
-Showing: TypeAlias = Callable[[Sequence[Path]], "tuple[list[Layer], str]"]
+SceneReader: TypeAlias = Callable[[Sequence[Path]], "tuple[list[Layer], str]"]
 
 _PART = "/part/"
 
 
-def page_of(files: Sequence[Path], scene: Showing) -> str:
+def page_of(files: Sequence[Path], scene: SceneReader) -> str:
     """Return a page that shows files and reloads when they change, or a page with the error."""
     from ...report.assets import rendered
     from ...report.viewer.view_page import view_page
@@ -31,9 +31,9 @@ def page_of(files: Sequence[Path], scene: Showing) -> str:
     return view_page(layers, title, unit=unit, live=title)
 
 
-def site_of_files(files: Sequence[Path], scene: Showing) -> Site:
+def site_of_files(files: Sequence[Path], scene: SceneReader) -> Site:
     """Return a site of one page that shows all files together."""
-    kept = _PageCache(lambda: stamp(files), lambda: stamp(folders_of(files)))
+    kept = _PageCache(lambda: change_stamp(files), lambda: change_stamp(folders_of(files)))
 
     def page(path: str) -> str | None:
         return kept.page(path, lambda: page_of(files, scene)) if path == "/" else None
@@ -41,12 +41,12 @@ def site_of_files(files: Sequence[Path], scene: Showing) -> Site:
     return Site(page, kept.state)
 
 
-def site_of_folder(folder: Path, scene: Showing) -> Site:
+def site_of_folder(folder: Path, scene: SceneReader) -> Site:
     """Return a site with a list of the meshes and scripts in a folder, and a page for each."""
-    kept = _PageCache(lambda: stamp([folder]), str)
+    kept = _PageCache(lambda: change_stamp([folder]), str)
 
     def page(path: str) -> str | None:
-        names = seen_in(folder)
+        names = mesh_names_in(folder)
         if path == "/":
             return kept.page(path, lambda: _list(folder, names))
         name = unquote(path.removeprefix(_PART))
@@ -57,7 +57,7 @@ def site_of_folder(folder: Path, scene: Showing) -> Site:
     return Site(page, kept.state)
 
 
-def seen_in(folder: Path) -> list[str]:
+def mesh_names_in(folder: Path) -> list[str]:
     """Return the names of the meshes and scripts in a folder, sorted."""
     from ...formats.registry import FORMATS
 

@@ -136,7 +136,7 @@ class _Handler(BaseHTTPRequestHandler):
         """Do not log requests."""
 
 
-def stamp(paths: Iterable[Path]) -> str:
+def change_stamp(paths: Iterable[Path]) -> str:
     """Return a text that changes whenever a named file, or a file in a named folder, changes."""
     marks = []
     for path in _files(paths):

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from ...errors import FormatError
-from ..inputs.files import is_dropped, refuse_folder, shown
+from ..inputs.files import display_name, is_dropped, refuse_folder
 from ..options.shared import FilePath
 
 _SUFFIXES = (".html", ".htm")
@@ -34,7 +34,7 @@ def refuse_page(path: Path, *others: str) -> None:
     if path.suffix.lower() not in (*_SUFFIXES, *others):
         known = " or ".join([", ".join([".html", *others[:-1]]), *others[-1:]])
         raise FormatError(
-            f"{shown(path)}: the format is unknown; the output name must end in {known}.",
+            f"{display_name(path)}: the format is unknown; the output name must end in {known}.",
             "unknown_format",
         )
     refuse_folder(path)

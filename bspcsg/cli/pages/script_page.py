@@ -7,13 +7,13 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...browsing import opened
+from ...browsing import open_page
 from ...errors import BspcsgError
 from ..console import clock, output
 from ..console.output import Output
-from ..solid_verb import Job
+from ..solid_verb import SolidVerb
 from .file_pages import folders_of, page_of
-from .live_server import LiveServer, Site, stamp
+from .live_server import LiveServer, Site, change_stamp
 
 if TYPE_CHECKING:
     from ...report.viewer.layer import Layer
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _POLL_INTERVAL = 0.2
 
 
-class Watching:
+class ScriptPage:
     """A script that is run again when it changes, with a new job for each run.
 
     Parameters
@@ -37,7 +37,7 @@ class Watching:
     """
 
     def __init__(
-        self, script: Path, job: Callable[[], Job], out: Output, goes_on: bool = True
+        self, script: Path, job: Callable[[], SolidVerb], out: Output, goes_on: bool = True
     ) -> None:
         self._script = script
         self._job = job
@@ -75,22 +75,22 @@ class Watching:
 
     def _once(self) -> None:
         clock.start()
-        self._before = stamp([self._script])
+        self._before = change_stamp([self._script])
         job = self._job()
         try:
             self._code = job.run()
             self._made = job.made
         except BspcsgError as error:
-            self._code = output.tell_error(error, self._out.as_json)
+            self._code = output.report_error(error, self._out.as_json)
             self._made = error
         # Take the state after the run, so that files which the script writes cause no new run.
-        self._around = stamp(folders_of([self._script]))
+        self._around = change_stamp(folders_of([self._script]))
         self._runs += 1
 
     def _go_on(self) -> None:
         while True:
             time.sleep(_POLL_INTERVAL)
-            now = stamp([self._script]), stamp(folders_of([self._script]))
+            now = change_stamp([self._script]), change_stamp(folders_of([self._script]))
             if self._goes_on and now != (self._before, self._around):
                 self._once()
 
@@ -100,20 +100,20 @@ class Watching:
         threading.Thread(target=server.serve_forever, args=(_POLL_INTERVAL,), daemon=True).start()
         self._out.note(f"{server.address} shows the result until Ctrl-C")
         if opens:
-            opened(server.address)
+            open_page(server.address)
         return server
 
     def _page(self, path: str) -> str | None:
         return page_of([self._script], self._scene) if path == "/" else None
 
     def _scene(self, files: Sequence[Path]) -> "tuple[list[Layer], str]":
-        from ...report.viewer.layer_making import layers_of_solid, told_apart
+        from ...report.viewer.layer_making import layers_of_solid, with_distinct_colours
 
         if isinstance(self._made, BspcsgError):
             raise self._made
         if self._made is None:
             return [], ""
-        return told_apart(layers_of_solid(self._made, self._script.name)), ""
+        return with_distinct_colours(layers_of_solid(self._made, self._script.name)), ""
 
 
 #: The output path of a result that is shown, but not written.

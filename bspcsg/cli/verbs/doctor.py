@@ -14,7 +14,7 @@ from ...machine import system
 from ..console import output
 from ..console.output import Output
 from ..console.tables import table_text
-from ..options.shared import common, verb
+from ..options.shared import common_options, verb
 
 _EPILOG = """\b
 Example:
@@ -77,7 +77,7 @@ class _Part:
 
 
 @verb("doctor", short_help="Say what is installed, and how to get the rest.", epilog=_EPILOG)
-@common
+@common_options
 def doctor(**given: Any) -> int:
     """Say which parts are installed, and how to get those that are not.
 

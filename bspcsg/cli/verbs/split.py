@@ -10,18 +10,18 @@ import click
 from ...errors import Finding
 from ..console import output
 from ..console.output import Output
-from ..inputs.files import Inputs, Target, expanded, is_dropped, refuse_inputs, shown
+from ..inputs.files import Inputs, Target, display_name, expanded, is_dropped, refuse_inputs
 from ..options.patterns import files_argument
 from ..options.shared import (
     PATH,
     SIMPLIFY,
     check_depth,
-    common,
+    common_options,
     numbers,
-    reading,
-    sets,
+    reading_options,
+    set_options,
     verb,
-    writing,
+    writing_options,
 )
 from ..solid_verb import mesh_values, summary
 
@@ -65,12 +65,12 @@ _FORMER = "explode"
 @click.option(
     "--by", "cutter", metavar="FILE", type=PATH, help="Cut along the surface of another solid."
 )
-@writing
+@writing_options
 @SIMPLIFY
 @check_depth
-@reading
-@sets
-@common
+@reading_options
+@set_options
+@common_options
 @click.pass_context
 def split(context: click.Context, /, files: tuple[Path, ...], target: Path, **given: Any) -> int:
     """Write each connected component of solids to a file of its own, the largest first.
@@ -124,7 +124,7 @@ class _Splitting:
         failed = [one.file for one in found if "subject failed" in one.verdicts]
         for file in failed:
             self._out.result(
-                f"{shown(file)}: not written, because the check of the parts failed", {}
+                f"{display_name(file)}: not written, because the check of the parts failed", {}
             )
         if failed:
             return output.FOUND
@@ -186,7 +186,7 @@ class _Splitting:
         if len(meshes) >= least:
             return
         what = "the solid is empty" if least == 1 else "the whole solid lies on one side of the cut"
-        message = f"{shown(file)}: {what}, so nothing was written."
+        message = f"{display_name(file)}: {what}, so nothing was written."
         raise output.EmptyResultError(message, "empty_result")
 
     def _write(self, found: list[_Parts]) -> None:
@@ -205,9 +205,9 @@ class _Splitting:
             target = self._target(parts.file, number)
             lost = target.write(mesh)
             for finding in lost:
-                self._out.finding(shown(target.path), finding)
+                self._out.finding(display_name(target.path), finding)
             verdict = parts.verdicts[number - 1] if parts.verdicts else None
-            line = summary(shown(target.path), mesh, False)
+            line = summary(display_name(target.path), mesh, False)
             line += f"\n  check: {verdict}" if verdict else ""
             if not self._out.as_json:
                 self._out.result(line, {})

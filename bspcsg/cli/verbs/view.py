@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ...browsing import opened, temporary_page
+from ...browsing import open_page, temporary_page
 from ..console import output
 from ..console.output import Output, counted
-from ..inputs.files import STREAM, Inputs, is_dropped, shown
+from ..inputs.files import STREAM, Inputs, display_name, is_dropped
 from ..options.patterns import files_argument
-from ..options.shared import PORT, FilePath, common, is_given, reading, verb
+from ..options.shared import PORT, FilePath, common_options, is_given, reading_options, verb
 from ..pages.file_layers import layers_of
 from ..pages.page_output import refuse_page, write_page
 
@@ -51,8 +51,8 @@ _MAX_QUICK_PAGE_BYTES = 20_000_000
     "--live", is_flag=True, help="Serve the page on this machine; it follows the files' changes."
 )
 @PORT
-@reading
-@common
+@reading_options
+@common_options
 def view(files: tuple[Path, ...], target: Path | None, **given: Any) -> int:
     """Show meshes in a browser: turn, zoom, cut, measure, make transparent, hide each part.
 
@@ -149,14 +149,14 @@ class _Viewing:
 
     def _opened(self, address: str) -> bool:
         """Open an address in a browser; return False and print the reason if that fails."""
-        reason = opened(address)
+        reason = open_page(address)
         if reason:
             self._out.note(reason)
         return not reason
 
     def _tell(self, target: Path, layers: "list[Layer]", size: int, is_open: bool) -> None:
         triangles = sum(len(layer.faces) for layer in layers)
-        line = f"{shown(target)}  {counted(triangles, 'triangle')}  {size / 1000:.0f} kB"
+        line = f"{display_name(target)}  {counted(triangles, 'triangle')}  {size / 1000:.0f} kB"
         document = {
             "files": [str(path) for path in self._files],
             "output": str(target),

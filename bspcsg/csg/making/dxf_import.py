@@ -10,9 +10,9 @@ import numpy as np
 from ..._types import FloatArray
 from ...bsp import Region
 from ...bsp.drawings.dxf import read_document
-from ...bsp.drawings.dxf_curves import MAX_BLOCK_ENTITIES, inserted
-from ...bsp.drawings.dxf_layouts import ANY_LAYER, WINDOW, drawn_layout
-from ...bsp.drawings.unread_content import LeftOut
+from ...bsp.drawings.dxf_curves import MAX_BLOCK_ENTITIES, block_entities
+from ...bsp.drawings.dxf_layouts import ANY_LAYER, VIEWPORT, drawn_layout
+from ...bsp.drawings.unread_content import UnreadContent
 from ...errors import format_errors
 from ..syntax.arguments import Arguments
 from .tessellation import Fineness
@@ -21,11 +21,16 @@ from .tessellation import Fineness
 _MAX_BLOCK_DEPTH = 16
 
 #: The grid step of ends of lines, in drawing units; ends in neighbouring grid cells are one corner.
-_JOINED = 2.0**-10
+_GRID_STEP = 2.0**-10
 
 
 def dxf_region(
-    path: Path, layer: str, origin: FloatArray, scale: float, arguments: Arguments, lost: LeftOut
+    path: Path,
+    layer: str,
+    origin: FloatArray,
+    scale: float,
+    arguments: Arguments,
+    lost: UnreadContent,
 ) -> Region:
     """Return the region inside the outlines of a DXF file, by the even-odd rule.
 
@@ -63,7 +68,7 @@ def dxf_region(
     return Region(lost.surrounding(_joined(proper)), winding="even-odd")
 
 
-def _entities(document: Any, layer: str, lost: LeftOut) -> Iterator[Any]:
+def _entities(document: Any, layer: str, lost: UnreadContent) -> Iterator[Any]:
     """Return the entities of a drawing on the named layer, or on all layers if it is empty."""
 
     def is_wanted(name: str) -> bool:
@@ -73,14 +78,14 @@ def _entities(document: Any, layer: str, lost: LeftOut) -> Iterator[Any]:
     return (one for one in entities if is_wanted(one.dxf.get("layer") or ANY_LAYER))
 
 
-class _Places:
+class _PointNumbering:
     """Numbering of points; points less than a grid step apart have the same number."""
 
     def __init__(self) -> None:
         self._numbers: dict[tuple[int, int], int] = {}
 
     def number(self, point: FloatArray) -> int:
-        x, y = (math.floor(c / _JOINED) for c in point.tolist())
+        x, y = (math.floor(c / _GRID_STEP) for c in point.tolist())
         near = [(x + dx, y + dy) for dx in (0, -1, 1) for dy in (0, -1, 1)]
         known = next((cell for cell in near if cell in self._numbers), None)
         return self._numbers.setdefault((x, y) if known is None else known, len(self._numbers))
@@ -88,7 +93,7 @@ class _Places:
 
 def _joined(chains: list[FloatArray]) -> list[FloatArray]:
     """Join chains, (n, 2) each, whose ends coincide; start with chains that have a free end."""
-    places = _Places()
+    places = _PointNumbering()
     ends = [(places.number(chain[0]), places.number(chain[-1])) for chain in chains]
     at: dict[int, list[int]] = {}
     for number, pair in enumerate(ends):
@@ -99,11 +104,11 @@ def _joined(chains: list[FloatArray]) -> list[FloatArray]:
     loops = []
     for number, end in [*loose, *((k, 0) for k in range(len(chains)))]:
         if number in left:
-            loops.append(_walk(number, end, chains, ends, at, left))
+            loops.append(_joined_chain(number, end, chains, ends, at, left))
     return loops
 
 
-def _walk(
+def _joined_chain(
     number: int,
     end: int,
     chains: list[FloatArray],
@@ -130,7 +135,7 @@ def _walk(
     return np.concatenate(parts)
 
 
-def _flat(entities: Iterator[Any], lost: LeftOut) -> Iterator[Any]:
+def _flat(entities: Iterator[Any], lost: UnreadContent) -> Iterator[Any]:
     """Yield the entities of a drawing, with inserted blocks replaced by their entities."""
     waiting: list[Iterator[tuple[Any, bool]]] = [((entity, True) for entity in entities)]
     left = MAX_BLOCK_ENTITIES
@@ -146,13 +151,13 @@ def _flat(entities: Iterator[Any], lost: LeftOut) -> Iterator[Any]:
         elif entity.dxftype() == "INSERT":
             # OpenSCAD does not repeat blocks in rows.
             lost.add("INSERT", entity.mcount - 1)
-            waiting.append(inserted(entity, rows=False))
+            waiting.append(block_entities(entity, rows=False))
         else:
             yield entity
 
 
 def _limited(
-    entities: Iterable[Any], arguments: Arguments, scale: float, lost: LeftOut
+    entities: Iterable[Any], arguments: Arguments, scale: float, lost: UnreadContent
 ) -> Iterator[Any]:
     """Yield the polylines of all entities; raise an error if they have too many corners.
 
@@ -160,7 +165,7 @@ def _limited(
     """
     corners = 0
     for entity in entities:
-        if entity.dxftype() not in _CURVES and entity.dxftype() != WINDOW:
+        if entity.dxftype() not in _CURVES and entity.dxftype() != VIEWPORT:
             lost.add(entity.dxftype())
         for chain in _chains(entity, arguments, scale):
             corners = arguments.limited(corners + len(chain), "this drawing")

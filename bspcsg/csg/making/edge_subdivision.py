@@ -10,10 +10,10 @@ from ..._types import FloatArray, IndexArray
 from ...geometry.transform import cos_sin
 
 #: Edges are divided together if the lengths of their parts have at least this ratio.
-_ALIKE = 0.999
+_MIN_LENGTH_RATIO = 0.999
 
 
-class Stretch(NamedTuple):
+class TwistAndScale(NamedTuple):
     """The twist and scale of a linear extrusion.
 
     Parameters
@@ -50,7 +50,7 @@ class Stretch(NamedTuple):
         return longest
 
 
-def divided(outline: FloatArray, segments: int, stretch: Stretch) -> FloatArray:
+def divided_outline(outline: FloatArray, segments: int, stretch: TwistAndScale) -> FloatArray:
     """Divide the edges of an outline evenly, until there are up to `segments`, as in OpenSCAD.
 
     In each step, the edge with the longest parts gets one more part. Edges of about the same length
@@ -60,7 +60,7 @@ def divided(outline: FloatArray, segments: int, stretch: Stretch) -> FloatArray:
     ----------
     outline : (n, 2) float64
     segments : int
-    stretch : Stretch
+    stretch : TwistAndScale
         The twist and scale of the extrusion, on which the lengths of edges depend.
     """
     vectors = np.roll(outline, -1, axis=0) - outline
@@ -79,7 +79,7 @@ def _counts(lengths: Sequence[float], segments: int) -> IndexArray:
     while longest:
         first = longest[0][0]
         alike = []
-        while longest and longest[0][0] <= first * _ALIKE:
+        while longest and longest[0][0] <= first * _MIN_LENGTH_RATIO:
             alike.append(heapq.heappop(longest)[1])
         total += len(alike)
         if total > segments:

@@ -14,9 +14,9 @@ from ...bsp import Region
 from ...bsp.drawings.svg import Shape, outlines_of, shown_shapes
 from ...bsp.drawings.svg_curves import Cubics, Curves, Steps
 from ...bsp.drawings.svg_tree import HREF, name_of
-from ...bsp.drawings.unread_content import LeftOut
+from ...bsp.drawings.unread_content import UnreadContent
 from ...errors import format_errors
-from ...mesh.interop import optional
+from ...mesh.interop import import_optional
 from ...modelling.planar.offsetting import stroked
 
 _MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6}
@@ -39,7 +39,7 @@ _CLOSED = 0.1
 
 
 @dataclass(frozen=True)
-class _Page:
+class _PageTransform:
     """The map from user units to millimetres from the lower left corner of the page."""
 
     scale: float
@@ -47,7 +47,7 @@ class _Page:
     y: float
 
 
-def svg_region(path: Path, dpi: float, centered: bool, lost: LeftOut) -> Region:
+def svg_region(path: Path, dpi: float, centered: bool, lost: UnreadContent) -> Region:
     """Return the region of the shapes in an SVG file, as OpenSCAD imports them.
 
     Closed paths are filled, whatever their fill; open paths get the width of their stroke. Curves
@@ -76,18 +76,20 @@ def svg_region(path: Path, dpi: float, centered: bool, lost: LeftOut) -> Region:
     return placed
 
 
-def _drawn(path: Path, lost: LeftOut) -> Region:
+def _drawn(path: Path, lost: UnreadContent) -> Region:
     region = Region()
     shapes = shown_shapes(path, _prepare, lost)
     with format_errors(str(path), "SVG"):
         found = outlines_of(shapes, _steps_of(shapes))
     for shape, outlines in zip(shapes, found, strict=True):
-        closed = [corners for corners, is_closed in outlines if is_closed or _meets(corners)]
+        closed = [
+            corners for corners, is_closed in outlines if is_closed or _returns_to_start(corners)
+        ]
         loops = [corners for corners in closed if len(corners) >= 3]
         lost.outlines += len(loops)
         region = region | Region(loops, winding="even-odd")
         for corners, is_closed in outlines:
-            if not is_closed and not _meets(corners) and len(corners) >= 2:
+            if not is_closed and not _returns_to_start(corners) and len(corners) >= 2:
                 region = region | _stroke(shape.element, corners)
     return region
 
@@ -108,7 +110,7 @@ def _prepare(root: ElementTree.Element) -> None:
 
 def _steps_of(shapes: Sequence[Shape]) -> Steps:
     """Return a function from curves to the numbers of chords that OpenSCAD gives them."""
-    elements = optional("svgelements", "svgelements")
+    elements = import_optional("svgelements", "svgelements")
     round_ones = (elements.Circle, elements.Ellipse)
     is_round = np.array([isinstance(shape.element, round_ones) for shape in shapes], dtype=bool)
 
@@ -122,7 +124,7 @@ def _steps_of(shapes: Sequence[Shape]) -> Steps:
     return steps
 
 
-def _meets(corners: FloatArray) -> bool:
+def _returns_to_start(corners: FloatArray) -> bool:
     """Return True if a subpath without a closing command ends at its first point."""
     return len(corners) > 2 and bool(np.hypot(*(corners[0] - corners[-1])) <= _CLOSED)
 
@@ -135,7 +137,7 @@ def _stroke(shape: Any, corners: FloatArray) -> Region:
     return stroked(corners, width, cap if cap in ("butt", "round") else "square", join)
 
 
-def _page(path: Path, dpi: float) -> _Page:
+def _page(path: Path, dpi: float) -> _PageTransform:
     # `shown_shapes` has refused files that declare an entity.
     _, root = next(iter(ElementTree.iterparse(path, events=("start",))))
     width, height = (_length(root.get(name, ""), dpi) for name in ("width", "height"))
@@ -143,13 +145,13 @@ def _page(path: Path, dpi: float) -> _Page:
         words = re.split(r"[\s,]+", root.get("viewBox", "").strip())
         box = [float(word) for word in words if word]
     if len(box) != 4 or min(box[2:]) <= 0:
-        return _Page(1.0, 0.0, height or 0.0)
+        return _PageTransform(1.0, 0.0, height or 0.0)
     left, top, wide, high = box
     width = width or (height / high * wide if height else wide * 25.4 / dpi)
     height = height or high * width / wide
     scale = min(width / wide, height / high)
     x = (width - wide * scale) / 2 - left * scale
-    return _Page(scale, x, height - (height - high * scale) / 2 + top * scale)
+    return _PageTransform(scale, x, height - (height - high * scale) / 2 + top * scale)
 
 
 def _length(text: str, dpi: float) -> float | None:

@@ -15,7 +15,7 @@ COMBINING = frozenset({"group", "union", "color", "render", "difference", "inter
 _MAX_NESTED_MOVES = 64
 
 
-def moved_apart(root: Node) -> Node:
+def with_transforms_distributed(root: Node) -> Node:
     """Return an equivalent tree with transforms applied to the operands of set operations.
 
     Matrices that translate, scale, mirror or exchange axes are moved inwards through set

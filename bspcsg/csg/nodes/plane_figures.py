@@ -14,7 +14,7 @@ from .set_operations import union_of
 from .signature import Signature
 
 #: The names of nodes in which OpenSCAD does not clean the outlines of an only child.
-_PASSING = frozenset({"group", "union", "color", "render", "multmatrix", "resize", "difference",
+_GROUPING = frozenset({"group", "union", "color", "render", "multmatrix", "resize", "difference",
                       "intersection"})  # fmt: skip
 
 #: The names of nodes whose outlines are exactly as given in the script.
@@ -105,7 +105,7 @@ def _is_combined(owner: Node) -> bool:
         if len(children) != 1:
             return True
         owner = children[0]
-        if owner.name not in _PASSING:
+        if owner.name not in _GROUPING:
             return owner.name not in _PRIMITIVE
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...bsp import Region
-from ...errors import InvalidMeshError, harmless
+from ...errors import InvalidMeshError, without_control_characters
 from ...formats.raw import RawMesh
 from ...repair.repair import repair
 from ...solid.solid import Solid
@@ -26,7 +26,7 @@ OnInvalid: TypeAlias = Literal["error", "warn", "repair"]
 
 
 #: The error codes of meshes that do not bound a solid.
-_BOUND_NOTHING = frozenset({"not_closed", "empty_mesh"})
+_NO_SOLID_CODES = frozenset({"not_closed", "empty_mesh"})
 
 
 class CsgWarning(UserWarning):
@@ -79,12 +79,12 @@ class Evaluation:
 
     def arguments(self, node: Node) -> Arguments:
         """Return the arguments of a node, with names for positional arguments."""
-        return Arguments(node, self.script, RECIPES[node.name].takes.order)
+        return Arguments(node, self.script, NODE_KINDS[node.name].takes.order)
 
     def tell_of_arguments(self, node: Node) -> None:
         """Warn of each argument of a node that is ignored."""
-        if node.name in RECIPES:
-            for complaint in RECIPES[node.name].takes.complaints(node):
+        if node.name in NODE_KINDS:
+            for complaint in NODE_KINDS[node.name].takes.complaints(node):
                 self.warn(node, complaint)
 
     def figures(self, owner: Node, children: list[Geometry]) -> list[Geometry]:
@@ -120,7 +120,7 @@ class Evaluation:
         if message in self.told:
             return
         self.told.add(message)
-        warnings.warn(harmless(self.explained(message)), CsgWarning, stacklevel=2)
+        warnings.warn(without_control_characters(self.explained(message)), CsgWarning, stacklevel=2)
 
     def closed_solid(self, node: Node, vertices: Any, faces: Any) -> Solid | None:
         """Return the solid of a mesh from the script, whatever its orientation.
@@ -132,7 +132,7 @@ class Evaluation:
             solid = Solid(vertices, faces, winding="nonzero")
             return self._loose(vertices, faces) if self.in_hull and solid.is_empty else solid
         except InvalidMeshError as error:
-            if self.in_hull and error.code in _BOUND_NOTHING:
+            if self.in_hull and error.code in _NO_SOLID_CODES:
                 return self._loose(vertices, faces)
             if self.on_invalid == "error" or error.code != "not_closed":
                 raise
@@ -173,7 +173,7 @@ NodeMaker: TypeAlias = Callable[[Node, list[Geometry], Evaluation], Geometry]
 
 
 @dataclass(frozen=True)
-class Recipe:
+class NodeKind:
     """The function that evaluates the nodes of one name, and their arguments.
 
     Parameters
@@ -191,7 +191,7 @@ class Recipe:
     makes_corners: bool
 
 
-RECIPES: dict[str, Recipe] = {}
+NODE_KINDS: dict[str, NodeKind] = {}
 
 
 _NO_ARGUMENTS = Signature()
@@ -204,7 +204,7 @@ def node(
 
     def register(maker: NodeMaker) -> NodeMaker:
         for name in names:
-            RECIPES[name] = Recipe(maker, takes, makes_corners)
+            NODE_KINDS[name] = NodeKind(maker, takes, makes_corners)
         return maker
 
     return register

@@ -57,7 +57,7 @@ def text(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
         spacing,
         _writing(owner, arguments, run),
         steps_of(arguments.sides(Fineness.of(arguments).fragments(size), "this text")),
-        _ink(file),
+        _glyph_scale(file),
         _TIGHTNESS,
         _PIXEL * size,
     )
@@ -67,7 +67,7 @@ def text(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     return region
 
 
-def _ink(file: FontFile) -> float:
+def _glyph_scale(file: FontFile) -> float:
     """Return the factor by which FreeType scales glyphs to make the em a whole number of pixels.
 
     It is 1 for a font that does not ask for that.

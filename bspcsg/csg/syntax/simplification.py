@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...parameters import of_kind
+from ...parameters import instance_of
 from .tree import CsgTree, Node
 
 #: The names of nodes that only unite their children, unless they have arguments.
@@ -28,7 +28,7 @@ def simplified(tree: CsgTree) -> CsgTree:
     are inside other unions, and identity matrices. All other nodes and all arguments remain, even
     if they cannot be evaluated.
     """
-    roots = of_kind(CsgTree, tree, "tree").roots()
+    roots = instance_of(CsgTree, tree, "tree").roots()
     return replace(tree, nodes=_with_children(Node("union", (), roots)))
 
 
@@ -103,10 +103,10 @@ def _parts(child: _SimplifiedNode) -> tuple[Node, ...]:
 def _is_plain(node: Node) -> bool:
     if node.modifiers.replace("!", ""):
         return False
-    return (node.name in _PLAIN and not node.arguments) or _moves_nothing(node)
+    return (node.name in _PLAIN and not node.arguments) or _is_identity(node)
 
 
-def _moves_nothing(node: Node) -> bool:
+def _is_identity(node: Node) -> bool:
     if node.name != "multmatrix" or len(node.arguments) != 1:
         return False
     value = node.arguments[0].value

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from ...parameters import of_kind
+from ...parameters import instance_of
 from .tokens import quoted
 from .tree import Argument, CsgTree, Node, Value
 from .writer import value_text
@@ -15,7 +15,7 @@ _MAX_VALUE_CHARACTERS = 64
 _MAX_INDENT_DEPTH = 40
 
 
-class _Place(NamedTuple):
+class _DisplayedNode(NamedTuple):
     """A node and its position in a displayed tree.
 
     Parameters
@@ -37,7 +37,7 @@ class _Place(NamedTuple):
 
 def outline(tree: CsgTree) -> str:
     """Return a tree as text: one line per node, indented by depth, with long values shortened."""
-    lines = [of_kind(CsgTree, tree, "tree").name]
+    lines = [instance_of(CsgTree, tree, "tree").name]
     for place in _walk(tree):
         indent = "".join("   " if last else "│  " for last in place.ended)
         branch = "└─ " if place.is_last else "├─ "
@@ -50,7 +50,7 @@ def graph(tree: CsgTree) -> str:
     """Return a tree as a graph in Graphviz's language; ``dot -Tsvg`` draws it."""
     lines = ["digraph csg {", "  node [shape=box, fontname=monospace];"]
     path: list[int] = []
-    for number, place in enumerate(_walk(of_kind(CsgTree, tree, "tree"))):
+    for number, place in enumerate(_walk(instance_of(CsgTree, tree, "tree"))):
         del path[place.depth - 1 :]
         lines.append(f"  n{number} [label={quoted(_label(place.node))}];")
         if path:
@@ -59,7 +59,7 @@ def graph(tree: CsgTree) -> str:
     return "\n".join([*lines, "}"]) + "\n"
 
 
-def _walk(tree: CsgTree) -> Iterator[_Place]:
+def _walk(tree: CsgTree) -> Iterator[_DisplayedNode]:
     """Yield the nodes of a tree of any depth, in the order of the script."""
     waiting = _siblings(tree.nodes, 1, ())
     while waiting:
@@ -69,10 +69,10 @@ def _walk(tree: CsgTree) -> Iterator[_Place]:
         waiting += _siblings(place.node.children, place.depth + 1, ended)
 
 
-def _siblings(nodes: Sequence[Node], depth: int, ended: tuple[bool, ...]) -> list[_Place]:
+def _siblings(nodes: Sequence[Node], depth: int, ended: tuple[bool, ...]) -> list[_DisplayedNode]:
     """Return sibling nodes with their positions, in reverse order."""
     last = len(nodes) - 1
-    return [_Place(nodes[k], depth, ended, k == last) for k in range(last, -1, -1)]
+    return [_DisplayedNode(nodes[k], depth, ended, k == last) for k in range(last, -1, -1)]
 
 
 def _label(node: Node) -> str:

@@ -16,10 +16,10 @@ from ...attributes.attributes import Attributes, Kind, Values, is_normal
 from ...attributes.colours import as_bytes, is_color, opaque
 from ...attributes.material import Material
 from ...errors import InvalidMeshError
-from ..storable_attributes import chosen
+from ..storable_attributes import selected_attributes
 from .accessors import fractions, numbers, stored
 from .container import Container, picture_of, uv_of
-from .linear_colours import as_read, color_of, shown, to_light, words_of
+from .linear_colours import as_read, color_of, linear_words, srgb_colours, to_linear
 
 #: The name and the material of each material in a file, in file order.
 Named: TypeAlias = list[tuple[str, Material]]
@@ -28,22 +28,22 @@ Named: TypeAlias = list[tuple[str, Material]]
 _KNOWN = {"NORMAL": "normal", "TEXCOORD_0": "uv", "COLOR_0": "color"}
 
 #: The prefix that glTF requires for the names of attributes that it does not define.
-_OWN = "_"
+_CUSTOM_PREFIX = "_"
 
 
-def called(name: str) -> str:
+def stored_name(name: str) -> str:
     """Return a name in which “?” replaces lone surrogates, which UTF-8 cannot encode."""
     return name.encode("utf-8", "replace").decode("utf-8")
 
 
-def kept(said: Attributes, vertices: FloatArray) -> Attributes:
+def storable(said: Attributes, vertices: FloatArray) -> Attributes:
     """Return the attributes that GLB can store, in single precision.
 
     These are normals, texture coordinates, colours, materials of faces, and float arrays of
     vertices and corners with up to four components. A missing normal becomes that of its face.
     """
     told = _with_all_normals(said.without_empty_material(), vertices)
-    held = chosen(told, _kept).with_materials_called(called)
+    held = selected_attributes(told, _storable_values).with_materials_called(stored_name)
     names = held.face.get("material")
     if names is None:
         return Attributes(held.faces, held.vertex, held.corner, held.face)
@@ -71,7 +71,7 @@ def _with_all_normals(said: Attributes, vertices: FloatArray) -> Attributes:
     return replace(said, vertex=vertex, corner={**said.corner, "normal": filled})
 
 
-def _kept(kind: Kind, name: str, values: Values) -> Values | None:
+def _storable_values(kind: Kind, name: str, values: Values) -> Values | None:
     shape = values.shape[2 if kind == "corner" else 1 :]
     if name == "material":
         return values if kind == "face" and values.dtype.kind == "U" and not shape else None
@@ -81,12 +81,12 @@ def _kept(kind: Kind, name: str, values: Values) -> Values | None:
         return None
     single = values.astype(np.float32)
     if name == "uv":
-        return _upright(_upright(np.nan_to_num(single))) if shape == (2,) else None
+        return _flipped_uv(_flipped_uv(np.nan_to_num(single))) if shape == (2,) else None
     if name == "normal":
         is_whole = shape == (3,) and not np.isnan(single).any()
         return single if is_whole else None
     # A file must not contain NaN, or names that UTF-8 cannot encode.
-    is_fit = name not in _KNOWN.values() and called(name) == name
+    is_fit = name not in _KNOWN.values() and stored_name(name) == name
     return single if is_fit and not np.isnan(single).any() else None
 
 
@@ -95,7 +95,7 @@ def _color(values: Values) -> Values:
     return opaque(as_bytes(values))
 
 
-def _upright(uv: Values) -> Values:
+def _flipped_uv(uv: Values) -> Values:
     """Flip texture coordinates vertically: v becomes 1 - v, in single precision."""
     turned: Values = np.stack([uv[..., 0], np.float32(1) - uv[..., 1]], axis=-1)
     return turned
@@ -108,14 +108,14 @@ def columns_of(said: Attributes, rows: IndexArray) -> dict[str, Values]:
     for name in said.names:
         if name != "material":
             values = said.at_corners(name, rows)
-            found[called.get(name, _OWN + name)] = _in_file(name, values)
+            found[called.get(name, _CUSTOM_PREFIX + name)] = _in_file(name, values)
     return found
 
 
 def _in_file(name: str, values: Values) -> Values:
     if name == "uv":
-        return _upright(values)
-    return words_of(values) if is_color(name, values, 2) else values
+        return _flipped_uv(values)
+    return linear_words(values) if is_color(name, values, 2) else values
 
 
 def read_columns(
@@ -135,7 +135,7 @@ def read_columns(
     found: dict[str, Values] = {}
     known = {**_KNOWN, "TEXCOORD_0": "", uv_of(container.tree, primitive): "uv"}
     for semantic, number in primitive["attributes"].items():
-        name = known.get(semantic, semantic[1:] if semantic.startswith(_OWN) else "")
+        name = known.get(semantic, semantic[1:] if semantic.startswith(_CUSTOM_PREFIX) else "")
         accessor = container.tree["accessors"][number]
         if not name or accessor["type"].startswith("MAT"):
             continue
@@ -149,10 +149,10 @@ def read_columns(
 def _decoded(name: str, values: Values, is_fraction: bool) -> Values:
     """Convert stored numbers to an attribute: colours to sRGB, texture coordinates flipped."""
     if name == "color":
-        return shown(fractions(values), is_whole=values.dtype.kind != "f")
+        return srgb_colours(fractions(values), is_whole=values.dtype.kind != "f")
     decoded = numbers(values, is_fraction)
     if name == "uv":
-        return _upright(decoded.astype(np.float32))
+        return _flipped_uv(decoded.astype(np.float32))
     return decoded[:, 0] if decoded.shape[1] == 1 else decoded
 
 
@@ -223,7 +223,7 @@ class Pictures:
         images: list[dict[str, Any]] = []
         found = []
         for name, material in self._materials.items():
-            light = to_light(material.color).tolist()
+            light = to_linear(material.color).tolist()
             surface: dict[str, Any] = {"metallicFactor": 0.0, "baseColorFactor": light}
             if material.texture is not None:
                 images.append(

@@ -28,11 +28,17 @@ _INSTANCES = "EXT_mesh_gpu_instancing"
 #: Extensions that a file may require: those that are read here, and the first letters of the names
 #: of those that change only the appearance.
 _READ = (_INSTANCES, "KHR_mesh_quantization")
-_LOOKS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "EXT_lights_")
+_APPEARANCE_PREFIXES = (
+    "KHR_materials_",
+    "KHR_texture_",
+    "EXT_texture_",
+    "KHR_lights_",
+    "EXT_lights_",
+)
 
 #: Extensions that compress data, and the advice on decompressing it.
-_PACKINGS = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
-_UNPACK = " “gltf-transform copy in.glb out.glb” removes the compression."
+_COMPRESSIONS = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
+_DECOMPRESSION_ADVICE = " “gltf-transform copy in.glb out.glb” removes the compression."
 
 #: Names, in messages, of vertex attributes that are not read, by the first letters of their keys.
 _ATTRIBUTES = {
@@ -79,7 +85,7 @@ def container_of(source: Source) -> Container:
     """
     tree, data = _chunks(source)
     try:
-        _Claims(source, tree, len(data)).check()
+        _DescriptionCheck(source, tree, len(data)).check()
         return Container(tree, data, _passed_by(tree), _dropped(tree))
     except FormatError:
         raise
@@ -124,7 +130,7 @@ def _parsed(source: Source, chunk: bytes) -> dict[str, Any]:
     return tree
 
 
-class _Claims:
+class _DescriptionCheck:
     """A check of a GLB file's JSON description against the length of its binary data.
 
     Parameters
@@ -144,11 +150,11 @@ class _Claims:
     def check(self) -> None:
         """Raise a `FormatError` if the description has an error that would break decoding."""
         for extension in self._tree.get("extensionsRequired", []):
-            if extension not in _READ and not extension.startswith(_LOOKS):
+            if extension not in _READ and not extension.startswith(_APPEARANCE_PREFIXES):
                 message = (
                     f"the file requires the glTF extension {extension}, which is not supported."
                 )
-                raise self._source.error(message + _way_out(extension), "unsupported")
+                raise self._source.error(message + _conversion_advice(extension), "unsupported")
         for number, buffer in enumerate(self._tree.get("buffers", [])):
             if "uri" in buffer:
                 is_text = str(buffer["uri"]).startswith("data:")
@@ -229,9 +235,9 @@ class _Claims:
         if "sparse" not in accessor:
             # An accessor has no buffer view if an extension has compressed its data, too.
             used = self._tree.get("extensionsUsed", [])
-            packing = next((one for one in used if one in _PACKINGS), "")
+            packing = next((one for one in used if one in _COMPRESSIONS), "")
             message = f"accessor {number} has no data that can be read; they may be compressed."
-            raise self._source.error(message + _way_out(packing), "unsupported")
+            raise self._source.error(message + _conversion_advice(packing), "unsupported")
         zeros = accessor["count"] * _bytes_of(accessor)
         if not 0 <= zeros <= self._held:
             # Zeros take no bytes in the file, so its length does not limit their number.
@@ -282,7 +288,7 @@ class _Claims:
         times = self._times(node)
         for primitive in self._entry("meshes", node["mesh"])["primitives"]:
             mode = primitive.get("mode", TRIANGLES)
-            if _is_nowhere(primitive):
+            if _lacks_positions(primitive):
                 continue
             if "material" in primitive:
                 self._entry("materials", primitive["material"])
@@ -308,9 +314,9 @@ class _Claims:
         return int(counts.pop())
 
 
-def _way_out(extension: str) -> str:
+def _conversion_advice(extension: str) -> str:
     """Return advice on how to convert a file that needs an extension, or an empty string."""
-    return _UNPACK if extension in _PACKINGS else ""
+    return _DECOMPRESSION_ADVICE if extension in _COMPRESSIONS else ""
 
 
 def _bytes_of(told: dict[str, Any], shape: str = "") -> int:
@@ -324,7 +330,7 @@ def instances_of(node: dict[str, Any]) -> dict[str, Any] | None:
     return None if told is None else dict(told["attributes"])
 
 
-def _is_nowhere(primitive: dict[str, Any]) -> bool:
+def _lacks_positions(primitive: dict[str, Any]) -> bool:
     """Say whether a primitive has no vertex positions: readers skip it (glTF 2.0, 3.7.2.1)."""
     return "POSITION" not in primitive["attributes"]
 
@@ -364,8 +370,8 @@ def uv_of(tree: dict[str, Any], primitive: dict[str, Any]) -> str:
 
 def _passed_by(tree: dict[str, Any]) -> tuple[Finding, ...]:
     primitives = _primitives(tree)
-    nowhere = [primitive for primitive in primitives if _is_nowhere(primitive)]
-    modes = [one.get("mode", TRIANGLES) for one in primitives if not _is_nowhere(one)]
+    nowhere = [primitive for primitive in primitives if _lacks_positions(primitive)]
+    modes = [one.get("mode", TRIANGLES) for one in primitives if not _lacks_positions(one)]
     lines = sum(mode not in (TRIANGLES, STRIP, FAN) for mode in modes)
     told = (
         (lines, "groups of points or lines"),

@@ -18,13 +18,13 @@ from ...attributes.attributes import Attributes, Values
 from ...errors import Finding
 from ...mesh.mesh import Mesh
 from .. import single_precision
-from ..mesh_placement import PlacedMesh, is_exact, placed
-from ..raw import RawMesh, compacted, parts_of, says_empty_set
+from ..mesh_placement import PlacedMesh, is_exact, placed_meshes
+from ..raw import RawMesh, compacted, parts_of, represents_empty_set
 from ..source import Source
-from ..storable_attributes import said_of
-from .attribute_conversion import Pictures, called, columns_of, dropped_pictures
+from ..storable_attributes import attributes_or_none
+from .attribute_conversion import Pictures, columns_of, dropped_pictures, stored_name
 from .container import container_of
-from .nodes import NodeMesh, shown
+from .nodes import NodeMesh, visible_meshes
 
 #: Matrices for column vectors from millimetres with z upwards to metres with y upwards, and back.
 TO_METRES = np.array(
@@ -49,12 +49,12 @@ def read(source: Source) -> RawMesh:
     """
     container = container_of(source)
     try:
-        objects, hidden = shown(container)
+        objects, hidden = visible_meshes(container)
     except IndexError as error:
         raise source.error(f"{error}.", "index_out_of_range") from error
     except (ValueError, LookupError, TypeError, AttributeError) as error:
         raise source.error(f"this GLB cannot be decoded: {error}.") from error
-    mesh = placed([_placed(one) for one in objects if len(one.faces)])
+    mesh = placed_meshes([_placed(one) for one in objects if len(one.faces)])
     if not np.isfinite(mesh.vertices).all():
         raise source.error("a coordinate is not a finite number.", "non_finite")
     findings = (*mesh.findings, *container.findings, *_hidden(hidden), _unit())
@@ -106,7 +106,7 @@ def most_bytes(mesh: Mesh | RawMesh) -> int:
     return 12 * (len(mesh.faces) + vertices)
 
 
-def beyond(mesh: Mesh | RawMesh) -> str:
+def size_problem(mesh: Mesh | RawMesh) -> str:
     """Return why a mesh is too large for GLB, or an empty string if it fits."""
     is_beyond = most_bytes(mesh) > np.iinfo(np.uint32).max
     return (
@@ -121,11 +121,11 @@ def beyond(mesh: Mesh | RawMesh) -> str:
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the bytes of a GLB file; coordinates are rounded to single precision."""
-    said = said_of(mesh)
+    said = attributes_or_none(mesh)
     if said is not None:
         yield from _with_attributes(mesh, said)
         return
-    described = Description(says_empty_set(mesh))
+    described = Description(represents_empty_set(mesh))
     blocks = []
     for name, faces in parts_of(mesh):
         if len(faces) == 0:
@@ -191,7 +191,7 @@ class Description:
 
     def add(self, name: str, vertices: "np.ndarray[Any, Any]", triangles: int) -> None:
         """Describe an object; the caller writes its vertices, then its indices, to the data."""
-        self._names.append({"name": called(name)} if name else {})
+        self._names.append({"name": stored_name(name)} if name else {})
         self._primitives.append([_primitive(len(self._names) - 1)])
         low, high = vertices.min(axis=0).tolist(), vertices.max(axis=0).tolist()
         self._append(12 * len(vertices), _VERTICES, len(vertices), _FLOAT, "VEC3")
@@ -207,7 +207,7 @@ class Description:
 
     def add_object(self, name: str, primitives: list[dict[str, Any]]) -> None:
         """Describe an object that consists of primitives from `append_mesh`."""
-        self._names.append({"name": called(name)} if name else {})
+        self._names.append({"name": stored_name(name)} if name else {})
         self._primitives.append(primitives)
 
     def append(self, data: bytes) -> int:

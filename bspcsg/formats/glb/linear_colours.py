@@ -23,7 +23,7 @@ _DIGITS = 12
 _BYTE, _WORD = 255, 65535
 
 
-def to_light(colors: npt.ArrayLike) -> FloatArray:
+def to_linear(colors: npt.ArrayLike) -> FloatArray:
     """Convert sRGB colours from 0 to 1 to linear colours; a fourth number, opacity, stays."""
     values = np.array(colors, dtype=np.float64)
     shown = values[..., :3]
@@ -32,7 +32,7 @@ def to_light(colors: npt.ArrayLike) -> FloatArray:
     return values
 
 
-def to_screen(colors: npt.ArrayLike) -> FloatArray:
+def to_srgb(colors: npt.ArrayLike) -> FloatArray:
     """Convert linear colours from 0 to 1 to sRGB colours; a fourth number, opacity, stays."""
     values = np.array(colors, dtype=np.float64)
     light = np.clip(values[..., :3], 0, 1)
@@ -43,23 +43,23 @@ def to_screen(colors: npt.ArrayLike) -> FloatArray:
 
 def color_of(light: npt.ArrayLike) -> tuple[float, ...]:
     """Convert one linear colour of a file to sRGB, rounded to `_DIGITS` decimals."""
-    return tuple(round(value, _DIGITS) for value in to_screen(light).tolist())
+    return tuple(round(value, _DIGITS) for value in to_srgb(light).tolist())
 
 
 def as_read(color: tuple[float, ...]) -> tuple[float, ...]:
     """Return the sRGB colour that is read from a GLB file into which `color` was written."""
-    return color_of(to_light(color))
+    return color_of(to_linear(color))
 
 
-def words_of(colors: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint16]:
+def linear_words(colors: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint16]:
     """Convert sRGB bytes to linear 16-bit integers, which are distinct for distinct bytes."""
-    found: npt.NDArray[np.uint16] = np.rint(to_light(colors / _BYTE) * _WORD).astype(np.uint16)
+    found: npt.NDArray[np.uint16] = np.rint(to_linear(colors / _BYTE) * _WORD).astype(np.uint16)
     return found
 
 
-def shown(light: npt.NDArray[Any], is_whole: bool) -> npt.NDArray[Any]:
+def srgb_colours(light: npt.NDArray[Any], is_whole: bool) -> npt.NDArray[Any]:
     """Convert linear colours of a file to sRGB: uint8 if the file has integers, else float32."""
-    colors = to_screen(light)
+    colors = to_srgb(light)
     if is_whole:
         return np.rint(np.clip(colors, 0, 1) * _BYTE).astype(np.uint8)
     return colors.astype(np.float32)

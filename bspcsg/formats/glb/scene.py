@@ -13,11 +13,11 @@ from ...attributes.material import Material
 from ..raw import RawMesh
 from ..scene import SceneNode
 from ..source import Source
-from .attribute_conversion import Pictures, called, kept, materials_of
+from .attribute_conversion import Pictures, materials_of, storable, stored_name
 from .container import Container, container_of, instances_of
 from .file import TO_METRES, TO_MILLIMETRES, Description, container
 from .linear_colours import as_read
-from .nodes import local_matrix, places_of, triangles_of
+from .nodes import instance_matrices, local_matrix, triangles_of
 
 _IDENTITY = np.eye(4)
 
@@ -32,14 +32,14 @@ def read(source: Source) -> SceneNode:
     """
     held = container_of(source)
     try:
-        return _Reading(held).root()
+        return _SceneReader(held).root()
     except IndexError as error:
         raise source.error(f"{error}.", "index_out_of_range") from error
     except (ValueError, LookupError, TypeError, AttributeError) as error:
         raise source.error(f"this GLB cannot be decoded: {error}.") from error
 
 
-class _Reading:
+class _SceneReader:
     """A reader of one file's nodes; a mesh that several nodes share becomes one object."""
 
     def __init__(self, held: Container) -> None:
@@ -78,7 +78,7 @@ class _Reading:
             mesh = None
         if mesh is None or not (children or instances_of(told)):
             return SceneNode(name, matrix, mesh, color, children)
-        places = places_of(self._held, told)
+        places = instance_matrices(self._held, told)
         own = (SceneNode(mesh.name, place, mesh, color) for place in places)
         return SceneNode(name, matrix, None, None, (*own, *children))
 
@@ -98,10 +98,10 @@ class _Reading:
 
 def as_written(root: SceneNode) -> SceneNode:
     """Return a tree with the colours and attributes that reading its GLB file would return."""
-    return _AsGlb().node(root)
+    return _GlbConverter().node(root)
 
 
-class _AsGlb:
+class _GlbConverter:
     """A converter of trees to what GLB can store; nodes that share a mesh share the new one."""
 
     def __init__(self) -> None:
@@ -115,7 +115,7 @@ class _AsGlb:
 
     def _mesh(self, mesh: RawMesh) -> tuple[RawMesh, tuple[float, ...] | None]:
         if id(mesh) not in self._meshes:
-            held = None if mesh.attributes is None else kept(mesh.attributes, mesh.vertices)
+            held = None if mesh.attributes is None else storable(mesh.attributes, mesh.vertices)
             said = None if held is None or held.is_empty else held
             one = replace(mesh, attributes=said)
             self._meshes[id(mesh)] = one, _painted(one)[1]
@@ -155,7 +155,7 @@ def encode(root: SceneNode) -> Iterator[bytes]:
         node, parent = waiting.pop()
         number = len(nodes)
         told: dict[str, Any] = {"matrix": node.matrix.T.ravel().tolist()}
-        nodes.append(told | ({"name": called(node.name)} if node.name else {}))
+        nodes.append(told | ({"name": stored_name(node.name)} if node.name else {}))
         nodes[parent].setdefault("children", []).append(number)
         if node.mesh is not None and len(node.mesh.faces):
             key = (id(node.mesh), node.color)

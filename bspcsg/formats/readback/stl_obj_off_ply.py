@@ -12,8 +12,8 @@ from .stored_mesh import (
     Rows,
     StoredMesh,
     StoredRows,
-    after,
     header_of,
+    rest_after,
     rows_of,
     whole_rows_of,
 )
@@ -37,10 +37,10 @@ def text_stl(file: BinaryIO) -> list[StoredMesh]:
     data, found, at = file.read(), [], 0
     while at < len(data):
         head = data.index(b"\n", at) + 1
-        name = after(b"solid ", data[at : head - 1])
+        name = rest_after(b"solid ", data[at : head - 1])
         end = data.index(b"endsolid ", head)
         at = data.index(b"\n", end) + 1
-        if after(b"endsolid ", data[end : at - 1]) != name:
+        if rest_after(b"endsolid ", data[end : at - 1]) != name:
             raise ValueError("the name after “endsolid” differs from the name after “solid”")
         rows = rows_of(data[head:end], _FACET)
         found.append(StoredMesh(rows[:, 3:].reshape(-1, 3), None, name))
@@ -64,7 +64,7 @@ def obj(file: BinaryIO) -> list[StoredMesh] | list[StoredRows]:
         start, name = end, ""
         if data.startswith(b"o ", start):
             start = data.index(b"\n", start) + 1
-            name = after(b"o ", data[end : start - 1])
+            name = rest_after(b"o ", data[end : start - 1])
         end = _first(data, start, b"o")
         found.append(StoredRows(vertices, _lines(data, start, end, _named_faces), name))
     if len(found) == 1:

@@ -131,7 +131,7 @@ class Rows:
         """Return the bytes of a block of rows."""
         start, stop, _ = block.indices(self._count)
         size = self._row.itemsize
-        return piece(self._file, self._start + start * size, (stop - start) * size)
+        return read_exactly(self._file, self._start + start * size, (stop - start) * size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,7 +176,7 @@ class StoredRows:
             self.faces.check_last()
 
 
-def piece(file: BinaryIO, start: int, count: int) -> bytes:
+def read_exactly(file: BinaryIO, start: int, count: int) -> bytes:
     """Return `count` bytes of a file from offset `start`; fewer are a `ValueError`."""
     file.seek(start)
     data = file.read(count)
@@ -208,7 +208,7 @@ def header_of(file: BinaryIO) -> bytes:
     return text_at(file, 0)
 
 
-def after(key: bytes, line: bytes) -> str:
+def rest_after(key: bytes, line: bytes) -> str:
     """Return the rest of a line that begins with `key`; raise a `ValueError` if it does not."""
     if not line.startswith(key):
         raise ValueError(f"a line does not begin with “{key.decode()}”")

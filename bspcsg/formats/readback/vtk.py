@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from .. import vtk
 from ..blocks import ROWS_PER_FILE_BLOCK, blocks
-from .stored_mesh import Rows, StoredMesh, StoredRows, header_of, piece, size_of, text_at
+from .stored_mesh import Rows, StoredMesh, StoredRows, header_of, read_exactly, size_of, text_at
 
 _HEAD = re.compile(
     rb"# vtk DataFile Version 5\.1\nwritten by [^\n]*\nBINARY\n"
@@ -47,7 +47,7 @@ def legacy(file: BinaryIO) -> list[StoredRows]:
 
 
 def _behind(key: bytes, file: BinaryIO, at: int) -> int:
-    if piece(file, at, len(key)) != key:
+    if read_exactly(file, at, len(key)) != key:
         raise ValueError(f"the keyword “{key.decode().strip()}” is missing at byte {at}")
     return at + len(key)
 

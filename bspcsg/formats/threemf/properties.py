@@ -16,10 +16,10 @@ from ...attributes.attributes import Attributes, Kind, Values
 from ...attributes.colours import as_bytes, is_color, opaque
 from ...attributes.material import Material
 from ...errors import InvalidMeshError
-from ..storable_attributes import chosen
+from ..storable_attributes import selected_attributes
 from .part import Base, ModelPart, Object
 from .textures import fit_for_parts, named_after
-from .write import called
+from .write import stored_name
 
 _Entry = TypeVar("_Entry")
 
@@ -49,7 +49,7 @@ def properties_of(
     if held.usual is None and not held.properties:
         return None
     usual = None if held.usual is None else (held.usual[0], (held.usual[1],) * 3)
-    reading = _Reading(part, len(held.triangles))
+    reading = _PropertyCollector(part, len(held.triangles))
     for k in range(len(held.triangles)):
         row = held.properties.get(k, usual)
         if row is not None:
@@ -57,7 +57,7 @@ def properties_of(
     return reading.attributes(faces, picture)
 
 
-class _Reading:
+class _PropertyCollector:
     """The properties of the triangles of one object, collected triangle by triangle."""
 
     def __init__(self, part: ModelPart, count: int) -> None:
@@ -147,22 +147,22 @@ def _entry(group: list[_Entry], number: int) -> _Entry:
     return group[number]
 
 
-def kept(said: Attributes) -> Attributes:
+def storable(said: Attributes) -> Attributes:
     """Return the attributes that 3MF can store: materials of faces or else colours, as bytes."""
     said = said.without_empty_material()
     names = said.face.get("material")
     if names is not None and names.dtype.kind == "U" and names.ndim == 1:
-        return _kept_materials(said.with_materials_called(called))
+        return _storable_materials(said.with_materials_called(stored_name))
 
     def keep(kind: Kind, name: str, values: Values) -> Values | None:
         if not is_color(name, values, 2 if kind == "corner" else 1):
             return None
         return opaque(as_bytes(values))
 
-    return Attributes(said.faces, *_kinds(chosen(said, keep)))
+    return Attributes(said.faces, *_kinds(selected_attributes(said, keep)))
 
 
-def _kept_materials(said: Attributes) -> Attributes:
+def _storable_materials(said: Attributes) -> Attributes:
     names = said.face["material"]
     used = [name for name in np.unique(names).tolist() if name]
     given = {name: said.materials.get(name, Material()) for name in used}

@@ -20,8 +20,8 @@ from ...attributes.material import Material
 from ...errors import Finding
 from ...mesh.mesh import Mesh
 from ..blocks import listed
-from ..raw import RawMesh, compacted, empty_set, parts_of, says_empty_set
-from ..storable_attributes import said_of
+from ..raw import RawMesh, compacted, empty_set, parts_of, represents_empty_set
+from ..storable_attributes import attributes_or_none
 from .textures import PackedPicture, Resources, content_types, relations
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
@@ -48,7 +48,7 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the bytes of a 3MF file; every coordinate reads back as the same double."""
-    said, resources = said_of(mesh), Resources(_GROUP)
+    said, resources = attributes_or_none(mesh), Resources(_GROUP)
     for name, one in ({} if said is None else said.materials).items():
         if one.texture is not None:
             resources.picture(name, one)
@@ -93,7 +93,7 @@ def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
             " out."
         )
         found.append(Finding("degenerate", "warning", message, (), count))
-    said = said_of(mesh)
+    said = attributes_or_none(mesh)
     materials = {} if said is None else said.materials
     behind = [one for one in materials.values() if one.texture and one.color != Material().color]
     if behind:
@@ -112,9 +112,9 @@ def _repeats_corner(faces: IndexArray) -> "np.ndarray[tuple[int], np.dtype[np.bo
 
 
 def _model(mesh: Mesh | RawMesh, resources: Resources) -> Iterator[str]:
-    said = said_of(mesh)
+    said = attributes_or_none(mesh)
     yield beginning([] if said is None else [said])
-    if says_empty_set(mesh):
+    if represents_empty_set(mesh):
         yield "<!-- bspcsg: the empty set -->\n"
     yield "<resources>\n"
     count = start = 0
@@ -202,7 +202,7 @@ def _bases(
         return [], np.full(len(names), "", dtype=object)
     group = resources.free()
     lines = [
-        f'<base name={quoteattr(called(name))} displaycolor="{hex_of(material.color)}"/>\n'
+        f'<base name={quoteattr(stored_name(name))} displaycolor="{hex_of(material.color)}"/>\n'
         for name, material in plain.items()
     ]
     told = {name: f' pid="{group}" p1="{k}"' for k, name in enumerate(plain)}
@@ -224,7 +224,7 @@ def _object(
     number: int, name: str, vertices: FloatArray, faces: IndexArray, words: Values | None = None
 ) -> Iterator[str]:
     used, corners = compacted(faces)
-    named = f" name={quoteattr(called(name))}" if name else ""
+    named = f" name={quoteattr(stored_name(name))}" if name else ""
     yield f'<object id="{number}" type="model"{named}><mesh><vertices>\n'
     for point in listed(vertices[used]):
         yield '<vertex x="{!r}" y="{!r}" z="{!r}"/>\n'.format(*point)
@@ -235,7 +235,7 @@ def _object(
     yield "</triangles></mesh></object>\n"
 
 
-def called(name: str) -> str:
+def stored_name(name: str) -> str:
     """Return a name in which U+FFFD replaces the characters that XML forbids."""
     return _FORBIDDEN.sub("\N{REPLACEMENT CHARACTER}", name)
 

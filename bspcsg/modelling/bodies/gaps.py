@@ -8,8 +8,8 @@ import numpy as np
 from ..._types import FloatArray, IndexArray
 from ...errors import LimitError, invalid_parameter
 from ...geometry.hyperplane import exact_number
-from ...mesh.box_tree import BoxTree, Nearness, squared_gaps
-from ...parameters import of_kind
+from ...mesh.box_tree import BoxTree, NearPairSearch, squared_gaps
+from ...parameters import instance_of
 from ...solid.ledger import uncounted
 from ...solid.solid import Solid, surfaces_meet
 from .triangle_distance import least_gaps, nearest_points
@@ -34,7 +34,7 @@ _PAIRS_PER_BATCH = 1 << 16
 @uncounted
 def min_gap(solid: Solid, other: Solid) -> float:
     """Return the least distance between two solids; 0 if they touch, infinity if one is empty."""
-    if solid.is_empty or of_kind(Solid, other, "other").is_empty:
+    if solid.is_empty or instance_of(Solid, other, "other").is_empty:
         return math.inf
     found = _nearest(solid, other)
     return 0.0 if found is None else math.sqrt(found[0])
@@ -43,7 +43,7 @@ def min_gap(solid: Solid, other: Solid) -> float:
 @uncounted
 def closest_points(solid: Solid, other: Solid) -> tuple[FloatArray, FloatArray]:
     """Return the point of each solid that is nearest to the other solid, two (3,) arrays."""
-    if solid.is_empty or of_kind(Solid, other, "other").is_empty:
+    if solid.is_empty or instance_of(Solid, other, "other").is_empty:
         raise invalid_parameter(
             "One of the two solids is empty, so it has no closest point; pass solids that are not"
             " empty."
@@ -69,7 +69,7 @@ def _common_point(common: Solid) -> FloatArray:
 @uncounted
 def intersects(solid: Solid, other: Solid) -> bool:
     """Return True if two solids have a point in common, also if they only touch."""
-    if solid.is_empty or of_kind(Solid, other, "other").is_empty:
+    if solid.is_empty or instance_of(Solid, other, "other").is_empty:
         return False
     return not _apart(solid, other) and (not solid.isdisjoint(other) or surfaces_meet(solid, other))
 
@@ -119,7 +119,7 @@ def _candidates(first: FloatArray, second: FloatArray) -> tuple[IndexArray, Inde
     """
     scale = max(float(np.abs(first).max()), float(np.abs(second).max()))
     trees = BoxTree.over(first), BoxTree.over(second)
-    search = Nearness(*trees, _bounded(_some_gap(first, second), scale))
+    search = NearPairSearch(*trees, _bounded(_some_gap(first, second), scale))
     boxes = [(corners.min(axis=1), corners.max(axis=1)) for corners in (first, second)]
     best, found = np.inf, []
     for leaves in search.leaves():

@@ -15,10 +15,10 @@ from .shading import half_edges, unit
 LongArray: TypeAlias = np.ndarray[Any, np.dtype[np.object_]]
 
 #: An array of truth values.
-Marks: TypeAlias = np.ndarray[Any, np.dtype[np.bool_]]
+Mask: TypeAlias = np.ndarray[Any, np.dtype[np.bool_]]
 
 #: A bound of the rounding error of the dot product of two unit vectors in doubles.
-_DOUBT = 2e-15
+_SIGN_ERROR = 2e-15
 
 #: The number of signs of dot products in one batch. Each takes about 10 bytes, and 100 if doubles
 #: do not decide it.
@@ -108,7 +108,7 @@ class Polyhedron:
         away = (point - self.points[self.faces[:, 0]]).astype(object)
         return bool((_dots(self.normals.each.whole[self.normals.of], away) <= 0).all())
 
-    def tops(self, rises: Marks) -> tuple[IndexArray, IndexArray]:
+    def tops(self, rises: Mask) -> tuple[IndexArray, IndexArray]:
         """Return all pairs of a corner and a direction in which none of the corner's edges rises.
 
         Parameters
@@ -191,12 +191,12 @@ def _without_short_edges(points: IndexArray, faces: IndexArray) -> IndexArray:
     return kept
 
 
-def _borrow_normals(normals: LongArray, faces: IndexArray) -> Marks:
+def _borrow_normals(normals: LongArray, faces: IndexArray) -> Mask:
     """Replace zero normals, in place, by normals of neighbouring faces.
 
     Return a mask, (n,) bool, that is True for each face with a nonzero normal.
     """
-    has_normal: Marks = (normals != 0).any(axis=1)
+    has_normal: Mask = (normals != 0).any(axis=1)
     if has_normal.all():
         return has_normal
     forth, back = half_edges(faces)
@@ -216,34 +216,34 @@ def _directions(vectors: LongArray) -> Directions:
     return Directions(Vectors(whole, unit(whole.astype(np.float64))), np.array(of, np.int64))
 
 
-def rising(first: Vectors, second: Vectors) -> Marks:
+def positive_products(first: Vectors, second: Vectors) -> Mask:
     """Return an (m, n) mask that is True where the dot product of two vectors is positive.
 
     Rows are the `first`, columns the `second` vectors. The second ones are rotated by an
     infinitesimal angle, the same in all calls, so that no dot product is zero.
     """
     products = first.units @ second.units.T
-    signs: Marks = products > 0
-    row, column = np.nonzero(np.abs(products) <= _DOUBT)
+    signs: Mask = products > 0
+    row, column = np.nonzero(np.abs(products) <= _SIGN_ERROR)
     if len(row):
         signs[row, column] = _is_positive(first.whole[row], second.whole[column])
     return signs
 
 
-def rising_in_pairs(first: Vectors, second: Vectors) -> Marks:
+def positive_pair_products(first: Vectors, second: Vectors) -> Mask:
     """Return a mask, (n,) bool, that is True where first[k] and second[k] have a positive product.
 
     The second vectors are rotated by an infinitesimal angle, so that no dot product is zero.
     """
     products = np.einsum("ij,ij->i", first.units, second.units)
-    signs: Marks = products > 0
-    doubtful = np.flatnonzero(np.abs(products) <= _DOUBT)
+    signs: Mask = products > 0
+    doubtful = np.flatnonzero(np.abs(products) <= _SIGN_ERROR)
     if len(doubtful):
         signs[doubtful] = _is_positive(first.whole[doubtful], second.whole[doubtful])
     return signs
 
 
-def _is_positive(first: LongArray, second: LongArray) -> Marks:
+def _is_positive(first: LongArray, second: LongArray) -> Mask:
     """Return where the dot product of first[k] and the slightly rotated second[k] is positive.
 
     The rotation is infinitesimal, and its axis has a large x, a smaller y and a much smaller z. So
@@ -252,7 +252,7 @@ def _is_positive(first: LongArray, second: LongArray) -> Marks:
     sign = _dots(first, second)
     for change in _cross(second, first).T:
         sign = np.where(sign == 0, change, sign)
-    positive: Marks = (sign > 0).astype(bool)
+    positive: Mask = (sign > 0).astype(bool)
     return positive
 
 

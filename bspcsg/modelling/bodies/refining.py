@@ -6,7 +6,7 @@ import numpy as np
 
 from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes
-from ...attributes.transfer import Surface, carried
+from ...attributes.transfer import Surface, inherited_attributes
 from ...errors import LimitError, invalid_parameter
 from ...mesh.mesh import Mesh
 from ...parameters import at_least, positive
@@ -61,7 +61,7 @@ def attributes_on(
     source = np.stack([np.zeros_like(origins), origins], axis=1)
     surface = Surface(vertices, faces, source, np.zeros(len(faces), dtype=bool))
     known = mesh.vertices, mesh.vertices, mesh.faces, np.arange(len(mesh.faces))
-    return carried(surface, [mesh.attributes], lambda _: known)
+    return inherited_attributes(surface, [mesh.attributes], lambda _: known)
 
 
 def divided(vertices: FloatArray, faces: IndexArray, parts: int) -> Finer:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..._types import IndexArray
 from ...errors import LimitError
-from .polyhedra import Marks, Polyhedron, blocks, rising, rising_in_pairs
+from .polyhedra import Mask, Polyhedron, blocks, positive_pair_products, positive_products
 
 #: The largest number of triangles of all swept pieces together. Each takes 24 bytes, and several
 #: times as much while opposite ones cancel: up to 2 GB in all.
@@ -90,7 +90,7 @@ def _tops_over_faces(solid: Polyhedron, tool: Polyhedron) -> IndexArray:
     normals, along = solid.normals.each, tool.along
     found = np.empty(len(normals.units), np.int64)
     for block in blocks(len(found), 2 * len(along.of)):
-        rises = rising(normals.at(block), along.each)[:, along.of]
+        rises = positive_products(normals.at(block), along.each)[:, along.of]
         corner, row = tool.tops(rises.T)
         found[block][row] = corner
     return found[solid.normals.of]
@@ -121,7 +121,7 @@ def _steps_around(
         edge, step = edges[row], steps[column]
         is_forth = after[row, column]
         left, right = (
-            rising_in_pairs(solid.along.at(edge), tool.normals.at(side[step]))
+            positive_pair_products(solid.along.at(edge), tool.normals.at(side[step]))
             for side in tool.beside
         )
         touch = (left != right) & (left == is_forth)
@@ -130,11 +130,13 @@ def _steps_around(
         yield edge[touch], start[touch], end[touch]
 
 
-def _along_tool(solid: Polyhedron, faces: IndexArray, tool: Polyhedron) -> Marks:
+def _along_tool(solid: Polyhedron, faces: IndexArray, tool: Polyhedron) -> Mask:
     """Return an (m, n) mask: whether sharp edge n of the tool rises along the normal of face m."""
     normals, row = np.unique(solid.normals.of[faces], return_inverse=True)
     edges, column = np.unique(tool.along.of[tool.sharp], return_inverse=True)
-    return rising(solid.normals.each.at(normals), tool.along.each.at(edges))[row][:, column]
+    return positive_products(solid.normals.each.at(normals), tool.along.each.at(edges))[row][
+        :, column
+    ]
 
 
 def _facing_corners(solid: Polyhedron, tool: Polyhedron) -> Iterator[tuple[IndexArray, IndexArray]]:
@@ -144,7 +146,7 @@ def _facing_corners(solid: Polyhedron, tool: Polyhedron) -> Iterator[tuple[Index
         is_convex[ends[solid.convex]] = True
     for block in blocks(len(tool.faces), 4 * len(solid.along.of)):
         normals, column = np.unique(tool.normals.of[block], return_inverse=True)
-        rises = rising(solid.along.each, tool.normals.each.at(normals))[solid.along.of]
+        rises = positive_products(solid.along.each, tool.normals.each.at(normals))[solid.along.of]
         corner, face = solid.tops(rises[:, column])
         yield corner[is_convex[corner]], block.start + face[is_convex[corner]]
 

@@ -13,7 +13,7 @@ import numpy as np
 from ..._types import FloatArray, IndexArray
 from ...geometry.transform import whole_steps
 from ...solid.solid import Solid
-from .plane_faces import Skeleton
+from .plane_faces import FaceGraph
 from .rings import solid_of, walls
 
 #: Consecutive edges, as pairs of an edge number and the vertex where the edge ends.
@@ -27,7 +27,7 @@ _FLATTEST = 1e-3
 _BEYOND = 20
 
 
-def closed_chains(skeleton: Skeleton, chosen: Set[int]) -> list[Chain]:
+def closed_chains(graph: FaceGraph, chosen: Set[int]) -> list[Chain]:
     """Return closed loops of chosen edges, at whose corners exactly three edges meet.
 
     In a loop, all edges are convex or all are concave.
@@ -35,29 +35,29 @@ def closed_chains(skeleton: Skeleton, chosen: Set[int]) -> list[Chain]:
     chains, seen = [], set[int]()
     for first in sorted(chosen):
         if first not in seen:
-            chain, is_closed = _walked(skeleton, chosen, first)
+            chain, is_closed = _walked(graph, chosen, first)
             seen.update(edge for edge, _ in chain)
             if is_closed and len(chain) > 2:
                 chains.append(chain)
     return chains
 
 
-def _walked(skeleton: Skeleton, chosen: Set[int], first: int) -> tuple[Chain, bool]:
+def _walked(graph: FaceGraph, chosen: Set[int], first: int) -> tuple[Chain, bool]:
     """Return the chain of chosen edges that begins with `first`, and whether it is closed.
 
     It ends where no chosen edge or more than one follows, or where convex and concave edges meet.
     """
-    edge, end = first, int(skeleton.ends[first, 1])
+    edge, end = first, int(graph.ends[first, 1])
     chain = [(edge, end)]
     while True:
-        others = [other for other in skeleton.edges_at(end) if other != edge]
+        others = [other for other in graph.edges_at(end) if other != edge]
         after = [other for other in others if other in chosen]
         if len(others) != 2 or len(after) != 1:
             return chain, False
-        if skeleton.is_convex[after[0]] != skeleton.is_convex[edge]:
+        if graph.is_convex[after[0]] != graph.is_convex[edge]:
             return chain, False
         edge = after[0]
-        end = int(skeleton.ends[edge].sum()) - end
+        end = int(graph.ends[edge].sum()) - end
         if edge == first:
             return chain, True
         chain.append((edge, end))
@@ -69,7 +69,7 @@ class ChainTools:
 
     Parameters
     ----------
-    skeleton : Skeleton
+    graph : FaceGraph
     section : function
         Returns the section of an edge's blend from the left to the right face, (k, 3), relative to
         a point of the edge.
@@ -79,7 +79,7 @@ class ChainTools:
         The pitch of the result.
     """
 
-    skeleton: Skeleton
+    graph: FaceGraph
     section: Callable[[int], FloatArray]
     near: float
     pitch: int
@@ -102,8 +102,8 @@ class ChainTools:
 
         None means that the two sections differ, or that an edge is nearly parallel to the plane.
         """
-        (third,) = set(self.skeleton.edges_at(vertex)) - {edge, after}
-        axis = self.skeleton.directions[third]
+        (third,) = set(self.graph.edges_at(vertex)) - {edge, after}
+        axis = self.graph.directions[third]
         along = np.array([self._along(edge, vertex, -1), self._along(after, vertex, 1)])
         across = along - np.outer(along @ axis, axis)
         sizes = np.linalg.norm(across, axis=1)
@@ -118,17 +118,17 @@ class ChainTools:
         for one, direction, lean in zip((edge, after), along, leans, strict=True):
             corners = self.section(one)
             # If an edge runs against the chain, exchange its left and right.
-            if direction @ self.skeleton.directions[one] < 0:
+            if direction @ self.graph.directions[one] < 0:
                 corners = corners[::-1]
             rings.append(corners - np.outer(corners @ normal / lean, direction))
         if np.abs(rings[0] - rings[1]).max() > self.near:
             return None
-        return np.asarray(self.skeleton.vertices[vertex] + rings[0])
+        return np.asarray(self.graph.vertices[vertex] + rings[0])
 
     def _along(self, edge: int, vertex: int, sign: int) -> FloatArray:
         """Return an edge's unit vector, away from a vertex if sign is 1, towards it if -1."""
-        is_start = self.skeleton.ends[edge, 0] == vertex
-        direction: FloatArray = self.skeleton.directions[edge]
+        is_start = self.graph.ends[edge, 0] == vertex
+        direction: FloatArray = self.graph.directions[edge]
         return direction * (sign if is_start else -sign)
 
     def _whole_ring(
@@ -150,13 +150,13 @@ class ChainTools:
                 return None
             ends.append((corner + unit * float(steps.max() / rises.min(initial=1)), normals, steps))
         normals, steps = (np.concatenate([end[k] for end in ends]) for k in (1, 2))
-        tip = self.skeleton.vertices[vertex] + np.linalg.lstsq(normals, steps, rcond=None)[0]
+        tip = self.graph.vertices[vertex] + np.linalg.lstsq(normals, steps, rcond=None)[0]
         return np.array([tip, ends[0][0], *ring[1:-1], ends[1][0]])
 
     def _sides(self, edge: int, vertex: int, sign: int) -> IndexArray:
         """Return the faces on the left and the right of an edge, in the chain's direction."""
-        sides: IndexArray = self.skeleton.sides[edge]
-        is_forth = self._along(edge, vertex, sign) @ self.skeleton.directions[edge] > 0
+        sides: IndexArray = self.graph.sides[edge]
+        is_forth = self._along(edge, vertex, sign) @ self.graph.directions[edge] > 0
         return sides if is_forth else sides[::-1]
 
     def _outward(
@@ -166,20 +166,20 @@ class ChainTools:
 
         The distance is 0 if `corner` is exactly on both faces.
         """
-        normals = self.skeleton.normals[faces]
+        normals = self.graph.normals[faces]
         if faces[0] == faces[1]:
             is_exact = self._is_level(faces[0], vertex)
         else:
-            (third,) = set(self.skeleton.edges_at(vertex)) - {edge, after}
+            (third,) = set(self.graph.edges_at(vertex)) - {edge, after}
             is_exact = self._is_on(third, corner)
         beyond = 0.0 if is_exact else _BEYOND * 10.0**self.pitch
-        return normals * (1 if self.skeleton.is_convex[edge] else -1), np.full(2, beyond)
+        return normals * (1 if self.graph.is_convex[edge] else -1), np.full(2, beyond)
 
     def _is_level(self, face: int, vertex: int) -> bool:
         """Return True if a face is perpendicular to an axis and lies at a lattice coordinate."""
-        axis = int(np.abs(self.skeleton.normals[face]).argmax())
-        height = float(self.skeleton.vertices[vertex, axis])
-        is_square = bool(np.abs(self.skeleton.normals[face, axis]) == 1)
+        axis = int(np.abs(self.graph.normals[face]).argmax())
+        height = float(self.graph.vertices[vertex, axis])
+        is_square = bool(np.abs(self.graph.normals[face, axis]) == 1)
         return is_square and whole_steps(height, self.pitch) is not None
 
     def _is_on(self, edge: int, corner: FloatArray) -> bool:
@@ -187,7 +187,7 @@ class ChainTools:
 
         Both ends of the edge must be lattice points.
         """
-        ends = self.skeleton.vertices[self.skeleton.ends[edge]]
+        ends = self.graph.vertices[self.graph.ends[edge]]
         snapped = np.round(corner, -self.pitch) if self.pitch < 0 else corner
         rows = [*ends.tolist(), snapped.tolist()]
         steps = [[whole_steps(value, self.pitch) for value in row] for row in rows]

@@ -7,7 +7,7 @@ import numpy as np
 from ..._types import FloatArray, IndexArray
 from ...bsp import Region
 from ...errors import InvalidParameterError, invalid_parameter
-from .plane_faces import Skeleton
+from .plane_faces import FaceGraph
 
 #: Edges count as parallel if the sine of their angle is below this.
 _PARALLEL = 1e-7
@@ -16,12 +16,12 @@ _PARALLEL = 1e-7
 _SAME = 1e-6
 
 
-def refuse_no_room(skeleton: Skeleton, widths: FloatArray, apart: Iterable[int] = ()) -> None:
+def refuse_no_room(graph: FaceGraph, widths: FloatArray, apart: Iterable[int] = ()) -> None:
     """Raise an error if the strips that blends remove along edges overlap on a face.
 
     Parameters
     ----------
-    skeleton : Skeleton
+    graph : FaceGraph
     widths : (e,) float64
         The width of the strip along each edge, on both of its faces; 0 for no strip.
     apart : iterable of int
@@ -32,37 +32,37 @@ def refuse_no_room(skeleton: Skeleton, widths: FloatArray, apart: Iterable[int] 
     InvalidParameterError
         The message names a point, `where` the triangles of the face.
     """
-    for face in np.setdiff1d(skeleton.sides[widths > 0], list(apart)).tolist():
-        _refuse_no_room_on(skeleton, face, widths)
+    for face in np.setdiff1d(graph.sides[widths > 0], list(apart)).tolist():
+        _refuse_no_room_on(graph, face, widths)
 
 
-def has_room(skeleton: Skeleton, face: int, widths: FloatArray) -> bool:
+def has_room(graph: FaceGraph, face: int, widths: FloatArray) -> bool:
     """Return True if the strips along the edges of a face fit on it without overlap."""
     try:
-        _refuse_no_room_on(skeleton, face, widths)
+        _refuse_no_room_on(graph, face, widths)
     except InvalidParameterError:
         return False
     return True
 
 
-def _refuse_no_room_on(skeleton: Skeleton, face: int, widths: FloatArray) -> None:
-    loops, outer = _loops(skeleton, face), face_loops(skeleton, face)
-    inner = [_inset(skeleton, face, loop, widths) for loop in loops]
+def _refuse_no_room_on(graph: FaceGraph, face: int, widths: FloatArray) -> None:
+    loops, outer = _loops(graph, face), face_loops(graph, face)
+    inner = [_inset(graph, face, loop, widths) for loop in loops]
     for loop, corners in zip(loops, inner, strict=True):
-        _refuse_reversed(skeleton, face, loop, corners)
-    _refuse_overlapping(skeleton, face, outer, inner, widths)
+        _refuse_reversed(graph, face, loop, corners)
+    _refuse_overlapping(graph, face, outer, inner, widths)
 
 
-def face_loops(skeleton: Skeleton, face: int) -> list[FloatArray]:
+def face_loops(graph: FaceGraph, face: int) -> list[FloatArray]:
     """Return the corners of each boundary loop of a face, (n, 3); the face is on the left."""
-    loops = _loops(skeleton, face)
-    return [skeleton.vertices[_ends(skeleton, face, loop)[:, 0]] for loop in loops]
+    loops = _loops(graph, face)
+    return [graph.vertices[_ends(graph, face, loop)[:, 0]] for loop in loops]
 
 
-def no_room(skeleton: Skeleton, place: FloatArray, faces: Iterable[int]) -> InvalidParameterError:
+def no_room(graph: FaceGraph, place: FloatArray, faces: Iterable[int]) -> InvalidParameterError:
     """Return the error that says that faces leave no room at a point."""
     point = ", ".join(f"{value:.6g}" for value in place)
-    triangles = np.flatnonzero(np.isin(skeleton.face, list(faces)))
+    triangles = np.flatnonzero(np.isin(graph.face, list(faces)))
     message = (
         f"The faces at ({point}) are too small for a blend or offset of this size. Choose a"
         " smaller size, or fewer edges."
@@ -70,11 +70,11 @@ def no_room(skeleton: Skeleton, place: FloatArray, faces: Iterable[int]) -> Inva
     return invalid_parameter(message, triangles[:8].tolist())
 
 
-def _loops(skeleton: Skeleton, face: int) -> list[IndexArray]:
+def _loops(graph: FaceGraph, face: int) -> list[IndexArray]:
     """Return the boundary loops of a face, as edge numbers; the face is on the left."""
-    own = np.flatnonzero((skeleton.sides == face).any(axis=1)).tolist()
-    begins = {edge: skeleton.ends[edge, int(skeleton.sides[edge, 0] != face)] for edge in own}
-    stops = {edge: skeleton.ends[edge, int(skeleton.sides[edge, 0] == face)] for edge in own}
+    own = np.flatnonzero((graph.sides == face).any(axis=1)).tolist()
+    begins = {edge: graph.ends[edge, int(graph.sides[edge, 0] != face)] for edge in own}
+    stops = {edge: graph.ends[edge, int(graph.sides[edge, 0] == face)] for edge in own}
     leaving: dict[int, list[int]] = {}
     for edge in own:
         leaving.setdefault(int(begins[edge]), []).append(edge)
@@ -92,10 +92,10 @@ def _loops(skeleton: Skeleton, face: int) -> list[IndexArray]:
     return loops
 
 
-def _inset(skeleton: Skeleton, face: int, loop: IndexArray, widths: FloatArray) -> FloatArray:
+def _inset(graph: FaceGraph, face: int, loop: IndexArray, widths: FloatArray) -> FloatArray:
     """Return the start and end of each edge of a loop, moved inwards by its width, (n, 2, 3)."""
-    inward = _inward(skeleton, face, loop)
-    begins = skeleton.vertices[_ends(skeleton, face, loop)[:, 0]]
+    inward = _inward(graph, face, loop)
+    begins = graph.vertices[_ends(graph, face, loop)[:, 0]]
     corners = np.empty((len(loop), 2, 3))
     for k in range(len(loop)):
         one, other = inward[k - 1], inward[k]
@@ -110,40 +110,40 @@ def _inset(skeleton: Skeleton, face: int, loop: IndexArray, widths: FloatArray) 
     return corners
 
 
-def _inward(skeleton: Skeleton, face: int, loop: IndexArray) -> FloatArray:
-    side = (skeleton.sides[loop, 0] != face).astype(np.int64)
-    return np.asarray(skeleton.inward[loop, side])
+def _inward(graph: FaceGraph, face: int, loop: IndexArray) -> FloatArray:
+    side = (graph.sides[loop, 0] != face).astype(np.int64)
+    return np.asarray(graph.inward[loop, side])
 
 
-def _ends(skeleton: Skeleton, face: int, loop: IndexArray) -> IndexArray:
-    ends = skeleton.ends[loop]
-    is_left = skeleton.sides[loop, 0] == face
+def _ends(graph: FaceGraph, face: int, loop: IndexArray) -> IndexArray:
+    ends = graph.ends[loop]
+    is_left = graph.sides[loop, 0] == face
     return np.where(is_left[:, None], ends, ends[:, ::-1])
 
 
-def _refuse_reversed(skeleton: Skeleton, face: int, loop: IndexArray, corners: FloatArray) -> None:
-    ends = skeleton.vertices[_ends(skeleton, face, loop)]
+def _refuse_reversed(graph: FaceGraph, face: int, loop: IndexArray, corners: FloatArray) -> None:
+    ends = graph.vertices[_ends(graph, face, loop)]
     along = ends[:, 1] - ends[:, 0]
     left = np.einsum("ij,ij->i", corners[:, 1] - corners[:, 0], along)
     gone = np.flatnonzero(left < -_PARALLEL * np.einsum("ij,ij->i", along, along))
     if len(gone):
-        raise no_room(skeleton, ends[gone[0]].mean(axis=0), [face])
+        raise no_room(graph, ends[gone[0]].mean(axis=0), [face])
 
 
 def _refuse_overlapping(
-    skeleton: Skeleton,
+    graph: FaceGraph,
     face: int,
     outer: Sequence[FloatArray],
     inner: Sequence[FloatArray],
     widths: FloatArray,
 ) -> None:
     """Raise an error if the boundary of a face crosses itself after the strips are removed."""
-    whole, left = (_flat(skeleton.normals[face], loops) for loops in (outer, inner))
+    whole, left = (_flat(graph.normals[face], loops) for loops in (outer, inner))
     signed = sum(map(_area, left))
     if abs(Region(left).area - signed) > _SAME * sum(abs(_area(points)) for points in whole):
-        edges = np.flatnonzero((skeleton.sides == face).any(axis=1) & (widths > 0))
+        edges = np.flatnonzero((graph.sides == face).any(axis=1) & (widths > 0))
         widest = edges[widths[edges].argmax()]
-        raise no_room(skeleton, skeleton.vertices[skeleton.ends[widest]].mean(axis=0), [face])
+        raise no_room(graph, graph.vertices[graph.ends[widest]].mean(axis=0), [face])
 
 
 def _flat(normal: FloatArray, loops: Sequence[FloatArray]) -> list[FloatArray]:

@@ -13,8 +13,8 @@ from ...errors import FormatError, format_errors, invalid_parameter
 from ...formats.source import limited_content
 from ...geometry.arrays import doubles
 from ...geometry.polygon import directed_edges
-from ...mesh.interop import optional
-from ...parameters import number, pair, positive, refuse_many_corners, truth_value
+from ...mesh.interop import import_optional
+from ...parameters import number, positive, refuse_many_corners, truth_value, two_values
 from ...shapes.sweep import strip
 from ...solid.ledger import counted
 from ...solid.solid import Solid
@@ -87,7 +87,7 @@ def surface(
     else:
         read = heights_of(_table(heights))
     refuse_many_corners(2 * read.table.size, "This surface")
-    width, depth = (positive(entry, "cell") for entry in pair(cell, "cell"))
+    width, depth = (positive(entry, "cell") for entry in two_values(cell, "cell"))
     if floor is not None:
         base, least = number(floor, "floor"), float(read.table.min())
         if base >= least:
@@ -152,7 +152,7 @@ def read_picture(path: Path) -> Heights:
     MissingPartError
         If Pillow is not installed.
     """
-    pillow = optional("PIL.Image", "pillow")
+    pillow = import_optional("PIL.Image", "pillow")
     with format_errors(str(path), "PNG"), warnings.catch_warnings():
         # Pictures that are too large are refused below.
         warnings.simplefilter("ignore", pillow.DecompressionBombWarning)

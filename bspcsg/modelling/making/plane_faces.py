@@ -17,7 +17,7 @@ _BENT = 0.01
 
 
 @dataclass(frozen=True, eq=False)
-class Skeleton:
+class FaceGraph:
     """The plane faces of a mesh, each a group of coplanar triangles, and the edges between faces.
 
     Parameters
@@ -106,12 +106,12 @@ class Skeleton:
         return self._at[1][vertex]
 
 
-def skeleton_of(mesh: Mesh) -> Skeleton:
+def face_graph_of(mesh: Mesh) -> FaceGraph:
     """Return the plane faces of a closed mesh, and the edges between them."""
     vertices, triangles = mesh.vertices, mesh.faces
     if not len(triangles):
         none = np.zeros((0, 2), np.int64)
-        return Skeleton(vertices, triangles, none[:, 0], np.zeros((0, 3)), none, none)
+        return FaceGraph(vertices, triangles, none[:, 0], np.zeros((0, 3)), none, none)
     segments, owners = _segments(triangles, len(vertices))
     areas = _vector_areas(vertices, triangles)
     away = _away(vertices, triangles, areas, segments, owners)
@@ -124,7 +124,7 @@ def skeleton_of(mesh: Mesh) -> Skeleton:
     sides = face[owners]
     sharp = sides[:, 0] != sides[:, 1]
     ends, sides = _runs(vertices, *_ascending(segments[sharp], sides[sharp]))
-    return Skeleton(vertices, triangles, face, normals, ends, sides)
+    return FaceGraph(vertices, triangles, face, normals, ends, sides)
 
 
 def flatness(vertices: FloatArray) -> float:

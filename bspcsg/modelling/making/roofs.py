@@ -11,7 +11,7 @@ from ...errors import LimitError
 from ...geometry.polygon import signed_area, triangulate
 from ...operations import setops
 from ...solid.solid import Solid
-from .shrinking_outlines import Front, Meeting, Piece, Walls, meeting
+from .shrinking_outlines import Contacts, ShrinkingOutlines, SidePart, Walls, contacts_at
 
 #: The largest number of corners of one connected part of a figure. The time grows with its cube.
 _MAX_CORNERS = 1000
@@ -49,7 +49,7 @@ def roof(figure: Region) -> Solid:
 def is_convex(figure: Region) -> bool:
     """Return True if a figure has no reflex corner, and hence no hole."""
     for loop in figure.to_polygons():
-        front = _first_front([loop])
+        front = _first_outlines([loop])
         if front.walls.are_reflex(front.before, front.after).any():
             return False
     return True
@@ -57,7 +57,7 @@ def is_convex(figure: Region) -> bool:
 
 def corner_speeds(figure: Region) -> FloatArray:
     """Return the displacement of each corner if all sides move inwards by 1, (n, 2)."""
-    return np.concatenate([_first_front([loop]).speeds() for loop in figure.to_polygons()])
+    return np.concatenate([_first_outlines([loop]).speeds() for loop in figure.to_polygons()])
 
 
 def _roof_of_part(loops: Sequence[FloatArray]) -> Solid:
@@ -68,12 +68,12 @@ def _roof_of_part(loops: Sequence[FloatArray]) -> Solid:
             " simplify its outline."
         )
         raise LimitError(message, "too_large")
-    building = _Building(loops)
+    building = _RoofBuilder(loops)
     building.raise_sides()
     return building.solid(sum(map(signed_area, loops)))
 
 
-def _first_front(loops: Sequence[FloatArray]) -> Front:
+def _first_outlines(loops: Sequence[FloatArray]) -> ShrinkingOutlines:
     points = np.concatenate(loops)
     sides = np.concatenate([np.roll(loop, -1, axis=0) - loop for loop in loops])
     directions = sides / np.linalg.norm(sides, axis=1)[:, None]
@@ -83,20 +83,20 @@ def _first_front(loops: Sequence[FloatArray]) -> Front:
     before = np.concatenate([np.roll(one, 1) for one in numbers])
     following = np.concatenate([np.roll(one, -1) for one in numbers])
     own = np.arange(len(points))
-    return Front(own, points, np.zeros(len(points)), before, own, following, walls)
+    return ShrinkingOutlines(own, points, np.zeros(len(points)), before, own, following, walls)
 
 
-class _Building:
+class _RoofBuilder:
     """A roof under construction: its nodes (points), and the edges of each roof side."""
 
     def __init__(self, loops: Sequence[FloatArray]) -> None:
-        self._front = _first_front(loops)
+        self._front = _first_outlines(loops)
         self._points = self._front.place
         self._walls = self._front.walls
         self._nearness = _NEAR * float(np.ptp(self._points, axis=0).max())
         self._nodes: list[tuple[float, float, float]] = []
         self._bounds: list[list[tuple[int, int]]] = [[] for _ in self._points]
-        self._base: list[Piece] = []
+        self._base: list[SidePart] = []
 
     def raise_sides(self) -> None:
         """Shrink the outline until it vanishes, and record the edges of the roof on the way.
@@ -116,7 +116,7 @@ class _Building:
 
     def _change(self, now: float) -> None:
         """Reconnect the shrinking outline where corners and sides meet at a time."""
-        met = meeting(self._front, now, self._nearness)
+        met = contacts_at(self._front, now, self._nearness)
         if not met.is_clear:
             raise _unclear()
         nodes = self._nodes_of(met)
@@ -129,7 +129,7 @@ class _Building:
             self._bounds[other].append((nodes[a], nodes[b]))
         self._front = self._next_front(met, nodes)
 
-    def _nodes_of(self, met: Meeting) -> dict[int, int]:
+    def _nodes_of(self, met: Contacts) -> dict[int, int]:
         """Make a roof node at each point where the outline changes, and record the edges to it.
 
         Return the node number for each such spot of the meeting.
@@ -153,7 +153,7 @@ class _Building:
             self._bounds[ahead].append((low, high))
             self._bounds[behind].append((high, low))
 
-    def _next_front(self, met: Meeting, nodes: dict[int, int]) -> Front:
+    def _next_front(self, met: Contacts, nodes: dict[int, int]) -> ShrinkingOutlines:
         """Return the shrinking outline after a change: unchanged corners, and new ones at nodes."""
         rows: list[tuple[int, int, int, int]] = []
         origins: list[tuple[float, float, float]] = []
@@ -169,7 +169,7 @@ class _Building:
         origin = np.array(origins, dtype=np.float64).reshape(-1, 3)
         following = np.array([begun[one] for one in piece.tolist()], dtype=np.int64)
         where, since = origin[:, :2], origin[:, 2]
-        return Front(node_of, where, since, before, after, following, self._walls)
+        return ShrinkingOutlines(node_of, where, since, before, after, following, self._walls)
 
     def solid(self, area: float) -> Solid:
         """Return the finished roof over a floor of the given area.

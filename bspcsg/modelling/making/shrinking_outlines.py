@@ -46,7 +46,7 @@ class Walls:
 
 
 @dataclass(frozen=True, eq=False)
-class Front:
+class ShrinkingOutlines:
     """The corners of a front, linked along their outlines.
 
     Parameters
@@ -145,11 +145,11 @@ class Front:
 
 #: A part of a side between two consecutive spots: the start spot, the end spot, and the wall.
 #: A spot is a point where corners have met.
-Piece: TypeAlias = tuple[int, int, int]
+SidePart: TypeAlias = tuple[int, int, int]
 
 
 @dataclass(frozen=True, eq=False)
-class Meeting:
+class Contacts:
     """The contacts of a front's corners and sides at one time.
 
     A spot is a point at which corners have met; also a single corner has a spot.
@@ -161,9 +161,9 @@ class Meeting:
         Positions of the corners of the front.
     corners : list of list of int
         The corners at each spot.
-    pieces : list of Piece
+    pieces : list of SidePart
         The parts of sides that continue to move; sides are divided at corners on them.
-    ridges : list of (Piece, Piece)
+    ridges : list of (SidePart, SidePart)
         Pairs of pieces that have met over their whole length.
     pairs : list of list of (int, int)
         At each spot, the piece that ends and the piece that follows it, as numbers in `pieces`.
@@ -172,8 +172,8 @@ class Meeting:
     time: float
     places: FloatArray
     corners: list[list[int]]
-    pieces: list[Piece]
-    ridges: list[tuple[Piece, Piece]]
+    pieces: list[SidePart]
+    ridges: list[tuple[SidePart, SidePart]]
     pairs: list[list[tuple[int, int]]]
 
     @property
@@ -186,28 +186,28 @@ class Meeting:
         ending, beginning = pair
         return self.pieces[ending][2], self.pieces[beginning][2]
 
-    def is_calm(self, spot: int, front: Front) -> bool:
+    def is_calm(self, spot: int, front: ShrinkingOutlines) -> bool:
         """Return True if a spot has a single corner, whose walls stay the same."""
         [corner, *others] = self.corners[spot]
         walls = int(front.before[corner]), int(front.after[corner])
         return not others and [walls] == [self.walls_of(pair) for pair in self.pairs[spot]]
 
 
-def meeting(front: Front, time: float, nearness: float) -> Meeting:
+def contacts_at(front: ShrinkingOutlines, time: float, nearness: float) -> Contacts:
     """Return the contacts of a front's corners and sides at a time.
 
     Distances up to `nearness` count as contact.
     """
     places = front.at(time)
     ended = front.vanished(places, nearness)
-    spots = _met(places, np.column_stack([ended, front.following[ended]]), nearness)
+    spots = _contact_groups(places, np.column_stack([ended, front.following[ended]]), nearness)
     corners: list[list[int]] = [[] for _ in range(int(spots.max(initial=-1)) + 1)]
     for corner, spot in enumerate(spots.tolist()):
         corners[spot].append(corner)
-    pieces, ridges = _without_ridges(_pieces_of(front, places, spots, nearness))
+    pieces, ridges = _without_ridges(_side_parts(front, places, spots, nearness))
     pairs = _joined(pieces, front.walls)
     following = [pairs.get(spot, []) for spot in range(len(corners))]
-    return Meeting(time, places, corners, pieces, ridges, following)
+    return Contacts(time, places, corners, pieces, ridges, following)
 
 
 def _products(one: FloatArray, other: FloatArray) -> FloatArray:
@@ -218,7 +218,7 @@ def _products(one: FloatArray, other: FloatArray) -> FloatArray:
     return np.asarray(one[:, :1] * other[:, 0] + one[:, 1:] * other[:, 1])
 
 
-def _met(places: FloatArray, pairs: IndexArray, nearness: float) -> IndexArray:
+def _contact_groups(places: FloatArray, pairs: IndexArray, nearness: float) -> IndexArray:
     """Return a group number for each position, equal for positions near each other or paired.
 
     The relation is transitive: two positions that are both near a third are in one group.
@@ -247,9 +247,9 @@ def _near_pairs(places: FloatArray, nearness: float) -> Iterator[tuple[int, int]
             yield int(order[one]), int(order[one + step])
 
 
-def _pieces_of(
-    front: Front, places: FloatArray, numbers: IndexArray, nearness: float
-) -> list[Piece]:
+def _side_parts(
+    front: ShrinkingOutlines, places: FloatArray, numbers: IndexArray, nearness: float
+) -> list[SidePart]:
     """Return the sides of a front, divided at corners in their interior.
 
     `numbers` are the spots of the corners.
@@ -266,9 +266,11 @@ def _pieces_of(
     return pieces
 
 
-def _without_ridges(pieces: Sequence[Piece]) -> tuple[list[Piece], list[tuple[Piece, Piece]]]:
+def _without_ridges(
+    pieces: Sequence[SidePart],
+) -> tuple[list[SidePart], list[tuple[SidePart, SidePart]]]:
     """Return the pieces that continue to move, and the pairs of opposite pieces that have met."""
-    left: dict[tuple[int, int], list[Piece]] = defaultdict(list)
+    left: dict[tuple[int, int], list[SidePart]] = defaultdict(list)
     ridges = []
     for piece in pieces:
         start, end, _ = piece
@@ -279,7 +281,7 @@ def _without_ridges(pieces: Sequence[Piece]) -> tuple[list[Piece], list[tuple[Pi
     return [piece for some in left.values() for piece in some], ridges
 
 
-def _joined(pieces: Sequence[Piece], walls: Walls) -> dict[int, list[tuple[int, int]]]:
+def _joined(pieces: Sequence[SidePart], walls: Walls) -> dict[int, list[tuple[int, int]]]:
     """Return, for each spot, pairs of a piece that ends and a piece that begins there.
 
     Pieces are given by their numbers. Between the two pieces of a pair is a sector of the inside,

@@ -11,7 +11,7 @@ from ...solid.solid import Solid
 from .roofs import corner_speeds, roof
 
 
-def leaning(contours: Sequence[FloatArray], height: float, inset: float) -> Solid:
+def extrude_slanted(contours: Sequence[FloatArray], height: float, inset: float) -> Solid:
     """Return the extrusion of contours with slanted walls.
 
     If walls slant inwards, it is the roof over the figure, as steep as the walls, cut off at the

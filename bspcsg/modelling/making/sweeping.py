@@ -16,7 +16,7 @@ from ...parameters import (
     not_negative,
     number,
     positive,
-    radius,
+    radius_or_half_diameter,
     refuse_many_corners,
     sides_around,
 )
@@ -24,7 +24,7 @@ from ...shapes.sweep import unit_circle
 from ...solid.ledger import counted
 from ...solid.solid import Solid
 from .rings import solid_of, walls
-from .spine import Along, Frame, Spine, divided, path_points, slipped, spine_of
+from .spine import Along, Frame, Spine, divided, frame_rotation, path_points, spine_of
 
 #: Corners of a rotated profile equal corners of the original profile if they differ by at most this
 #: share of its extent.
@@ -105,7 +105,7 @@ def sweep(
     turns, sizes = -_along(twist, 0.0, spine, "twist"), _along(scale, 1.0, spine, "scale")
     if sizes.min() < 0:
         raise invalid_parameter(f"scale must be at least 0, not {sizes.min():g}.")
-    slip = math.degrees(slipped(spine))
+    slip = math.degrees(frame_rotation(spine))
     rings = [
         spine.ring(k, _placed(corners, turns[k] - slip * share, sizes[k]))
         for k, share in enumerate(spine.shares)
@@ -156,8 +156,8 @@ def pipe(
     >>> csg.pipe([(0, 0, 0), (0, 0, 5)], 2, inner=1, segments=4).volume
     30.0
     """
-    outer = positive(radius(r, d, "A pipe"), "r")
-    bore = not_negative(radius(inner, inner_d, "A bore", default=0.0), "inner")
+    outer = positive(radius_or_half_diameter(r, d, "A pipe"), "r")
+    bore = not_negative(radius_or_half_diameter(inner, inner_d, "A bore", default=0.0), "inner")
     if bore >= outer:
         raise invalid_parameter(
             f"the inner radius of a pipe must be smaller than its outer radius {outer:g}, but is"

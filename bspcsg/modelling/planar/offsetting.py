@@ -11,7 +11,7 @@ import pyclipper
 from ..._types import FloatArray, Scalar
 from ...bsp import Region
 from ...errors import InvalidMeshError, LimitError, invalid_parameter
-from ...parameters import SEGMENTS, number, refuse_many_corners, sides_around, word
+from ...parameters import SEGMENTS, number, one_of, refuse_many_corners, sides_around
 
 #: The shape of an offset outline around a corner from which it moves away.
 Join: TypeAlias = Literal["round", "miter", "square", "bevel"]
@@ -53,7 +53,7 @@ def offset_region(
     miter_limit: Scalar = _MITER_LIMIT,
 ) -> Region:
     """Return a region with its outline moved outwards by `delta`, or inwards if it is negative."""
-    word(get_args(Join), join, "join")
+    one_of(get_args(Join), join, "join")
     distance, limit = number(delta, "delta"), number(miter_limit, "miter_limit")
     sides = sides_around(3, segments, "segments")
     if limit < 1:

@@ -8,11 +8,11 @@ import numpy as np
 from ..._types import FloatArray, IndexArray
 from ...assembly.object_diagnosis import Examination
 from ...formats.raw import RawMesh, compacted
-from ...repair.defective_elements import Marks, marks_of
+from ...repair.defective_elements import DefectiveElements, defective_elements_of
 from ...repair.diagnosis import Diagnosis
 from .landmark import Landmark
 from .layer import RESULT, Layer
-from .layer_making import layers_of_file, told_apart
+from .layer_making import layers_of_file, with_distinct_colours
 from .paint import THICKNESS, Scale
 from .thickness import thickness
 
@@ -25,7 +25,7 @@ _MAX_LANDMARKS_PER_KIND = 30
 _BEHIND = 0.45
 
 
-def marked(
+def layers_of_defects(
     raw: RawMesh, found: Diagnosis, thin: float | None = None
 ) -> tuple[list[Layer], list[Landmark]]:
     """Return layers of a mesh and of the defects found in it, and landmarks for the defects.
@@ -38,7 +38,7 @@ def marked(
     thin : float, optional
         Walls thinner than this, in model units, are marked.
     """
-    marks = marks_of(raw)
+    marks = defective_elements_of(raw)
     layers = list(_marked(marks))
     landmarks = [*_holes(marks), *_crossings(marks)]
     walls = thickness(marks.vertices, marks.faces) if found.closed else None
@@ -54,9 +54,9 @@ def marked(
     return [mesh, *layers], landmarks
 
 
-def assembled(whole: Examination) -> tuple[list[Layer], list[Landmark]]:
+def layers_of_objects(whole: Examination) -> tuple[list[Layer], list[Landmark]]:
     """Return a layer for each object of a file, and a landmark where two objects overlap."""
-    layers = told_apart(layers_of_file(whole.mesh, whole.mesh.name))
+    layers = with_distinct_colours(layers_of_file(whole.mesh, whole.mesh.name))
     places = [
         Landmark(f"clash: {one.first}, {one.second}", one.place, 2 * one.volume ** (1 / 3))
         for one in whole.clashes[:_MAX_LANDMARKS_PER_KIND]
@@ -64,7 +64,7 @@ def assembled(whole: Examination) -> tuple[list[Layer], list[Landmark]]:
     return layers, places
 
 
-def _marked(marks: Marks) -> Iterator[Layer]:
+def _marked(marks: DefectiveElements) -> Iterator[Layer]:
     kinds = (
         ("open edges", marks.open, _RED),
         ("turned edges", marks.turned, _PINK),
@@ -87,14 +87,14 @@ def _marked(marks: Marks) -> Iterator[Layer]:
             yield _outlined(marks, faces, name, colour)
 
 
-def _outlined(marks: Marks, faces: IndexArray, name: str, colour: str) -> Layer:
+def _outlined(marks: DefectiveElements, faces: IndexArray, name: str, colour: str) -> Layer:
     """Return a layer of the given faces and of their edges as lines, since faces may be flat."""
     used, renumbered = compacted(marks.faces[faces])
     lines = np.stack([renumbered, np.roll(renumbered, -1, axis=1)], axis=-1).reshape(-1, 2)
     return Layer(name, marks.vertices[used], renumbered, colour, lines=lines)
 
 
-def _thin_walls(marks: Marks, walls: FloatArray, thin: float | None) -> list[Layer]:
+def _thin_walls(marks: DefectiveElements, walls: FloatArray, thin: float | None) -> list[Layer]:
     if thin is None:
         return []
     faces = np.flatnonzero(walls < thin)
@@ -104,7 +104,7 @@ def _thin_walls(marks: Marks, walls: FloatArray, thin: float | None) -> list[Lay
     return [Layer(f"thinner than {thin:g}", marks.vertices[used], renumbered, _RED)]
 
 
-def _thinnest(marks: Marks, walls: FloatArray) -> list[Landmark]:
+def _thinnest(marks: DefectiveElements, walls: FloatArray) -> list[Landmark]:
     if not np.isfinite(walls).any():
         return []
     face = int(np.nanargmin(walls))
@@ -112,7 +112,7 @@ def _thinnest(marks: Marks, walls: FloatArray) -> list[Landmark]:
     return [_around(name, marks.vertices[marks.faces[face]])]
 
 
-def _holes(marks: Marks) -> Iterator[Landmark]:
+def _holes(marks: DefectiveElements) -> Iterator[Landmark]:
     """Yield landmarks at the holes, those with the most open edges first."""
     if not len(marks.open):
         return
@@ -124,7 +124,7 @@ def _holes(marks: Marks) -> Iterator[Landmark]:
         yield _around(f"hole {number + 1}: {counts[hole]} edges", marks.vertices[ends.ravel()])
 
 
-def _crossings(marks: Marks) -> Iterator[Landmark]:
+def _crossings(marks: DefectiveElements) -> Iterator[Landmark]:
     for number, pair in enumerate(marks.crossings[:_MAX_LANDMARKS_PER_KIND]):
         corners = marks.vertices[marks.faces[pair].ravel()]
         one, other = pair.tolist()

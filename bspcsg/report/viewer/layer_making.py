@@ -8,7 +8,7 @@ import numpy as np
 from ..._types import IndexArray
 from ...attributes.attributes import Attributes
 from ...formats.raw import RawMesh, compacted
-from ...formats.storable_attributes import said_of, saying
+from ...formats.storable_attributes import attributes_or_none, with_attributes
 from ...mesh.weld import welded
 from ...solid.solid import Solid
 from .attribute_paints import paints_of
@@ -57,7 +57,9 @@ def _taken(said: Attributes, faces: IndexArray) -> Attributes:
 def layers_of_solid(solid: Solid, name: str) -> list[Layer]:
     """Return the layer of a solid, with a paint by the operand from which each face comes."""
     mesh = solid.normalized().to_mesh()
-    layers = layers_of_file(replace(saying(mesh, said_of(mesh)), name=name), name)
+    layers = layers_of_file(
+        replace(with_attributes(mesh, attributes_or_none(mesh)), name=name), name
+    )
     found = _operands(solid)
     if not found or any(paint.name == ORIGIN for layer in layers for paint in layer.paints):
         return layers
@@ -107,7 +109,7 @@ def with_thickness(layer: Layer) -> Layer:
     return replace(layer, paints=(*layer.paints, Scale("thickness", values, THICKNESS)))
 
 
-def told_apart(layers: Sequence[Layer]) -> list[Layer]:
+def with_distinct_colours(layers: Sequence[Layer]) -> list[Layer]:
     """Return layers in different colours; a single layer gets the colour of a result."""
     if len(layers) == 1:
         return [replace(layers[0], colour=RESULT)]

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from ..._types import FloatArray, IndexArray
 
 #: The elements of a mesh that have a value each.
-At: TypeAlias = Literal["face", "corner"]
+PaintedElements: TypeAlias = Literal["face", "corner"]
 
 #: Colours of labels in order; after the last colour, the first one is used again.
 PALETTE = (
@@ -77,7 +77,7 @@ class Scale:
     stops: Sequence[str]
 
     @property
-    def at(self) -> At:
+    def at(self) -> PaintedElements:
         """The elements of the mesh that have a number: faces or corners."""
         return "face" if self.values.ndim == 1 else "corner"
 
@@ -131,7 +131,7 @@ class Colours:
     values: npt.NDArray[np.uint8]
 
     @property
-    def at(self) -> At:
+    def at(self) -> PaintedElements:
         """The elements of the mesh that have a colour: faces or corners."""
         return "face" if self.values.ndim == 2 else "corner"
 

@@ -6,13 +6,13 @@ from importlib import import_module
 from typing import Any
 
 from ...assembly.tree import Assembly
-from ...browsing import opened, temporary_page
+from ...browsing import open_page, temporary_page
 from ...bsp import Region
 from ...errors import UnboundedError, invalid_parameter
 from ...formats.atomic import write_file
 from ...solid.solid import Solid
 from .layer import Layer
-from .layer_making import layers_of_solid, told_apart
+from .layer_making import layers_of_solid, with_distinct_colours
 from .notebook import slab
 from .shared_script import is_notebook
 from .view_page import view_page
@@ -36,9 +36,9 @@ def _seen(thing: Any) -> Solid | Region | Assembly:
 def _open(layers: list[Layer]) -> None:
     """Open a page with layers in the browser, or print its path on standard error."""
     path = temporary_page("show")
-    page = view_page(told_apart(layers), ", ".join(layer.name for layer in layers))
+    page = view_page(with_distinct_colours(layers), ", ".join(layer.name for layer in layers))
     write_file(path, [page.encode("utf-8", "replace")])
-    reason = opened(path.as_uri())
+    reason = open_page(path.as_uri())
     if reason:
         sys.stderr.write(f"{path}: {reason}\n")
 

@@ -38,7 +38,7 @@ def camera_for(layers: Sequence[Layer], size: tuple[int, int], view: View = "iso
     return Camera.named(view, drawn_points(layers), size[0] / size[1])
 
 
-def still(
+def still_picture(
     layers: Sequence[Layer],
     camera: Camera | None = None,
     size: tuple[int, int] = (320, 240),

@@ -7,7 +7,7 @@ from .face_colours import OWN
 from .landmark import Landmark
 from .layer import Layer, bounds_of
 from .packing import packed
-from .still_pictures import still
+from .still_pictures import still_picture
 
 _SIZE = (800, 600)
 
@@ -56,7 +56,7 @@ def view_page(
         "view.html",
         title=title,
         model=packed(layers, quantised=embedded, unit=unit, paint=chosen, landmarks=landmarks),
-        picture=still(layers, size=_SIZE),
+        picture=still_picture(layers, size=_SIZE),
         notes=notes,
         live=live,
         size=" × ".join(f"{side:.6g}" for side in (high - low).tolist()),
