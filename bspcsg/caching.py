@@ -20,7 +20,7 @@ class LazyValue(Generic[_Value]):
     def __init__(self) -> None:
         self._made: list[_Value] = []
 
-    def of(self, make: Callable[[], _Value]) -> _Value:
+    def get(self, make: Callable[[], _Value]) -> _Value:
         """Return the value; compute it by `make` if this is the first call."""
         if not self._made:
             # Appending is atomic, so the first entry remains the first for all threads.

@@ -62,7 +62,9 @@ def load_as(path: str | os.PathLike[str], suffix: str, **options: Any) -> Assemb
     for name, faces in parts_of(raw):
         rows = np.arange(start, start + len(faces))
         start += len(faces)
-        said = None if raw.attributes is None else raw.attributes.taken(rows).with_used_materials()
+        said = (
+            None if raw.attributes is None else raw.attributes.for_faces(rows).with_used_materials()
+        )
         solid = solid_of(RawMesh(raw.vertices, faces, name, attributes=said), path, **options)
         children.append(Assembly(name, solid))
     return Assembly(Path(path).stem, children)

@@ -45,13 +45,13 @@ class ExaminedObject:
         The object's name, unique in its file.
     mesh : RawMesh
         The object's triangles.
-    found : Diagnosis
+    diagnosis : Diagnosis
         The diagnosis of the object alone.
     """
 
     name: str
     mesh: RawMesh
-    found: Diagnosis
+    diagnosis: Diagnosis
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +62,7 @@ class Examination:
     ----------
     mesh : RawMesh
         The contents of the file.
-    found : Diagnosis
+    diagnosis : Diagnosis
         The diagnosis of the whole file: the worst verdict, and the findings about each object.
     objects : tuple of ExaminedObject
         The objects; empty if the file has only one.
@@ -71,7 +71,7 @@ class Examination:
     """
 
     mesh: RawMesh
-    found: Diagnosis
+    diagnosis: Diagnosis
     objects: tuple[ExaminedObject, ...] = ()
     clashes: tuple[Clash, ...] = ()
 
@@ -85,7 +85,9 @@ def examine(raw: RawMesh) -> Examination:
     objects = []
     for name, rows in groups:
         used, faces = compacted(raw.faces[rows])
-        said = None if raw.attributes is None else raw.attributes.taken(rows).with_used_materials()
+        said = (
+            None if raw.attributes is None else raw.attributes.for_faces(rows).with_used_materials()
+        )
         mesh = RawMesh(raw.vertices[used], faces, name, unit=raw.unit, attributes=said)
         objects.append(ExaminedObject(name, mesh, diagnose(mesh)))
     clashes = _clashes(objects)
@@ -153,15 +155,15 @@ def _findings(objects: Sequence[ExaminedObject], rows: Sequence[IndexArray]) -> 
     `rows` are the triangle numbers of each object.
     """
     for one, faces in zip(objects, rows, strict=True):
-        for found in one.found.findings:
+        for found in one.diagnosis.findings:
             where = tuple(faces[list(found.where)].tolist()) if found.where else ()
             yield replace(found, message=f"“{one.name}”: {found.message}", where=where)
 
 
 def _clashes(objects: Sequence[ExaminedObject]) -> list[Clash]:
     """Return the pairs of objects that share volume; objects that are not solids are ignored."""
-    solids = [one for one in objects if one.found.is_solid]
-    boxes = np.array([one.found.bounds for one in solids]).reshape(-1, 2, 3)
+    solids = [one for one in objects if one.diagnosis.is_solid]
+    boxes = np.array([one.diagnosis.bounds for one in solids]).reshape(-1, 2, 3)
     near: set[int] = set()
     for number, (low, high) in enumerate(boxes):
         meets = (boxes[number + 1 :, 0] < high) & (boxes[number + 1 :, 1] > low)
@@ -199,7 +201,7 @@ def _file_diagnosis(
     findings: Sequence[Finding],
 ) -> Diagnosis:
     """Return the diagnosis of a file, summed up from the diagnoses of its objects."""
-    each = [one.found for one in objects]
+    each = [one.diagnosis for one in objects]
     overlaps = _all_known([one.self_overlapping for one in each])
     boxes = np.array([one.bounds for one in each])
     low, high = boxes[:, 0].min(axis=0).tolist(), boxes[:, 1].max(axis=0).tolist()
@@ -233,10 +235,10 @@ def _coarsest_precision(each: Sequence[Diagnosis]) -> Precision | None:
 
 def _union_volume(objects: Sequence[ExaminedObject], clashes: Sequence[Clash]) -> float | None:
     """Return the volume of the union of all objects; None if an object's volume is unknown."""
-    total = _sum([one.found.volume for one in objects])
+    total = _sum([one.diagnosis.volume for one in objects])
     if total is None or not clashes:
         return total
-    return union(*(_part(one).solid for one in objects if one.found.is_solid)).volume
+    return union(*(_part(one).solid for one in objects if one.diagnosis.is_solid)).volume
 
 
 def _all_known(values: "Sequence[_Any | None]") -> "list[_Any] | None":

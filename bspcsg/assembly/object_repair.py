@@ -36,7 +36,7 @@ def repaired_objects(whole: Examination, **options: Any) -> Repair:
 
 
 def _repaired_object(one: ExaminedObject, **options: Any) -> Repair:
-    if all(found.severity == "note" for found in one.found.findings):
+    if all(found.severity == "note" for found in one.diagnosis.findings):
         # The object needs no repair.
         return Repair(RawMesh(one.mesh.vertices, one.mesh.faces, one.name), {}, 0)
     return repair(one.mesh, **options)

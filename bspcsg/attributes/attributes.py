@@ -84,7 +84,7 @@ class Attributes:
             values = np.repeat(self.face[name][chosen][:, None], 3, axis=1)
         return values
 
-    def taken(self, faces: IndexArray) -> "Attributes":
+    def for_faces(self, faces: IndexArray) -> "Attributes":
         """Return the attributes of a part of the faces, in the order of the given face numbers."""
         return replace(
             self,
@@ -156,7 +156,7 @@ class Attributes:
         image = np.array([names.get(kind, kind) for kind in kinds.tolist()])[numbers]
         return replace(self, face={**self.face, "material": image})
 
-    def with_materials_called(self, called: Callable[[str], str]) -> "Attributes":
+    def with_renamed_materials(self, called: Callable[[str], str]) -> "Attributes":
         """Return the attributes with renamed materials; equal new names get numbers appended."""
         values = self.face.get("material")
         if values is None:

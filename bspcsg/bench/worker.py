@@ -118,7 +118,7 @@ class _EngineRuns:
     def __init__(
         self, engine: Engine, work: Work, task: Task, say: Callable[[dict[str, Any]], None]
     ) -> None:
-        self.engine, self.work, self.task, self.say = engine, work, task, say
+        self.engine, self.work, self.task, self.report = engine, work, task, say
         self.left = 1
         self._warm = False
         self._calls = 1
@@ -126,7 +126,7 @@ class _EngineRuns:
     def take(self) -> None:
         """Do one run and report its result; after a failure there are no further runs."""
         name = self.engine.name
-        self.say({"say": "begin", "engine": name})
+        self.report({"say": "begin", "engine": name})
         try:
             measured, outcome = self._timed()
         except MemoryError:
@@ -137,7 +137,7 @@ class _EngineRuns:
             first = not self._warm
             self._plan(measured["seconds"])
             said = {"say": "run", "engine": name, **measured}
-            self.say(said | self._details(outcome, first))
+            self.report(said | self._details(outcome, first))
 
     def _timed(self) -> tuple[dict[str, Any], Outcome]:
         """Do one run of several calls, and return the mean cost of a call with the last outcome."""
@@ -174,7 +174,7 @@ class _EngineRuns:
         self._warm = True
         self._calls = max(ceil(_MIN_RUN_SECONDS / seconds), 1)
         self.left = max(min(self.task.runs, int(self.task.budget / seconds) - 1), 0)
-        self.say({"say": "plan", "engine": self.engine.name, "runs": self.left})
+        self.report({"say": "plan", "engine": self.engine.name, "runs": self.left})
 
     def _details(self, outcome: Outcome, first: bool) -> dict[str, Any]:
         details: dict[str, Any] = {"parts": outcome.parts, "facts": asdict(facts_of(outcome.mesh))}
@@ -194,7 +194,7 @@ class _EngineRuns:
 
     def _fail(self, reason: str) -> None:
         self.left = 0
-        self.say({"say": "failed", "engine": self.engine.name, "reason": reason})
+        self.report({"say": "failed", "engine": self.engine.name, "reason": reason})
 
     def _teller(self) -> StepCallback:
         last = time.perf_counter()
@@ -204,7 +204,7 @@ class _EngineRuns:
             now = time.perf_counter()
             if now - last >= _REPORT_INTERVAL:
                 last = now
-                self.say({"say": "step", "engine": self.engine.name, "done": done})
+                self.report({"say": "step", "engine": self.engine.name, "done": done})
 
         return tell
 

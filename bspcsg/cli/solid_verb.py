@@ -69,7 +69,7 @@ class SolidVerb(ABC):
     def refuse_inputs(self) -> None:
         """Raise an error if reading is certain to fail, and print a note about missing units."""
         self.inputs.refuse_early(self.paths())
-        self.inputs.tell_units((path, self.target) for path in self.paths())
+        self.inputs.note_missing_units((path, self.target) for path in self.paths())
 
     @property
     def name(self) -> str:
@@ -154,7 +154,7 @@ class SolidVerb(ABC):
     ) -> None:
         name = self.name
         for finding in self._findings(result):
-            if finding not in self.inputs.noticed:
+            if finding not in self.inputs.noticed_findings:
                 self.out.finding(name, finding)
         for note in () if report is None else report.notes:
             self.out.detail(f"note: {note}")

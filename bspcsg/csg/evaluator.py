@@ -201,7 +201,7 @@ class _Cache:
     def _number(self, node: Node, children: tuple[int, ...], is_part: bool) -> int:
         """Return the position in `made` of a node's geometry, which is computed if it is new."""
         # Warn at each of several equal nodes, since the warning names line and column.
-        self.run.tell_of_arguments(node)
+        self.run.warn_of_arguments(node)
         key = (node.name, node.arguments, children, is_part, self.run.in_hull)
         if key in self.numbers:
             return self.numbers[key]
@@ -231,7 +231,7 @@ class _Cache:
         placed = _located(error, node, self.run.script)
         if not is_left_out(error, lenient=self.run.lenient):
             raise placed from error
-        self.run.tell(f"{placed.message} This node is left out.")
+        self.run.warn_once(f"{placed.message} This node is left out.")
         return empty_geometry_of(node)
 
     def _part(self, body: Geometry) -> Geometry:

@@ -276,19 +276,25 @@ def encoded(
         )
         raise FormatError(message, "too_large") from None
     said = attributes_or_none(mesh)
-    kept = form.keeps(said, mesh.vertices) if said is not None and form.keeps is not None else None
+    kept = (
+        form.storable(said, mesh.vertices)
+        if said is not None and form.storable is not None
+        else None
+    )
     if said is not None:
         findings = (*findings, *attribute_losses(said, kept, suffix))
     if kept is None or kept.is_empty:
         bare = mesh if said is None else with_attributes(mesh, None)
-        proof = partial(verify, name, bare, form.scan, form.called, form.repeats)
+        proof = partial(verify, name, bare, form.scan, form.name_in_file, form.repeats)
         return Encoded(form.encode(bare), findings, proof)
     full = with_attributes(mesh, kept)
     # If the path is a link, companion files are named after its target.
     stem = Path(os.path.realpath(name)).stem
-    head, files = form.beside(full, stem) if form.beside is not None else (b"", {})
+    head, files = (
+        form.companion_files(full, stem) if form.companion_files is not None else (b"", {})
+    )
     reader = partial(_read_back, suffix, files)
-    proof = partial(verify_with_attributes, name, full, reader, form.called, form.repeats)
+    proof = partial(verify_with_attributes, name, full, reader, form.name_in_file, form.repeats)
     return Encoded(itertools.chain([head], form.encode(full)), findings, proof, files)
 
 
@@ -314,5 +320,5 @@ def _refuse_unwritable(name: str, mesh: Mesh | RawMesh, form: Form) -> None:
             " be read back."
         )
         raise FormatError(f"{message} Write an empty Solid or Mesh instead.", "empty")
-    if form.beyond is not None and (reason := form.beyond(mesh)):
+    if form.size_problem is not None and (reason := form.size_problem(mesh)):
         raise FormatError(f"{name}: {reason}", "too_large")

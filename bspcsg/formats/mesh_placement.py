@@ -27,22 +27,22 @@ class PlacedMesh:
     ----------
     mesh : RawMesh
         The vertices before the transformation, but the triangles and attributes after it.
-    image : callable
+    transform : callable
         The transformation: takes and returns points, (n, 3) float64.
-    keeps : bool
-        True if `image` rounds no coordinate.
+    is_exact : bool
+        True if `transform` rounds no coordinate.
     map : bytes
         A key of the transformation: meshes with equal keys are mended together.
     """
 
     mesh: RawMesh
-    image: PointMap
-    keeps: bool = True
+    transform: PointMap
+    is_exact: bool = True
     map: bytes = b""
 
     def in_place(self) -> RawMesh:
         """Return the mesh with its vertices transformed."""
-        return replace(self.mesh, vertices=self.image(self.mesh.vertices))
+        return replace(self.mesh, vertices=self.transform(self.mesh.vertices))
 
 
 def is_exact(points: FloatArray | SingleArray, linear: FloatArray, shift: FloatArray) -> bool:
@@ -94,19 +94,19 @@ def placed_meshes(pieces: Sequence[PlacedMesh]) -> RawMesh:
     """
     meshes = [piece.in_place() for piece in pieces]
     whole = joined(meshes)
-    is_rounded = not all(piece.keeps for piece in pieces)
+    is_rounded = not all(piece.is_exact for piece in pieces)
     pitch = _pitch_of(whole) if is_rounded else None
     if pitch is None:
         return whole
     together: dict[bytes, list[int]] = {}
     for number, piece in enumerate(pieces):
-        if not piece.keeps:
+        if not piece.is_exact:
             together.setdefault(piece.map, []).append(number)
     crossing: dict[int, list[int]] = {}
     flat = 0
     for members in together.values():
         own = joined([pieces[number].mesh for number in members])
-        found = _mended(own, pieces[members[0]].image, pitch)
+        found = _mended(own, pieces[members[0]].transform, pitch)
         if found is not None:
             _replace_with_mended(found, members, meshes, crossing)
             flat += _lost_triangle_count(own, found)
@@ -143,7 +143,7 @@ def rescaled(raw: RawMesh, unit: float, new_unit: float = 1.0) -> RawMesh:
 
 def _with_mended(raw: RawMesh, found: Mended) -> RawMesh:
     ends = np.cumsum([0] + [count for _, count in raw.objects])
-    counts = np.diff(np.searchsorted(found.kept, ends)).tolist()
+    counts = np.diff(np.searchsorted(found.origins, ends)).tolist()
     names = [name for name, _ in raw.objects]
     return replace(
         raw,
@@ -153,7 +153,7 @@ def _with_mended(raw: RawMesh, found: Mended) -> RawMesh:
         objects=tuple(zip(names, counts, strict=True)),
         findings=(
             *raw.findings,
-            *_crossing_finding(found.left.tolist()),
+            *_crossing_finding(found.crossing.tolist()),
             *_flat_finding(_lost_triangle_count(raw, found)),
         ),
         is_mended=True,
@@ -179,8 +179,8 @@ def _mended(raw: RawMesh, image: PointMap, pitch: int) -> Mended | None:
     if divided is None:
         return found
     if found is None:
-        return Mended(moved, divided.kept, np.zeros(0, dtype=np.int64))
-    return replace(found, kept=divided.kept[found.kept])
+        return Mended(moved, divided.origins, np.zeros(0, dtype=np.int64))
+    return replace(found, origins=divided.origins[found.origins])
 
 
 def _sewn(mesh: AttributedMesh) -> Sewn | None:
@@ -205,15 +205,15 @@ def _replace_with_mended(
     end = 0
     for number in members:
         start, end = end, end + len(meshes[number].faces)
-        rows = np.flatnonzero((found.kept >= start) & (found.kept < end))
+        rows = np.flatnonzero((found.origins >= start) & (found.origins < end))
         used, faces = compacted(found.mesh.faces[rows])
         said = found.mesh.attributes
         if meshes[number].attributes is not None and said is not None:
-            said = replace(said.taken(rows), faces=faces).with_used_materials()
+            said = replace(said.for_faces(rows), faces=faces).with_used_materials()
         else:
             said = None
         vertices = found.mesh.vertices[used]
-        crossing[number] = np.flatnonzero(np.isin(rows, found.left)).tolist()
+        crossing[number] = np.flatnonzero(np.isin(rows, found.crossing)).tolist()
         meshes[number] = replace(meshes[number], vertices=vertices, faces=faces, attributes=said)
 
 
@@ -229,7 +229,7 @@ def _with_findings(
 
 def _lost_triangle_count(raw: RawMesh, found: Mended) -> int:
     """Return the number of triangles of `raw` of which the mended mesh has no part."""
-    return len(raw.faces) - len(np.unique(found.kept))
+    return len(raw.faces) - len(np.unique(found.origins))
 
 
 def _flat_finding(count: int) -> tuple[Finding, ...]:

@@ -30,7 +30,7 @@ class Form:
         Yields the bytes of a file.
     scan : callable
         Returns the objects of a written file, to check it.
-    called : callable, optional
+    name_in_file : callable, optional
         Returns the name that a file has for an object; None if files have no separate objects.
     losses : callable, optional
         Returns the findings about losses; raises OverflowError if a number is too large.
@@ -38,11 +38,11 @@ class Form:
         True if the form can store triangles that name a vertex twice.
     is_single : bool
         True if the form stores single precision only.
-    keeps : callable, optional
+    storable : callable, optional
         Returns the attributes that the form can store, as they read back; None if it stores none.
-    beyond : callable, optional
+    size_problem : callable, optional
         Returns why a mesh is too large for the form, or an empty string if it fits.
-    beside : callable, optional
+    companion_files : callable, optional
         Takes the mesh and the stem of the file; returns the beginning of the file, which names its
         companion files, and these files.
     needs_vertices : bool
@@ -51,13 +51,13 @@ class Form:
 
     encode: Encoder
     scan: ObjectReader
-    called: NameInFile | None = None
+    name_in_file: NameInFile | None = None
     losses: LossFinder | None = None
     repeats: bool = True
     is_single: bool = False
-    keeps: Keeper | None = None
-    beyond: Limit | None = None
-    beside: Companions | None = None
+    storable: Keeper | None = None
+    size_problem: Limit | None = None
+    companion_files: Companions | None = None
     needs_vertices: bool = False
 
 
@@ -101,8 +101,8 @@ def _obj() -> Format:
         obj.text,
         stl_obj_off_ply.obj,
         obj.stored_name,
-        keeps=lambda attributes, _: obj.storable(attributes),
-        beside=obj.companion_files,
+        storable=lambda attributes, _: obj.storable(attributes),
+        companion_files=obj.companion_files,
         needs_vertices=True,
     )
     return Format(obj.read, text)
@@ -117,13 +117,13 @@ def _ply() -> Format:
         Form(
             file.text,
             stl_obj_off_ply.text_ply,
-            keeps=lambda attributes, _: columns.storable(attributes),
+            storable=lambda attributes, _: columns.storable(attributes),
         ),
         Form(
             file.binary,
             stl_obj_off_ply.binary_ply,
-            keeps=lambda attributes, _: columns.storable(attributes),
-            beyond=file.size_problem,
+            storable=lambda attributes, _: columns.storable(attributes),
+            size_problem=file.size_problem,
         ),
     )
 
@@ -137,7 +137,7 @@ def _off() -> Format:
         Form(
             off.text,
             stl_obj_off_ply.off,
-            keeps=lambda attributes, _: off.storable(attributes),
+            storable=lambda attributes, _: off.storable(attributes),
         ),
     )
 
@@ -152,7 +152,7 @@ def _threemf() -> Format:
         write.stored_name,
         write.losses,
         repeats=False,
-        keeps=lambda attributes, _: properties.storable(attributes),
+        storable=lambda attributes, _: properties.storable(attributes),
     )
     return Format(file.read, None, binary, "mm")
 
@@ -167,8 +167,8 @@ def _glb() -> Format:
         attribute_conversion.stored_name,
         file.losses,
         is_single=True,
-        keeps=attribute_conversion.storable,
-        beyond=file.size_problem,
+        storable=attribute_conversion.storable,
+        size_problem=file.size_problem,
     )
     return Format(file.read, None, binary, "mm", "y")
 

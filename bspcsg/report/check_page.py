@@ -113,11 +113,11 @@ class CheckPage:
         if whole_file.objects:
             scene = layers_of_objects(whole_file)
         else:
-            scene = layers_of_defects(whole_file.mesh, whole_file.found, self._thin)
-        self._show(file, "", whole_file.mesh, whole_file.found, scene, allowance)
+            scene = layers_of_defects(whole_file.mesh, whole_file.diagnosis, self._thin)
+        self._show(file, "", whole_file.mesh, whole_file.diagnosis, scene, allowance)
         for one in whole_file.objects:
-            scene = layers_of_defects(one.mesh, one.found, self._thin)
-            self._show(file, one.name, one.mesh, one.found, scene, allowance)
+            scene = layers_of_defects(one.mesh, one.diagnosis, self._thin)
+            self._show(file, one.name, one.mesh, one.diagnosis, scene, allowance)
 
     def add_unreadable(self, file: str, error: str) -> None:
         """Add a card for a file that could not be read, with the reason."""

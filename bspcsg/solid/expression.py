@@ -56,7 +56,7 @@ class ExpressionNode:
         leaf = _evaluated(self.content)
         if not factors:
             return leaf
-        known = self._moved.of(WeakKeyDictionary)
+        known = self._moved.get(WeakKeyDictionary)
         moved = known.get(factors)
         return known.setdefault(factors, leaf.placed(factors)) if moved is None else moved
 
@@ -106,7 +106,7 @@ def evaluate(root: ExpressionNode) -> ExpressionLeaf:
         if not isinstance(content, Pending):
             continue
         if plan is not None:
-            node.content = content.result.of(plan.execute)
+            node.content = content.result.get(plan.execute)
             continue
         plan = make_plan(node)
         waiting.append((node, plan))
@@ -163,7 +163,7 @@ def _evaluated(content: Pending | ExpressionLeaf) -> ExpressionLeaf:
 def _operand_leaf(placed: PlacedNode) -> ExpressionLeaf:
     leaf = placed.node.placed(placed.factors)
     # Operands must not keep their own records, or a chain would keep all of its history.
-    return leaf.forgetful() if isinstance(leaf, TreeLeaf) else leaf
+    return leaf.without_record() if isinstance(leaf, TreeLeaf) else leaf
 
 
 def _open_operation(placed: PlacedNode) -> Pending | None:

@@ -72,7 +72,7 @@ class MeshLeaf:
     ----------
     vertices : (n, 3) float64, in model units
     faces : (m, 3) int64, indices of `vertices`
-        Both arrays may belong to the caller until `let_go` is called.
+        Both arrays may belong to the caller until `release_arrays` is called.
     pitch : int or None
         Exponent of the lattice step; by default the core chooses it from the size.
     trusted : bool
@@ -108,7 +108,7 @@ class MeshLeaf:
     @property
     def pitch(self) -> int | None:
         """Exponent of the lattice step."""
-        return self.grown().pitch if self._chosen_pitch is None else self._chosen_pitch
+        return self.own_tree().pitch if self._chosen_pitch is None else self._chosen_pitch
 
     @property
     def extent(self) -> Extent:
@@ -124,22 +124,22 @@ class MeshLeaf:
     def arrays(self) -> tuple[FloatArray, IndexArray]:
         """Return the mesh's vertices and faces, after the transform that made the leaf, if any."""
         arrays = self._settled().arrays
-        return self.grown().given_arrays() if arrays is None else arrays
+        return self.own_tree().given_arrays() if arrays is None else arrays
 
-    def let_go(self) -> None:
+    def release_arrays(self) -> None:
         """Release the caller's arrays: their data are read from the tree, or else copied."""
         vertices, faces = self.arrays()
-        held = self.grown().holds_given
+        held = self.own_tree().holds_given
         arrays = None if held else (vertices.copy(), faces.copy())
         self._content = replace(self._settled(), arrays=arrays)
 
-    def grown(self) -> Tree:
+    def own_tree(self) -> Tree:
         """Return the mesh's partition tree on its own lattice; the first call makes the tree."""
-        return self._tree.of(self._grow)
+        return self._tree.get(self._grow)
 
     def tree(self, pitch: int) -> Tree:
         """Return the leaf's partition tree on the lattice of step ``10**pitch``."""
-        return self._pitches.of(self.grown(), pitch)
+        return self._pitches.of(self.own_tree(), pitch)
 
     def placed(self, factors: FactorChain) -> "ExpressionLeaf":
         """Return the leaf's image under a chain of affine maps, the outermost map first."""
@@ -168,7 +168,7 @@ class MeshLeaf:
         """Return the leaf of the mesh whose vertices a chain of affine maps has transformed."""
         # Rounding moves vertices, so the image of a trusted mesh is not trusted.
         said = AttributedMesh(*self.arrays(), self._settled().attributes)
-        found = None if self._trusted else sewn(said, self.grown())
+        found = None if self._trusted else sewn(said, self.own_tree())
         mesh = said if found is None else found.mesh
         return MeshLeaf.moved(mesh, factors, self.given_pitch, self._winding)
 
@@ -177,7 +177,7 @@ class MeshLeaf:
 
         If so, its coordinates must be moved and mended instead of its tree.
         """
-        return self._settled().is_mended or _crosses_there(self.grown(), motion)
+        return self._settled().is_mended or _crosses_there(self.own_tree(), motion)
 
     @classmethod
     def moved(
@@ -192,7 +192,7 @@ class MeshLeaf:
         The leaf is on the lattice of `pitch`, unless that is None or the mesh exceeds its range.
         """
         moved = mesh.moved(factors)
-        held = moved.held_pitch(pitch)
+        held = moved.pitch_in_range(pitch)
         leaf = cls(moved.vertices, moved.faces, held, False, winding, moved.attributes)
         leaf._is_moved = True
         leaf._chosen_pitch = moved.suited_pitch() if held is None else held
@@ -201,9 +201,9 @@ class MeshLeaf:
         return leaf
 
     @cached_property
-    def shown(self) -> Tree:
+    def mesh_tree(self) -> Tree:
         """The tree from which the mesh is made: faces with different attributes are not joined."""
-        return patched(self.grown(), self.source_attributes)
+        return patched(self.own_tree(), self.source_attributes)
 
     def _settled(self) -> "_Settled":
         """Return the mesh's arrays and attributes, after mending crossings due to a transform."""
@@ -269,7 +269,7 @@ class _Moved:
 
     def mended(self) -> _Settled:
         """Return the mesh without the crossings that rounding caused; computed once."""
-        return self._result.of(self._mend)
+        return self._result.get(self._mend)
 
     def _mend(self) -> _Settled:
         found = self.mesh.mended(self.before, self.pitch)
@@ -333,16 +333,20 @@ class TreeLeaf:
 
         If the solid is unbounded, transform its complement. None if both are unbounded.
         """
-        return self._made_anew(lambda leaf: _moved_output(leaf, factors))
+        return self._via_bounded_leaf(lambda leaf: _moved_output(leaf, factors))
 
     def coarsened(self, pitch: int) -> "ExpressionLeaf | None":
         """Return the leaf of the solid's output mesh on a coarser lattice.
 
         None if the solid and its complement are unbounded, or if the mesh measures too few steps.
         """
-        return self._made_anew(lambda leaf: _moved_output(leaf, FactorChain()).coarsened(pitch))
+        return self._via_bounded_leaf(
+            lambda leaf: _moved_output(leaf, FactorChain()).coarsened(pitch)
+        )
 
-    def _made_anew(self, make: "Callable[[TreeLeaf], MeshLeaf | None]") -> "ExpressionLeaf | None":
+    def _via_bounded_leaf(
+        self, make: "Callable[[TreeLeaf], MeshLeaf | None]"
+    ) -> "ExpressionLeaf | None":
         """Return the result of a function of a bounded leaf, or None if there is none.
 
         Apply it to this leaf, or if the solid is unbounded, to its complement, and complement the
@@ -361,7 +365,7 @@ class TreeLeaf:
         """Return true if a mesh of the tree would cross itself after a lattice motion."""
         return _crosses_there(self.result, motion)
 
-    def forgetful(self) -> "TreeLeaf":
+    def without_record(self) -> "TreeLeaf":
         """Return the leaf without its record, unless a later transform would need the record.
 
         If a solid and its complement are both unbounded, as results of half-spaces may be, there is
@@ -372,7 +376,7 @@ class TreeLeaf:
         return replace(self, record=None)
 
     @cached_property
-    def shown(self) -> Tree:
+    def mesh_tree(self) -> Tree:
         """The tree from which the mesh is made: faces with different attributes are not joined."""
         return patched(self.result, self.source_attributes)
 
@@ -415,7 +419,7 @@ class PlaneLeaf:
         with core_errors():
             return self._trees.keep(pitch, Tree.half_space(plane.row, pitch, plane.note))
 
-    def beyond(self, pitch: int) -> "ConstantLeaf | None":
+    def constant_leaf(self, pitch: int) -> "ConstantLeaf | None":
         """Return the empty set or all of space for a plane beyond the lattice, else None."""
         above = self.plane.is_above_lattice(pitch)
         return None if above is None else ConstantLeaf(above)
@@ -490,7 +494,7 @@ def tree_of(leaf: ExpressionLeaf) -> Tree:
 def shown_tree(leaf: ExpressionLeaf) -> Tree:
     """Return the tree for a leaf's mesh, in which faces of different attributes are not joined."""
     if leaf.source_attributes and isinstance(leaf, (MeshLeaf, TreeLeaf)):
-        return leaf.shown
+        return leaf.mesh_tree
     return tree_of(leaf)
 
 
@@ -580,7 +584,7 @@ def _finest_for_all(leaves: Sequence[ExpressionLeaf], extent: Extent) -> int:
 
 def _fits_lattice(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> bool:
     if isinstance(leaf, PlaneLeaf):
-        return extent is not None or leaf.beyond(pitch) is None
+        return extent is not None or leaf.constant_leaf(pitch) is None
     if leaf.pitch is None or leaf.pitch <= pitch:
         return True
     try:
@@ -593,14 +597,14 @@ def _fits_lattice(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> bool:
 def _fitted(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> ExpressionLeaf | None:
     """Return a leaf for the lattice of `pitch`, coarsened if need be; None if that fails."""
     if isinstance(leaf, PlaneLeaf):
-        return leaf if extent is None else leaf.beyond(pitch) or leaf
+        return leaf if extent is None else leaf.constant_leaf(pitch) or leaf
     if isinstance(leaf, ConstantLeaf) or leaf.pitch is None or leaf.pitch >= pitch:
         return leaf
     return leaf if isinstance(leaf, TreeLeaf) and leaf.is_constant else leaf.coarsened(pitch)
 
 
 def _moved_output(leaf: TreeLeaf, factors: FactorChain) -> MeshLeaf:
-    tree = leaf.shown
+    tree = leaf.mesh_tree
     with core_errors():
         vertices, faces = tree.to_mesh()
     said = attributes_of(tree, leaf.source_attributes) if leaf.source_attributes else None

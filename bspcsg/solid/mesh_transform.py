@@ -60,7 +60,7 @@ class AttributedMesh:
         left = np.isin(kept, found["crossings"])
         return Mended(AttributedMesh(found["vertices"], faces, said), kept, np.flatnonzero(left))
 
-    def held_pitch(self, given: int | None) -> int | None:
+    def pitch_in_range(self, given: int | None) -> int | None:
         """Return the given pitch if all vertices lie in the range of its lattice, else None."""
         if given is None or not np.isfinite(self.vertices).all():
             return given
@@ -83,12 +83,12 @@ class Mended:
     Parameters
     ----------
     mesh : AttributedMesh
-    kept : (m,) int64
+    origins : (m,) int64
         For each triangle, the triangle of the moved mesh that it comes from.
-    left : (k,) int64
+    crossing : (k,) int64
         The indices of triangles that still cross other triangles.
     """
 
     mesh: AttributedMesh
-    kept: IndexArray
-    left: IndexArray
+    origins: IndexArray
+    crossing: IndexArray

@@ -24,12 +24,12 @@ class Sewn:
     Parameters
     ----------
     mesh : AttributedMesh
-    kept : (m,) int64
+    origins : (m,) int64
         For each triangle, the triangle of the original mesh that contains it, ascending.
     """
 
     mesh: AttributedMesh
-    kept: IndexArray
+    origins: IndexArray
 
 
 def sewn(mesh: AttributedMesh, tree: Tree) -> Sewn | None:
@@ -51,6 +51,6 @@ def sewn(mesh: AttributedMesh, tree: Tree) -> Sewn | None:
         surface = Surface(*shown.to_mesh(), shown.origins(), shown.flips())
     said = inherited_attributes(surface, attributes, shown.source_arrays) if attributes else None
     order = np.argsort(surface.source[:, 1], kind="stable")
-    said = said and said.taken(order)
+    said = said and said.for_faces(order)
     divided = AttributedMesh(surface.vertices, surface.faces[order], said)
     return Sewn(divided, surface.source[order, 1])

@@ -176,8 +176,8 @@ class Solid(Movable, PointSet):
             attributes=said,
         )
         # Raise errors in a mesh here, on the user's line, not in the first query.
-        leaf.grown()
-        leaf.let_go()
+        leaf.own_tree()
+        leaf.release_arrays()
         self._set(ExpressionNode(leaf), IDENTITY_CHAIN)
         count(self)
 

@@ -135,7 +135,7 @@ def test_what_is_said_of_faces_stays_where_placing_is_mended() -> None:
     mended = 0
     for _ in range(TURNS):
         matrix = some_matrix(rng)
-        found = placed_meshes([PlacedMesh(raw, partial(transform.apply, matrix), keeps=False)])
+        found = placed_meshes([PlacedMesh(raw, partial(transform.apply, matrix), is_exact=False)])
         assert found.attributes is not None
         assert len(found.attributes.face["material"]) == len(found.faces)
         assert np.array_equal(found.attributes.faces, found.faces)

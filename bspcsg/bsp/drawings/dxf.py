@@ -71,7 +71,7 @@ def load_dxf(
     region = Region(
         lost.surrounding(_closed(chains, os.fspath(path))), winding=winding, pitch=pitch
     )
-    lost.tell(path, region)
+    lost.warn(path, region)
     return region
 
 

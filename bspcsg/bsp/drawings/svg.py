@@ -82,7 +82,7 @@ def load_svg(
     common = chosen_pitch(pitch, np.concatenate(points))
     regions = (Region(loops, winding=kind, pitch=common) for loops, kind in found)
     region = Region.compose([Region(pitch=common), *regions])
-    lost.tell(path, region)
+    lost.warn(path, region)
     return region
 
 

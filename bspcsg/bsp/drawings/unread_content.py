@@ -45,7 +45,7 @@ class UnreadContent:
         self.outlines += len(found)
         return found
 
-    def words(self, region: Region) -> str:
+    def warning_text(self, region: Region) -> str:
         """Return the warning's text on omitted content and an empty region; "" for neither."""
         kinds = self._kinds()
         lacking = f"left out: {kinds}. " if kinds else ""
@@ -65,9 +65,9 @@ class UnreadContent:
         more = sum(self.counts[name] for name in names[_MAX_KINDS_NAMED:])
         return ", ".join([*kinds, *([f"others ({more})"] if more else [])])
 
-    def tell(self, path: str | os.PathLike[str], region: Region) -> None:
+    def warn(self, path: str | os.PathLike[str], region: Region) -> None:
         """Warn that content of a file is omitted or its region is empty, if this is so."""
-        words = self.words(region)
+        words = self.warning_text(region)
         if words:
             warnings.warn(f"{os.fspath(path)}: {words}", DrawingWarning, stacklevel=3)
 

@@ -149,7 +149,7 @@ class _LargePicture(Picture):
         settings = self._settings
         size = canvas_size(settings.frame, self.samples)
         line = line_samples(self.line_width, self.samples)
-        seen = raster(self._scene, settings.camera, size, line=line, **settings.ways)
+        seen = raster(self._scene, settings.camera, size, line=line, **settings.raster_arguments)
         return png_of_samples(*seen, self.background, self.samples)
 
     @property
@@ -178,7 +178,7 @@ class _PictureSettings:
     samples: int
 
     @property
-    def ways(self) -> dict[str, Any]:
+    def raster_arguments(self) -> dict[str, Any]:
         """The parameters that select visible triangles and edges, as arguments for `raster`."""
         return {name: getattr(self, name) for name in ("style", "edges", "crease", "cull")}
 

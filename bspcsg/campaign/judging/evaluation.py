@@ -181,7 +181,7 @@ class _Evaluation:
             record["bounds"] = {"same_set": bounds[0], "rounding": bounds[1]}
         self._clock.lap("check")
         if self._settings.meshes and (keep or verdict not in _UNINTERESTING):
-            record["meshes"] = self._kept(found)
+            record["meshes"] = self._stored_path(found)
         return record
 
     def _loaded(self) -> tuple[list[Solid], Sequence[FloatArray | None]]:
@@ -242,7 +242,7 @@ class _Evaluation:
         forth, back, count = hausdorff(found.ours, theirs, difference, self._settings.samples)
         return {"forward": forth, "backward": back, "samples": count}
 
-    def _kept(self, found: Examination) -> str:
+    def _stored_path(self, found: Examination) -> str:
         """Write the meshes of a case to a file, and return its path as in the record."""
         folder = Path(str(self._settings.meshes))
         folder.mkdir(parents=True, exist_ok=True)

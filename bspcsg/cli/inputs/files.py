@@ -52,7 +52,7 @@ class Inputs:
     pitch : int or None
     on_invalid : {"error", "warn", "repair"} or None
         The treatment of a file that is not closed; None if the verb has no such option.
-    noticed : list of Finding
+    noticed_findings : list of Finding
         The findings about solids that have been read; results repeat them.
     objects : ObjectNames
         The named objects to which the triangles of the read solids belong.
@@ -64,7 +64,7 @@ class Inputs:
     winding: Any = "positive"
     pitch: int | None = None
     on_invalid: str | None = None
-    noticed: list[Finding] = field(default_factory=list)
+    noticed_findings: list[Finding] = field(default_factory=list)
     objects: ObjectNames = field(default_factory=ObjectNames)
 
     @classmethod
@@ -110,7 +110,7 @@ class Inputs:
             )
             raise click.UsageError(message)
 
-    def tell_units(self, pairs: Iterable[tuple[Path, "Target"]]) -> None:
+    def note_missing_units(self, pairs: Iterable[tuple[Path, "Target"]]) -> None:
         """Print a note if inputs have no unit and their output formats state one."""
         from ...formats.registry import FORMATS
 
@@ -139,7 +139,7 @@ class Inputs:
         """Say whether a file is read as a script, by its own suffix or that of ``--from``."""
         return self.suffix_of(path) in SUFFIXES
 
-    def up_of(self, path: Path) -> str:
+    def up_axis_of(self, path: Path) -> str:
         """Return the axis, "y" or "z", that points upwards in files of a file's format."""
         from ...formats.registry import FORMATS
 
@@ -163,7 +163,7 @@ class Inputs:
             return raw
         return replace(rescaled(raw, MILLIMETRES[self.unit]), unit="mm")
 
-    def _made_by(self, path: Path) -> "Solid":
+    def _solid_of_script(self, path: Path) -> "Solid":
         """Return the solid that a script makes, in the language of its suffix or of ``--from``."""
         if path.suffix.lower() in SUFFIXES:
             return solid_of_script(path, self.out)
@@ -172,20 +172,20 @@ class Inputs:
     def _mesh_of_script(self, path: Path) -> "RawMesh":
         from ...formats.storable_attributes import attributes_or_none, with_attributes
 
-        mesh = self._made_by(path).normalized().to_mesh()
+        mesh = self._solid_of_script(path).normalized().to_mesh()
         raw = with_attributes(mesh, attributes_or_none(mesh))
         return replace(raw, name=path.stem, is_empty_set=not len(mesh.faces))
 
     def solid(self, path: Path) -> "Solid":
         """Read a mesh as a solid, or evaluate a script, and print the findings about the file."""
         if self.is_script(path):
-            made = self._made_by(path)
+            made = self._solid_of_script(path)
             return made if self.unit is None else made.scale(MILLIMETRES[self.unit])
         raw = self.raw(path)
         solid = self.as_solid(raw, path)
         noticed = [Finding.from_core(found) for found in solid.tree.findings]
-        self.noticed.extend(noticed)
-        self.tell(path, (*raw.findings, *noticed))
+        self.noticed_findings.extend(noticed)
+        self.print_findings(path, (*raw.findings, *noticed))
         self.out.detail(f"{display_name(path)}: {counted(len(raw.faces), 'triangle')}")
         return solid
 
@@ -235,10 +235,10 @@ class Inputs:
         self.out.warning(
             f"{display_name(path)} was not closed and was repaired: {counts}{turned}{strays}."
         )
-        self.tell(path, made.lost)
+        self.print_findings(path, made.lost)
         return solid
 
-    def tell(self, path: Path, findings: Sequence[Finding]) -> None:
+    def print_findings(self, path: Path, findings: Sequence[Finding]) -> None:
         """Print findings about a file on standard error."""
         for finding in findings:
             self.out.finding(display_name(path), finding)
@@ -319,7 +319,7 @@ class Target:
         """True if the output's format can store named objects."""
         from ...formats.files import form_of
 
-        return form_of(f"mesh{self.suffix}", self.text).called is not None
+        return form_of(f"mesh{self.suffix}", self.text).name_in_file is not None
 
     @property
     def is_single(self) -> bool:

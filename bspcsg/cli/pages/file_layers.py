@@ -52,5 +52,5 @@ def _layers_of(
     if inputs.is_script(path):
         return layers_of_solid(inputs.solid(path), name), unit
     raw = inputs.raw(path)
-    inputs.tell(path, raw.findings)
+    inputs.print_findings(path, raw.findings)
     return layers_of_file(raw, name), raw.unit

@@ -164,7 +164,7 @@ class _Checking:
             return _Checked(path, error)
         if page is not None:
             page.add(display_name(path), found)
-        return _Checked(path, found.found, [(one.name, one.found) for one in found.objects])
+        return _Checked(path, found.diagnosis, [(one.name, one.diagnosis) for one in found.objects])
 
     def _exit_code(self, one: _Checked) -> int:
         if isinstance(one.found, BspcsgError):

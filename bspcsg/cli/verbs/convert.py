@@ -99,7 +99,7 @@ class _Conversion:
         for _, target in self._pairs:
             self._refuse_unit(target)
             target.refuse_early(self._out.as_json)
-        self._inputs.tell_units(self._pairs)
+        self._inputs.note_missing_units(self._pairs)
 
     def _refuse_unit(self, target: Target) -> None:
         """Raise a usage error if ``--to-unit`` is given for a format that states its unit."""
@@ -119,7 +119,7 @@ class _Conversion:
 
         began = time.perf_counter()
         raw = meant = self._turned(path, target)
-        self._inputs.tell(path, raw.findings)
+        self._inputs.print_findings(path, raw.findings)
         if self._settings["tolerance"]:
             raw = self._simplified(raw, path)
             # Simplifying loses everything but the shape: names, attributes and so on.
@@ -167,7 +167,7 @@ class _Conversion:
             )
             return raw
         mesh = simple.normalized().to_mesh()
-        self._inputs.tell(path, simple.normalized().findings)
+        self._inputs.print_findings(path, simple.normalized().findings)
         bare = replace(raw, findings=(), objects=(), attributes=None)
         return replace(bare, vertices=mesh.vertices, faces=mesh.faces)
 
@@ -177,7 +177,7 @@ class _Conversion:
         from ...formats.up_axis import rotated_about_x
 
         raw = self._inputs.raw(path)
-        usual_in = self._inputs.up_of(path)
+        usual_in = self._inputs.up_axis_of(path)
         usual_out = FORMATS[target.suffix.lower()].up
         # Reading and writing already rotate by the convention of each format, so only the
         # differences between the options and these conventions count.

@@ -82,7 +82,7 @@ def _described(inputs: Inputs, path: Path) -> _Entry:
 
     try:
         raw = inputs.raw(path)
-        return _Entry(path, (raw, examine(raw).found))
+        return _Entry(path, (raw, examine(raw).diagnosis))
     except BspcsgError as error:
         return _Entry(path, error=error)
 

@@ -125,27 +125,27 @@ class _Repairing:
         from ...assembly.object_repair import repaired_objects
 
         raw = self._inputs.raw(path)
-        self._inputs.tell(path, raw.findings)
+        self._inputs.print_findings(path, raw.findings)
         if len(raw.faces) == 0:
             message = f"{display_name(path)}: no triangles are left, so nothing was written."
             raise output.EmptyResultError(message, "empty_result")
         before = examine(raw)
         limits = {name: self._settings[name] for name in ("weld", "max_hole", "timeout")}
         made = repaired_objects(before, steps=steps, **limits)
-        after = examine(target.rounded(made.mesh)[0]).found
+        after = examine(target.rounded(made.mesh)[0]).diagnosis
         lost = target.write(made.mesh)
-        self._inputs.tell(path, made.lost)
+        self._inputs.print_findings(path, made.lost)
         for finding in lost:
             self._out.finding(display_name(target.path), finding)
         for step, reason in made.failed.items():
             self._out.warning(f"{display_name(path)}: the repair step {step} failed: {reason}")
         if not self._out.as_json:
             text = _text if self._is_single else _line
-            self._out.result(text(before.found, after, made, target), {})
+            self._out.result(text(before.diagnosis, after, made, target), {})
         document = {
             "file": str(path),
             "output": str(target.path),
-            "before": before.found.to_dict(),
+            "before": before.diagnosis.to_dict(),
             "after": after.to_dict(),
             "steps_failed": made.failed,
             "turned": made.turned,

@@ -174,13 +174,15 @@ class _Splitting:
         tolerance = self._settings["tolerance"]
         simple = solid.simplify(tolerance) if tolerance else solid
         if simple is not solid:
-            self._inputs.tell(file, simple.normalized().findings)
+            self._inputs.print_findings(file, simple.normalized().findings)
         return simple
 
     def _tell_of_plane(self, file: Path, side: "Solid") -> None:
         """Print a note if the plane on the lattice differs from the requested plane."""
         found = [Finding.from_core(finding) for finding in side.tree.findings]
-        self._inputs.tell(file, [one for one in found if one not in self._inputs.noticed])
+        self._inputs.print_findings(
+            file, [one for one in found if one not in self._inputs.noticed_findings]
+        )
 
     def _refuse_less_than(self, least: int, file: Path, meshes: "list[Mesh]") -> None:
         if len(meshes) >= least:

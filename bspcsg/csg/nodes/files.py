@@ -110,7 +110,7 @@ def _with_warning(
     owner: Node, run: Evaluation, name: str, lost: UnreadContent, region: Region
 ) -> Region:
     """Return the region of a drawing unchanged, and warn of its omitted entities."""
-    words = lost.words(region)
+    words = lost.warning_text(region)
     if words:
         run.warn(owner, f"{name}: {words}")
     return region

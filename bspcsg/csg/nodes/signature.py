@@ -23,13 +23,13 @@ class Signature:
         The names of positional arguments, in order.
     named : tuple of str
         The names of arguments that are given only by name.
-    beside : tuple of (str, tuple of str)
+    overridden_by : tuple of (str, tuple of str)
         Pairs of an argument and the arguments that override it if all of them are given.
     """
 
     order: tuple[str, ...] = ()
     named: tuple[str, ...] = ()
-    beside: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    overridden_by: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
     def complaints(self, node: Node) -> Iterator[str]:
         """Yield a complaint for each argument of a node that is ignored."""
@@ -47,7 +47,7 @@ class Signature:
                 f" {self._known()}"
             )
         values = dict(zip(names, (argument.value for argument in node.arguments), strict=True))
-        for name, others in self.beside:
+        for name, others in self.overridden_by:
             if _is_set(values.get(name)) and all(_is_set(values.get(other)) for other in others):
                 yield f"its {name} is ignored in favour of {' and '.join(others)}"
 

@@ -43,7 +43,7 @@ def storable(said: Attributes, vertices: FloatArray) -> Attributes:
     vertices and corners with up to four components. A missing normal becomes that of its face.
     """
     told = _with_all_normals(said.without_empty_material(), vertices)
-    held = selected_attributes(told, _storable_values).with_materials_called(stored_name)
+    held = selected_attributes(told, _storable_values).with_renamed_materials(stored_name)
     names = held.face.get("material")
     if names is None:
         return Attributes(held.faces, held.vertex, held.corner, held.face)

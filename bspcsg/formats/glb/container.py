@@ -145,7 +145,7 @@ class _DescriptionCheck:
     def __init__(self, source: Source, tree: dict[str, Any], held: int) -> None:
         self._source = source
         self._tree = tree
-        self._held = held
+        self._data_bytes = held
 
     def check(self) -> None:
         """Raise a `FormatError` if the description has an error that would break decoding."""
@@ -164,10 +164,10 @@ class _DescriptionCheck:
                     " the binary chunk of the GLB."
                 )
                 raise self._source.error(message, "unsupported")
-            if number > 0 or not 0 <= buffer["byteLength"] <= self._held:
+            if number > 0 or not 0 <= buffer["byteLength"] <= self._data_bytes:
                 message = (
-                    f"buffer {number} needs more bytes than the {self._held} bytes of the binary"
-                    " chunk."
+                    f"buffer {number} needs more bytes than the {self._data_bytes} bytes of the"
+                    " binary chunk."
                 )
                 raise self._source.error(message, "truncated")
         for number, accessor in enumerate(self._tree.get("accessors", [])):
@@ -208,10 +208,10 @@ class _DescriptionCheck:
         start, length = view.get("byteOffset", 0), view["byteLength"]
         offset, stride = told.get("byteOffset", 0), view.get("byteStride") or element
         needed = offset + max(count - 1, 0) * stride + (count and element)
-        if min(start, length, offset, stride, count) < 0 or start + length > self._held:
+        if min(start, length, offset, stride, count) < 0 or start + length > self._data_bytes:
             message = (
-                f"accessor {number} refers to bytes outside the {self._held} bytes of the binary"
-                " chunk."
+                f"accessor {number} refers to bytes outside the {self._data_bytes} bytes of the"
+                " binary chunk."
             )
             raise self._source.error(message, "truncated")
         if stride < element:
@@ -239,7 +239,7 @@ class _DescriptionCheck:
             message = f"accessor {number} has no data that can be read; they may be compressed."
             raise self._source.error(message + _conversion_advice(packing), "unsupported")
         zeros = accessor["count"] * _bytes_of(accessor)
-        if not 0 <= zeros <= self._held:
+        if not 0 <= zeros <= self._data_bytes:
             # Zeros take no bytes in the file, so its length does not limit their number.
             message = (
                 f"accessor {number} has no data and stands for {zeros} bytes of zeros, more than"

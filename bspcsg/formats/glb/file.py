@@ -146,7 +146,7 @@ def _with_attributes(mesh: Mesh | RawMesh, said: Attributes) -> Iterator[bytes]:
         rows = np.arange(start, start + len(faces))
         start += len(faces)
         if len(faces):
-            primitives = described.append_mesh(mesh.vertices, faces, said.taken(rows), pictures)
+            primitives = described.append_mesh(mesh.vertices, faces, said.for_faces(rows), pictures)
             described.add_object(name, primitives)
     further = pictures.described()
     yield from container(described.text(further), described.blocks)

@@ -43,15 +43,15 @@ class _SceneReader:
     """A reader of one file's nodes; a mesh that several nodes share becomes one object."""
 
     def __init__(self, held: Container) -> None:
-        self._held = held
+        self._container = held
         self._nodes = held.tree.get("nodes", [])
         self._meshes: dict[int, tuple[RawMesh, tuple[float, ...] | None]] = {}
         self._materials = materials_of(held.tree, held.data)
 
     def root(self) -> SceneNode:
-        scenes = self._held.tree.get("scenes", [])
+        scenes = self._container.tree.get("scenes", [])
         if scenes:
-            roots = scenes[self._held.tree.get("scene", 0)].get("nodes", [])
+            roots = scenes[self._container.tree.get("scene", 0)].get("nodes", [])
         else:
             inner = {child for node in self._nodes for child in node.get("children", [])}
             roots = [number for number in range(len(self._nodes)) if number not in inner]
@@ -78,15 +78,15 @@ class _SceneReader:
             mesh = None
         if mesh is None or not (children or instances_of(told)):
             return SceneNode(name, matrix, mesh, color, children)
-        places = instance_matrices(self._held, told)
+        places = instance_matrices(self._container, told)
         own = (SceneNode(mesh.name, place, mesh, color) for place in places)
         return SceneNode(name, matrix, None, None, (*own, *children))
 
     def _mesh(self, number: int) -> tuple[RawMesh, tuple[float, ...] | None]:
         """Return mesh `number`, always the same object, and its colour or None."""
         if number not in self._meshes:
-            told = self._held.tree["meshes"][number]
-            vertices, faces, said = triangles_of(self._held, told, self._materials)
+            told = self._container.tree["meshes"][number]
+            vertices, faces, said = triangles_of(self._container, told, self._materials)
             points = vertices.astype(np.float64)
             if not np.isfinite(points).all():
                 raise ValueError("a coordinate is not a finite number")

@@ -69,8 +69,8 @@ def obj(file: BinaryIO) -> list[StoredMesh] | list[StoredRows]:
         found.append(StoredRows(vertices, _lines(data, start, end, _named_faces), name))
     if len(found) == 1:
         return found
-    points = vertices.everything()
-    return [StoredMesh(points, one.faces.everything(), one.name) for one in found]
+    points = vertices.all_rows()
+    return [StoredMesh(points, one.faces.all_rows(), one.name) for one in found]
 
 
 def _lines(data: bytes, start: int, end: int, read: Reader) -> Lines:
@@ -125,7 +125,7 @@ def binary_ply(file: BinaryIO) -> list[StoredRows]:
 class _Faces(Rows):
     """Triangles of a binary PLY: rows of three vertex indices, each after a byte of value three."""
 
-    def hold(self, block: slice, expected: npt.NDArray[Any]) -> bool:
+    def block_equals(self, block: slice, expected: npt.NDArray[Any]) -> bool:
         return are_triangles(self.data(block), expected.astype(np.int64, copy=False))
 
     def numbers(self, block: slice) -> npt.NDArray[Any]:

@@ -55,10 +55,10 @@ class RowsInFile(Protocol):
     def dtype(self) -> "np.dtype[Any]":
         """The numpy type of one number in the rows."""
 
-    def are(self, expected: npt.NDArray[Any]) -> bool:
+    def equals(self, expected: npt.NDArray[Any]) -> bool:
         """Say whether the rows equal the rows of `expected`."""
 
-    def everything(self) -> npt.NDArray[Any]:
+    def all_rows(self) -> npt.NDArray[Any]:
         """Return all rows as one array."""
 
     def check_last(self) -> None:
@@ -107,13 +107,14 @@ class Rows:
         if size_of(self._file) != self.end:
             raise ValueError(f"its length is not the {self.end} bytes that follow from its header")
 
-    def are(self, expected: npt.NDArray[Any]) -> bool:
+    def equals(self, expected: npt.NDArray[Any]) -> bool:
         """Say whether the rows equal the rows of `expected` bit by bit."""
         return all(
-            self.hold(block, expected[block]) for block in blocks(self._count, ROWS_PER_FILE_BLOCK)
+            self.block_equals(block, expected[block])
+            for block in blocks(self._count, ROWS_PER_FILE_BLOCK)
         )
 
-    def hold(self, block: slice, expected: npt.NDArray[Any]) -> bool:
+    def block_equals(self, block: slice, expected: npt.NDArray[Any]) -> bool:
         """Say whether a block's rows of 8-byte numbers equal the rows of `expected` bit by bit."""
         base = self._row.base
         words = np.ascontiguousarray(expected, base.newbyteorder("=")).view(np.uint64)
@@ -123,7 +124,7 @@ class Rows:
         """Return the rows of a block as an array."""
         return np.frombuffer(self.data(block), self._row)
 
-    def everything(self) -> npt.NDArray[Any]:
+    def all_rows(self) -> npt.NDArray[Any]:
         """Return all rows as one array."""
         return self.numbers(slice(None))
 
@@ -160,13 +161,13 @@ class StoredRows:
         """Say whether the object has exactly these vertices and faces, in this order."""
         if len(self.vertices) != len(vertices):
             return False
-        found = self.vertices.are(vertices) and self.faces.are(faces)
+        found = self.vertices.equals(vertices) and self.faces.equals(faces)
         self.check_end()
         return found
 
     def loaded(self) -> StoredMesh:
         """Return the object with all of its numbers in memory."""
-        vertices, faces = self.vertices.everything(), self.faces.everything()
+        vertices, faces = self.vertices.all_rows(), self.faces.all_rows()
         self.check_end()
         return StoredMesh(vertices, faces, self.name)
 

@@ -56,7 +56,7 @@ class Lines:
         if size_of(self._file) != self.end():
             raise ValueError("there is data after its last line")
 
-    def are(self, expected: npt.NDArray[Any]) -> bool:
+    def equals(self, expected: npt.NDArray[Any]) -> bool:
         """Say whether the numbers in the lines equal the rows of `expected`."""
         row, end = 0, self._start()
         for text in self._texts():
@@ -67,7 +67,7 @@ class Lines:
         self._end = end
         return True
 
-    def everything(self) -> npt.NDArray[Any]:
+    def all_rows(self) -> npt.NDArray[Any]:
         """Return the numbers in all lines as one array, a row for each line."""
         return np.concatenate([self._read(b""), *map(self._read, self._texts())])
 

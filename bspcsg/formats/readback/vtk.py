@@ -56,7 +56,7 @@ def _check_triangles(offsets: Rows, kinds: Rows) -> None:
     """Raise a `ValueError` unless all cells are triangles, cell k at offset 3 k."""
     for block in blocks(len(offsets), ROWS_PER_FILE_BLOCK):
         rows = np.arange(*block.indices(len(offsets)), dtype=np.int64)
-        if not offsets.hold(block, 3 * rows[:, None]):
+        if not offsets.block_equals(block, 3 * rows[:, None]):
             raise ValueError("a cell does not have three corners")
     for block in blocks(len(kinds), ROWS_PER_FILE_BLOCK):
         data = kinds.data(block)

@@ -85,10 +85,12 @@ class _PropertyCollector:
             self._materials[self._names[k]] = _plain(base[1])
         elif group in part.coordinates:
             texture, places = part.coordinates[group]
-            self._names[k] = self._textures.setdefault(texture, self._called(texture))
+            self._names[k] = self._textures.setdefault(
+                texture, self._distinct_texture_name(texture)
+            )
             self._places[k] = [_entry(places, number) for number in numbers]
 
-    def _called(self, texture: str) -> str:
+    def _distinct_texture_name(self, texture: str) -> str:
         """Return the material name of a texture, distinct from all other material names."""
         if texture not in self._part.textures:
             raise IndexError(f"it refers to texture {texture}, which does not exist")
@@ -152,7 +154,7 @@ def storable(said: Attributes) -> Attributes:
     said = said.without_empty_material()
     names = said.face.get("material")
     if names is not None and names.dtype.kind == "U" and names.ndim == 1:
-        return _storable_materials(said.with_materials_called(stored_name))
+        return _storable_materials(said.with_renamed_materials(stored_name))
 
     def keep(kind: Kind, name: str, values: Values) -> Values | None:
         if not is_color(name, values, 2 if kind == "corner" else 1):

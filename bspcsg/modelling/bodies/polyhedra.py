@@ -29,25 +29,25 @@ _TETRAHEDRON = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
 
 
 class Vectors(NamedTuple):
-    """Vectors, (n, 3), as exact integers (`whole`) and as rounded unit vectors (`units`)."""
+    """Vectors, (n, 3), as exact integers (`exact`) and as rounded unit vectors (`units`)."""
 
-    whole: LongArray
+    exact: LongArray
     units: FloatArray
 
     def at(self, rows: IndexArray | slice) -> "Vectors":
         """Return the vectors at the given row numbers."""
-        return Vectors(self.whole[rows], self.units[rows])
+        return Vectors(self.exact[rows], self.units[rows])
 
 
 class Directions(NamedTuple):
-    """Distinct directions (`each`), and the row in them for each edge or face (`of`)."""
+    """Distinct directions (`distinct`), and the row in them for each edge or face (`rows`)."""
 
-    each: Vectors
-    of: IndexArray
+    distinct: Vectors
+    rows: IndexArray
 
     def at(self, things: IndexArray) -> Vectors:
         """Return the direction vectors of edges or faces, given their numbers."""
-        return self.each.at(self.of[things])
+        return self.distinct.at(self.rows[things])
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ class Polyhedron:
         return self.faces.ravel()[forth], self.faces.ravel()[back]
 
     @cached_property
-    def beside(self) -> tuple[IndexArray, IndexArray]:
+    def adjacent_faces(self) -> tuple[IndexArray, IndexArray]:
         """The faces on the left and right of each edge, seen from outside."""
         forth, back = self._sides
         return forth // 3, back // 3
@@ -83,14 +83,14 @@ class Polyhedron:
     @cached_property
     def sharp(self) -> IndexArray:
         """The edges between faces of different directions."""
-        left, right = self.beside
-        return np.flatnonzero(self.normals.of[left] != self.normals.of[right])
+        left, right = self.adjacent_faces
+        return np.flatnonzero(self.normals.rows[left] != self.normals.rows[right])
 
     @cached_property
     def convex(self) -> IndexArray:
         """The sharp edges at which the solid is convex, or whose two faces lie back to back."""
-        left, right = (self.normals.at(side[self.sharp]).whole for side in self.beside)
-        return self.sharp[_dots(_cross(left, right), self.along.at(self.sharp).whole) >= 0]
+        left, right = (self.normals.at(side[self.sharp]).exact for side in self.adjacent_faces)
+        return self.sharp[_dots(_cross(left, right), self.along.at(self.sharp).exact) >= 0]
 
     @cached_property
     def _leaving(self) -> tuple[IndexArray, IndexArray, IndexArray]:
@@ -106,7 +106,7 @@ class Polyhedron:
     def holds(self, point: IndexArray) -> bool:
         """Return True if a point is inside this convex polyhedron or on its surface."""
         away = (point - self.points[self.faces[:, 0]]).astype(object)
-        return bool((_dots(self.normals.each.whole[self.normals.of], away) <= 0).all())
+        return bool((_dots(self.normals.distinct.exact[self.normals.rows], away) <= 0).all())
 
     def tops(self, rises: Mask) -> tuple[IndexArray, IndexArray]:
         """Return all pairs of a corner and a direction in which none of the corner's edges rises.
@@ -226,7 +226,7 @@ def positive_products(first: Vectors, second: Vectors) -> Mask:
     signs: Mask = products > 0
     row, column = np.nonzero(np.abs(products) <= _SIGN_ERROR)
     if len(row):
-        signs[row, column] = _is_positive(first.whole[row], second.whole[column])
+        signs[row, column] = _is_positive(first.exact[row], second.exact[column])
     return signs
 
 
@@ -239,7 +239,7 @@ def positive_pair_products(first: Vectors, second: Vectors) -> Mask:
     signs: Mask = products > 0
     doubtful = np.flatnonzero(np.abs(products) <= _SIGN_ERROR)
     if len(doubtful):
-        signs[doubtful] = _is_positive(first.whole[doubtful], second.whole[doubtful])
+        signs[doubtful] = _is_positive(first.exact[doubtful], second.exact[doubtful])
     return signs
 
 

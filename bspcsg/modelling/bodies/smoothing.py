@@ -37,7 +37,7 @@ def smooth(solid: Solid, n: int, sharp_angle: Scalar = 60.0) -> Solid:
     if mesh.carried is not None:
         said = attributes_on(mesh, flat, faces, origins).without(NORMALS)
     bent = AttributedMesh(vertices, faces, said)
-    return solid_with(vertices, faces, said, pitch=bent.held_pitch(given_pitch(solid)))
+    return solid_with(vertices, faces, said, pitch=bent.pitch_in_range(given_pitch(solid)))
 
 
 def _handles(mesh: Mesh, at_corners: FloatArray) -> FloatArray:

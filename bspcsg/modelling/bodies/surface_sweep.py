@@ -87,19 +87,19 @@ def _pieces(
 
 def _tops_over_faces(solid: Polyhedron, tool: Polyhedron) -> IndexArray:
     """Return, for each face of a solid, the tool's corner that is farthest along the normal."""
-    normals, along = solid.normals.each, tool.along
+    normals, along = solid.normals.distinct, tool.along
     found = np.empty(len(normals.units), np.int64)
-    for block in blocks(len(found), 2 * len(along.of)):
-        rises = positive_products(normals.at(block), along.each)[:, along.of]
+    for block in blocks(len(found), 2 * len(along.rows)):
+        rises = positive_products(normals.at(block), along.distinct)[:, along.rows]
         corner, row = tool.tops(rises.T)
         found[block][row] = corner
-    return found[solid.normals.of]
+    return found[solid.normals.rows]
 
 
 def _walls_of_faces(solid: Polyhedron, tops: IndexArray, sums: _Sums) -> Iterator[IndexArray]:
     """Yield the walls of the prism on each face, without walls along flat edges, which cancel."""
     start, end = (part[solid.sharp] for part in solid.ends)
-    left, right = (side[solid.sharp] for side in solid.beside)
+    left, right = (side[solid.sharp] for side in solid.adjacent_faces)
     yield from _wall(start, end, tops[left], sums)
     yield from _wall(end, start, tops[right], sums)
 
@@ -116,13 +116,13 @@ def _steps_around(
     steps = tool.sharp
     for block in blocks(len(solid.convex), 4 * len(steps)):
         edges = solid.convex[block]
-        before, after = (_along_tool(solid, side[edges], tool) for side in solid.beside)
+        before, after = (_along_tool(solid, side[edges], tool) for side in solid.adjacent_faces)
         row, column = np.nonzero(before != after)
         edge, step = edges[row], steps[column]
         is_forth = after[row, column]
         left, right = (
             positive_pair_products(solid.along.at(edge), tool.normals.at(side[step]))
-            for side in tool.beside
+            for side in tool.adjacent_faces
         )
         touch = (left != right) & (left == is_forth)
         start, end = (part[step] for part in tool.ends)
@@ -132,11 +132,11 @@ def _steps_around(
 
 def _along_tool(solid: Polyhedron, faces: IndexArray, tool: Polyhedron) -> Mask:
     """Return an (m, n) mask: whether sharp edge n of the tool rises along the normal of face m."""
-    normals, row = np.unique(solid.normals.of[faces], return_inverse=True)
-    edges, column = np.unique(tool.along.of[tool.sharp], return_inverse=True)
-    return positive_products(solid.normals.each.at(normals), tool.along.each.at(edges))[row][
-        :, column
-    ]
+    normals, row = np.unique(solid.normals.rows[faces], return_inverse=True)
+    edges, column = np.unique(tool.along.rows[tool.sharp], return_inverse=True)
+    return positive_products(solid.normals.distinct.at(normals), tool.along.distinct.at(edges))[
+        row
+    ][:, column]
 
 
 def _facing_corners(solid: Polyhedron, tool: Polyhedron) -> Iterator[tuple[IndexArray, IndexArray]]:
@@ -144,9 +144,11 @@ def _facing_corners(solid: Polyhedron, tool: Polyhedron) -> Iterator[tuple[Index
     is_convex = np.zeros(len(solid.points), bool)
     for ends in solid.ends:
         is_convex[ends[solid.convex]] = True
-    for block in blocks(len(tool.faces), 4 * len(solid.along.of)):
-        normals, column = np.unique(tool.normals.of[block], return_inverse=True)
-        rises = positive_products(solid.along.each, tool.normals.each.at(normals))[solid.along.of]
+    for block in blocks(len(tool.faces), 4 * len(solid.along.rows)):
+        normals, column = np.unique(tool.normals.rows[block], return_inverse=True)
+        rises = positive_products(solid.along.distinct, tool.normals.distinct.at(normals))[
+            solid.along.rows
+        ]
         corner, face = solid.tops(rises[:, column])
         yield corner[is_convex[corner]], block.start + face[is_convex[corner]]
 

@@ -91,7 +91,7 @@ class _RoofBuilder:
 
     def __init__(self, loops: Sequence[FloatArray]) -> None:
         self._front = _first_outlines(loops)
-        self._points = self._front.place
+        self._points = self._front.start_position
         self._walls = self._front.walls
         self._nearness = _NEAR * float(np.ptp(self._points, axis=0).max())
         self._nodes: list[tuple[float, float, float]] = []
@@ -138,7 +138,7 @@ class _RoofBuilder:
         for spot, corners in enumerate(met.corners):
             if met.time > 0 and met.is_calm(spot, front):
                 continue
-            x, y = met.places[corners].mean(axis=0).tolist()
+            x, y = met.positions[corners].mean(axis=0).tolist()
             nodes[spot] = len(self._nodes)
             self._nodes.append((x, y, met.time))
             # At time 0 the corners are on the floor, and no edge leads to their nodes.

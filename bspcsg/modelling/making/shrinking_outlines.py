@@ -53,8 +53,8 @@ class ShrinkingOutlines:
     ----------
     node : (n,) int64
         The skeleton node at which each corner started.
-    place : (n, 2) float64
-    since : (n,) float64
+    start_position : (n, 2) float64
+    start_time : (n,) float64
         The position and the time at which each corner started.
     before, after : (n,) int64
         The walls of the sides that end and begin at each corner.
@@ -65,8 +65,8 @@ class ShrinkingOutlines:
     """
 
     node: IndexArray
-    place: FloatArray
-    since: FloatArray
+    start_position: FloatArray
+    start_time: FloatArray
     before: IndexArray
     after: IndexArray
     following: IndexArray
@@ -78,7 +78,7 @@ class ShrinkingOutlines:
 
     def at(self, time: float) -> FloatArray:
         """Return the positions of the corners at a time, (n, 2)."""
-        return np.asarray(self.place + self.speeds() * (time - self.since)[:, None])
+        return np.asarray(self.start_position + self.speeds() * (time - self.start_time)[:, None])
 
     def speeds(self) -> FloatArray:
         """Return the velocities of the corners, (n, 2)."""
@@ -157,7 +157,7 @@ class Contacts:
     Parameters
     ----------
     time : float
-    places : (n, 2) float64
+    positions : (n, 2) float64
         Positions of the corners of the front.
     corners : list of list of int
         The corners at each spot.
@@ -170,7 +170,7 @@ class Contacts:
     """
 
     time: float
-    places: FloatArray
+    positions: FloatArray
     corners: list[list[int]]
     pieces: list[SidePart]
     ridges: list[tuple[SidePart, SidePart]]

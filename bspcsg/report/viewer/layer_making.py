@@ -51,7 +51,7 @@ def layers_of_file(raw: RawMesh, name: str) -> list[Layer]:
 
 
 def _taken(said: Attributes, faces: IndexArray) -> Attributes:
-    return said.taken(faces).with_used_materials()
+    return said.for_faces(faces).with_used_materials()
 
 
 def layers_of_solid(solid: Solid, name: str) -> list[Layer]:
