@@ -62,10 +62,10 @@ def load_as(path: str | os.PathLike[str], suffix: str, **options: Any) -> Assemb
     for name, faces in parts_of(raw):
         rows = np.arange(start, start + len(faces))
         start += len(faces)
-        said = (
+        attributes = (
             None if raw.attributes is None else raw.attributes.for_faces(rows).with_used_materials()
         )
-        solid = solid_of(RawMesh(raw.vertices, faces, name, attributes=said), path, **options)
+        solid = solid_of(RawMesh(raw.vertices, faces, name, attributes=attributes), path, **options)
         children.append(Assembly(name, solid))
     return Assembly(Path(path).stem, children)
 
@@ -243,13 +243,13 @@ class _SceneBuilder:
 
 def _raw(mesh: Mesh, name: str, in_single: bool) -> RawMesh:
     vertices = mesh.vertices.astype(np.float32) if in_single else mesh.vertices
-    said = mesh.attributes.without_empty_material() if mesh.carried is not None else None
-    return RawMesh(vertices.astype(np.float64), mesh.faces, name, attributes=said)
+    attributes = mesh.attributes.without_empty_material() if mesh.carried is not None else None
+    return RawMesh(vertices.astype(np.float64), mesh.faces, name, attributes=attributes)
 
 
-def _is_painted(said: Attributes | None) -> bool:
+def _is_painted(attributes: Attributes | None) -> bool:
     """Return True if a mesh has colours or materials, which override the colour of its part."""
-    return said is not None and not {"color", "material"}.isdisjoint(said.names)
+    return attributes is not None and not {"color", "material"}.isdisjoint(attributes.names)
 
 
 class _ThreemfConverter:
@@ -270,8 +270,8 @@ class _ThreemfConverter:
     def _mesh(self, mesh: RawMesh) -> RawMesh:
         if id(mesh) not in self._meshes:
             held = None if mesh.attributes is None else storable(mesh.attributes)
-            said = None if held is None or held.is_empty else held
-            self._meshes[id(mesh)] = replace(mesh, attributes=said)
+            attributes = None if held is None or held.is_empty else held
+            self._meshes[id(mesh)] = replace(mesh, attributes=attributes)
         return self._meshes[id(mesh)]
 
 
@@ -300,13 +300,13 @@ def _single_mesh(assembly: Assembly) -> tuple[RawMesh, set[str]]:
     lost: set[str] = set()
     for part in assembly.parts:
         mesh = transformed_solid(part.shape, part.factors).normalized().to_mesh()
-        said = mesh.attributes.without_empty_material()
-        if part.color is not None and not _is_painted(said):
+        attributes = mesh.attributes.without_empty_material()
+        if part.color is not None and not _is_painted(attributes):
             name = hexadecimal(part.color)
-            face = {**said.face, "material": np.full(len(mesh.faces), name)}
-            said = replace(said, face=face, materials={name: Material(part.color)})
-        held = obj.storable(said)
-        lost.update(set(said.names).difference(held.names))
+            face = {**attributes.face, "material": np.full(len(mesh.faces), name)}
+            attributes = replace(attributes, face=face, materials={name: Material(part.color)})
+        held = obj.storable(attributes)
+        lost.update(set(attributes.names).difference(held.names))
         own = None if held.is_empty else held
         pieces.append(RawMesh(mesh.vertices, mesh.faces, part.path, attributes=own))
     if any(one.attributes and "material" in one.attributes.face for one in pieces):

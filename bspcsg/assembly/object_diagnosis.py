@@ -85,10 +85,10 @@ def examine(raw: RawMesh) -> Examination:
     objects = []
     for name, rows in groups:
         used, faces = compacted(raw.faces[rows])
-        said = (
+        attributes = (
             None if raw.attributes is None else raw.attributes.for_faces(rows).with_used_materials()
         )
-        mesh = RawMesh(raw.vertices[used], faces, name, unit=raw.unit, attributes=said)
+        mesh = RawMesh(raw.vertices[used], faces, name, unit=raw.unit, attributes=attributes)
         objects.append(ExaminedObject(name, mesh, diagnose(mesh)))
     clashes = _clashes(objects)
     findings = [*raw.findings, *_findings(objects, [rows for _, rows in groups])]

@@ -156,19 +156,19 @@ class Attributes:
         image = np.array([names.get(kind, kind) for kind in kinds.tolist()])[numbers]
         return replace(self, face={**self.face, "material": image})
 
-    def with_renamed_materials(self, called: Callable[[str], str]) -> "Attributes":
+    def with_renamed_materials(self, new_name: Callable[[str], str]) -> "Attributes":
         """Return the attributes with renamed materials; equal new names get numbers appended."""
         values = self.face.get("material")
         if values is None:
             return self
         kinds, numbers = np.unique(values, return_inverse=True)
-        image = {kind: kind for kind in kinds.tolist() if called(kind) == kind}
+        image = {kind: kind for kind in kinds.tolist() if new_name(kind) == kind}
         if len(image) == len(kinds):
             return self
         taken = set(image)
         for kind in kinds.tolist():
             if kind not in image:
-                image[kind] = _unused_name(called(kind), taken.__contains__)
+                image[kind] = _unused_name(new_name(kind), taken.__contains__)
                 taken.add(image[kind])
         materials = {image[name]: one for name, one in self.materials.items() if name in image}
         told = np.array([image[kind] for kind in kinds.tolist()])[numbers]
@@ -254,17 +254,17 @@ def _rotated_normals(values: Values, linear: FloatArray) -> Values:
     return turned
 
 
-def corners_to_faces(said: Attributes, only: str | None = None) -> Attributes:
+def corners_to_faces(attributes: Attributes, only: str | None = None) -> Attributes:
     """Turn attributes of corners into attributes of faces if the corners of every face agree.
 
     Parameters
     ----------
-    said : Attributes
+    attributes : Attributes
     only : str, optional
         The only attribute to change; by default all are tested.
     """
     even = {}
-    for name, values in said.corner.items():
+    for name, values in attributes.corner.items():
         if only not in (None, name):
             continue
         same = values == values[:, :1]
@@ -272,8 +272,10 @@ def corners_to_faces(said: Attributes, only: str | None = None) -> Attributes:
             same |= np.isnan(values) & np.isnan(values[:, :1])
         if same.all():
             even[name] = values[:, 0]
-    rest = said.without(even)
-    return Attributes(said.faces, rest.vertex, rest.corner, {**rest.face, **even}, said.materials)
+    rest = attributes.without(even)
+    return Attributes(
+        attributes.faces, rest.vertex, rest.corner, {**rest.face, **even}, attributes.materials
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -182,9 +182,9 @@ def opaque(colors: npt.NDArray[Any]) -> npt.NDArray[Any]:
     return np.concatenate([colors, np.full_like(colors[..., :1], full)], axis=-1)
 
 
-def are_equal_in_bytes(some: npt.NDArray[Any], others: npt.NDArray[Any]) -> bool:
+def are_equal_in_bytes(first: npt.NDArray[Any], second: npt.NDArray[Any]) -> bool:
     """Return True if two arrays of colours are equal after conversion to bytes."""
-    return np.array_equal(opaque(as_bytes(some)), opaque(as_bytes(others)))
+    return np.array_equal(opaque(as_bytes(first)), opaque(as_bytes(second)))
 
 
 def is_opaque(colors: npt.NDArray[Any]) -> bool:

@@ -167,17 +167,25 @@ def inherited_attributes(
         If a name has values of different shapes in two sources; code ``"attributes"``.
     """
     rows_of = dict(_by_slot(surface.source))
-    lots = []
+    sources_of_triangles = []
     for slot, attributes in enumerate(sources):
         if attributes is not None:
             rows = rows_of.get(slot, _NO_ROWS)
             known = arrays_of(slot) if len(rows) else None
-            lots.append(_triangles_of(surface, rows, attributes, known or _NO_ARRAYS))
+            sources_of_triangles.append(
+                _triangles_of(surface, rows, attributes, known or _NO_ARRAYS)
+            )
     materials: dict[str, Material] = {}
-    lots = [replace(lot, attributes=lot.attributes.among(materials)) for lot in lots]
+    sources_of_triangles = [
+        replace(lot, attributes=lot.attributes.among(materials)) for lot in sources_of_triangles
+    ]
     found: dict[Kind, dict[str, Values]] = {"vertex": {}, "corner": {}, "face": {}}
-    for name in dict.fromkeys(name for lot in lots for name in lot.attributes.names):
-        kind, values = _joined(name, [lot for lot in lots if name in lot.attributes.names], surface)
+    for name in dict.fromkeys(
+        name for lot in sources_of_triangles for name in lot.attributes.names
+    ):
+        kind, values = _joined(
+            name, [lot for lot in sources_of_triangles if name in lot.attributes.names], surface
+        )
         values.flags.writeable = False
         found[kind][name] = values
     return Attributes(surface.faces, **found, materials=materials)
@@ -274,23 +282,31 @@ def _interpolated(values: Values, places: FloatArray) -> Values:
     return found
 
 
-def _joined(name: str, lots: list[_SourceTriangles], surface: Surface) -> tuple[Kind, Values]:
+def _joined(
+    name: str, sources_of_triangles: list[_SourceTriangles], surface: Surface
+) -> tuple[Kind, Values]:
     """Return the values of an attribute in the result, and the kind of elements they belong to."""
-    kinds = {lot.attributes.kind_of(name) for lot in lots}
+    kinds = {lot.attributes.kind_of(name) for lot in sources_of_triangles}
     if kinds == {"face"}:
-        parts = [lot.of_faces(name) for lot in lots]
-        return "face", _values_of_all_triangles(name, lots, parts, (len(surface.faces),), 1)
-    parts = [lot.values(name) for lot in lots]
-    values = _values_of_all_triangles(name, lots, parts, (len(surface.faces), 3), 2)
+        parts = [lot.of_faces(name) for lot in sources_of_triangles]
+        return "face", _values_of_all_triangles(
+            name, sources_of_triangles, parts, (len(surface.faces),), 1
+        )
+    parts = [lot.values(name) for lot in sources_of_triangles]
+    values = _values_of_all_triangles(name, sources_of_triangles, parts, (len(surface.faces), 3), 2)
     if kinds == {"vertex"}:
-        common = _of_vertices(name, values, lots, surface)
+        common = _of_vertices(name, values, sources_of_triangles, surface)
         if common is not None:
             return "vertex", common
     return "corner", values
 
 
 def _values_of_all_triangles(
-    name: str, lots: list[_SourceTriangles], parts: list[Values], shape: tuple[int, ...], depth: int
+    name: str,
+    sources_of_triangles: list[_SourceTriangles],
+    parts: list[Values],
+    shape: tuple[int, ...],
+    depth: int,
 ) -> Values:
     """Return the values of an attribute for all triangles of a result.
 
@@ -300,7 +316,7 @@ def _values_of_all_triangles(
     kind = common_type(name, parts, depth)
     blank = default_of(name, parts[0].astype(kind, copy=False), depth)
     filled = np.full(shape + parts[0].shape[depth:], blank, dtype=kind)
-    for lot, part in zip(lots, parts, strict=True):
+    for lot, part in zip(sources_of_triangles, parts, strict=True):
         filled[lot.rows] = part
     return filled
 
@@ -374,7 +390,7 @@ def default_of(name: str, values: Values, depth: int) -> Any:
 
 
 def _of_vertices(
-    name: str, values: Values, lots: list[_SourceTriangles], surface: Surface
+    name: str, values: Values, sources_of_triangles: list[_SourceTriangles], surface: Surface
 ) -> Values | None:
     """Return one value per vertex if all corners at each vertex have equal values, else None."""
     count = len(surface.vertices)
@@ -382,7 +398,7 @@ def _of_vertices(
     vertices = surface.faces.ravel()
     # Write copied values last, so that they replace interpolated ones.
     is_given = np.zeros(len(surface.faces) * 3, dtype=bool).reshape(-1, 3)
-    for lot in lots:
+    for lot in sources_of_triangles:
         is_given[lot.rows] = lot.corners >= 0
     order = np.argsort(is_given.ravel(), kind="stable")
     common = np.full((count, flat.shape[1]), default_of(name, values, 2), dtype=values.dtype)

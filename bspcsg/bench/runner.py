@@ -250,32 +250,32 @@ class Gathered:
         self._extent: dict[str, Any] = {}
         self._engines: dict[str, dict[str, Any]] = {}
 
-    def take(self, said: dict[str, Any]) -> None:
+    def take(self, message: dict[str, Any]) -> None:
         """Store one report of a worker."""
-        if said["say"] == "extent":
-            self._extent = {name: said[name] for name in ("area", "size", "triangles")}
-        elif said["say"] == "plan":
-            self._of(said)["planned"] = said["runs"]
-        elif said["say"] == "run":
-            self._add_run(self._of(said), said)
-        elif said["say"] == "step":
-            self._of(said)["steps_done"] = said["done"]
-        elif said["say"] == "failed":
-            self._of(said).update(state="failed", reason=said["reason"])
+        if message["say"] == "extent":
+            self._extent = {name: message[name] for name in ("area", "size", "triangles")}
+        elif message["say"] == "plan":
+            self._of(message)["planned"] = message["runs"]
+        elif message["say"] == "run":
+            self._add_run(self._of(message), message)
+        elif message["say"] == "step":
+            self._of(message)["steps_done"] = message["done"]
+        elif message["say"] == "failed":
+            self._of(message).update(state="failed", reason=message["reason"])
 
-    def _of(self, said: dict[str, Any]) -> dict[str, Any]:
-        return self._engines.setdefault(said["engine"], _empty_result())
+    def _of(self, message: dict[str, Any]) -> dict[str, Any]:
+        return self._engines.setdefault(message["engine"], _empty_result())
 
-    def _add_run(self, found: dict[str, Any], said: dict[str, Any]) -> None:
-        found["seconds"].append(said["seconds"])
-        found["cpu_seconds"].append(said["cpu"])
-        found["memory_mb"] = max(found["memory_mb"], said["memory_mb"] or 0.0)
-        found["peak_mb"] = max(found.get("peak_mb", 0.0), said["peak_mb"])
-        found.setdefault("volumes", []).append(said["facts"]["volume"])
-        found.setdefault("faults_each", []).append(said.get("faults", 0))
+    def _add_run(self, found: dict[str, Any], message: dict[str, Any]) -> None:
+        found["seconds"].append(message["seconds"])
+        found["cpu_seconds"].append(message["cpu"])
+        found["memory_mb"] = max(found["memory_mb"], message["memory_mb"] or 0.0)
+        found["peak_mb"] = max(found.get("peak_mb", 0.0), message["peak_mb"])
+        found.setdefault("volumes", []).append(message["facts"]["volume"])
+        found.setdefault("faults_each", []).append(message.get("faults", 0))
         for name in ("parts", "windows", "counters", "facts", "answer_mb", "steps", "proof"):
-            if name in said:
-                found[name] = said[name]
+            if name in message:
+                found[name] = message[name]
 
     def ended(self, engine: str, reason: dict[str, Any]) -> None:
         """Store that the worker ended during a call of this engine."""

@@ -275,16 +275,16 @@ def encoded(
             " write PLY, OBJ, OFF or 3MF instead."
         )
         raise FormatError(message, "too_large") from None
-    said = attributes_or_none(mesh)
+    attributes = attributes_or_none(mesh)
     kept = (
-        form.storable(said, mesh.vertices)
-        if said is not None and form.storable is not None
+        form.storable(attributes, mesh.vertices)
+        if attributes is not None and form.storable is not None
         else None
     )
-    if said is not None:
-        findings = (*findings, *attribute_losses(said, kept, suffix))
+    if attributes is not None:
+        findings = (*findings, *attribute_losses(attributes, kept, suffix))
     if kept is None or kept.is_empty:
-        bare = mesh if said is None else with_attributes(mesh, None)
+        bare = mesh if attributes is None else with_attributes(mesh, None)
         proof = partial(verify, name, bare, form.scan, form.name_in_file, form.repeats)
         return Encoded(form.encode(bare), findings, proof)
     full = with_attributes(mesh, kept)

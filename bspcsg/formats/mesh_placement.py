@@ -207,14 +207,16 @@ def _replace_with_mended(
         start, end = end, end + len(meshes[number].faces)
         rows = np.flatnonzero((found.origins >= start) & (found.origins < end))
         used, faces = compacted(found.mesh.faces[rows])
-        said = found.mesh.attributes
-        if meshes[number].attributes is not None and said is not None:
-            said = replace(said.for_faces(rows), faces=faces).with_used_materials()
+        attributes = found.mesh.attributes
+        if meshes[number].attributes is not None and attributes is not None:
+            attributes = replace(attributes.for_faces(rows), faces=faces).with_used_materials()
         else:
-            said = None
+            attributes = None
         vertices = found.mesh.vertices[used]
         crossing[number] = np.flatnonzero(np.isin(rows, found.crossing)).tolist()
-        meshes[number] = replace(meshes[number], vertices=vertices, faces=faces, attributes=said)
+        meshes[number] = replace(
+            meshes[number], vertices=vertices, faces=faces, attributes=attributes
+        )
 
 
 def _with_findings(

@@ -84,7 +84,7 @@ def read(source: Source) -> RawMesh:
         lambda k, message, code: source.error(message, code, line=found.face_lines[k]),
     )
     faces = polygons.corners[positions]
-    said, missing = _attributes_of(source, found, polygons, positions)
+    attributes, missing = _attributes_of(source, found, polygons, positions)
     named = _objects(found.objects, [len(corners) - 2 for corners in found.polygons], len(faces))
     return RawMesh(
         vertices,
@@ -93,7 +93,7 @@ def read(source: Source) -> RawMesh:
         (*_curved(found.surfaces), *_missing(missing)),
         objects=named if len(named) > 1 else (),
         dropped=(*sorted(found.dropped), *polygons.dropped),
-        attributes=None if said.is_empty else _with_colors(said),
+        attributes=None if attributes.is_empty else _with_colors(attributes),
     )
 
 
@@ -329,15 +329,15 @@ def stored_name(name: str) -> str:
     return on_one_line(name).replace("#", "_").replace("\\", "_")
 
 
-def storable(said: Attributes) -> Attributes:
+def storable(attributes: Attributes) -> Attributes:
     """Return the attributes that OBJ can store.
 
     These are colours of vertices, without opacity; materials of faces, or else colours of faces;
     texture coordinates and normals.
     """
-    said = _with_colors_of_vertices(said.without_empty_material())
-    given = _named_materials(said)
-    names = _storable_names({*np.unique(given).tolist(), *said.materials})
+    attributes = _with_colors_of_vertices(attributes.without_empty_material())
+    given = _named_materials(attributes)
+    names = _storable_names({*np.unique(given).tolist(), *attributes.materials})
 
     def keep(kind: Kind, name: str, values: Values) -> Values | None:
         depth = 2 if kind == "corner" else 1
@@ -347,34 +347,34 @@ def storable(said: Attributes) -> Attributes:
         if kind == "vertex" and is_color(name, values, depth):
             return as_floats(values)[:, :3]
         if kind == "face" and is_color(name, values, depth):
-            return None if "material" in said.face else opaque(as_bytes(values))
+            return None if "material" in attributes.face else opaque(as_bytes(values))
         width = _CORNERS.get(name)
         if kind != "face" and values.dtype.kind == "f" and values.shape[depth:] == (width,):
             return _whole_rows(values)
         return None
 
-    held = selected_attributes(said, keep)
+    held = selected_attributes(attributes, keep)
     used = set(held.face["material"].tolist()) if "material" in held.face else set()
-    named = {names[name]: material for name, material in said.materials.items()}
+    named = {names[name]: material for name, material in attributes.materials.items()}
     materials = {name: material for name, material in named.items() if name in used}
     return Attributes(held.faces, held.vertex, held.corner, held.face, materials)
 
 
-def _with_colors_of_vertices(said: Attributes) -> Attributes:
+def _with_colors_of_vertices(attributes: Attributes) -> Attributes:
     """Return the attributes, with opaque face colours made vertex colours.
 
     If faces at a vertex have different colours, the attributes stay unchanged.
     """
-    said = corners_to_faces(said, COLOR)
-    colors = said.face.get(COLOR)
+    attributes = corners_to_faces(attributes, COLOR)
+    colors = attributes.face.get(COLOR)
     if colors is None or not is_color(COLOR, colors, 1) or not is_opaque(colors):
-        return said
-    found = np.zeros((int(said.faces.max(initial=-1)) + 1, 3))
+        return attributes
+    found = np.zeros((int(attributes.faces.max(initial=-1)) + 1, 3))
     shown = as_floats(colors)[:, None, :3]
-    found[said.faces] = shown
-    if not np.array_equal(found[said.faces], np.repeat(shown, 3, axis=1)):
-        return said
-    rest = said.without({COLOR})
+    found[attributes.faces] = shown
+    if not np.array_equal(found[attributes.faces], np.repeat(shown, 3, axis=1)):
+        return attributes
+    rest = attributes.without({COLOR})
     return replace(rest, vertex={**rest.vertex, COLOR: found})
 
 
@@ -382,20 +382,20 @@ def _with_colors_of_vertices(said: Attributes) -> Attributes:
 _COLORED = re.compile("color_([0-9a-f]{8})")
 
 
-def _with_colors(said: Attributes) -> Attributes:
+def _with_colors(attributes: Attributes) -> Attributes:
     """Return the attributes with face colours instead of materials, if all are named after colours.
 
     If another material is used, the attributes stay unchanged.
     """
-    names = said.face.get("material")
-    if names is None or COLOR in said.names:
-        return said
+    names = attributes.face.get("material")
+    if names is None or COLOR in attributes.names:
+        return attributes
     kinds, numbers = np.unique(names, return_inverse=True)
-    colors = [_color_called(kind, said.materials.get(kind)) for kind in kinds.tolist()]
+    colors = [_color_called(kind, attributes.materials.get(kind)) for kind in kinds.tolist()]
     if not all(colors):
-        return said
+        return attributes
     table = np.array([list(color) for color in colors], dtype=np.uint8)
-    rest = said.without({"material"})
+    rest = attributes.without({"material"})
     return replace(rest, face={**rest.face, COLOR: table[numbers]}, materials={})
 
 
@@ -415,21 +415,21 @@ def _color_called(name: str, material: Material | None) -> bytes:
 _BYTE = 255
 
 
-def with_materials(said: Attributes | None) -> Attributes | None:
+def with_materials(attributes: Attributes | None) -> Attributes | None:
     """Return the attributes with materials instead of face colours, which OBJ does not have."""
-    if said is None or COLOR not in said.face:
-        return said
-    kinds, numbers = np.unique(said.face[COLOR], axis=0, return_inverse=True)
+    if attributes is None or COLOR not in attributes.face:
+        return attributes
+    kinds, numbers = np.unique(attributes.face[COLOR], axis=0, return_inverse=True)
     names = [f"color_{bytes(kind).hex()}" for kind in kinds.tolist()]
     materials = {name: Material(kind / _BYTE) for name, kind in zip(names, kinds, strict=True)}
-    rest = said.without({COLOR})
+    rest = attributes.without({COLOR})
     face = {**rest.face, "material": np.array(names)[numbers.ravel()]}
     return replace(rest, face=face, materials=materials)
 
 
-def _named_materials(said: Attributes) -> Values:
+def _named_materials(attributes: Attributes) -> Values:
     """Return the material name of each face; an empty array if faces have no materials."""
-    names = said.face.get("material")
+    names = attributes.face.get("material")
     if names is not None and names.dtype.kind == "U" and names.ndim == 1:
         return names
     return np.array([], dtype=str)
@@ -469,10 +469,10 @@ def companion_files(mesh: RawMesh, stem: str) -> tuple[bytes, dict[str, bytes]]:
 
     Both are empty if there are no materials.
     """
-    said = with_materials(attributes_or_none(mesh))
-    if said is None or not said.materials:
+    attributes = with_materials(attributes_or_none(mesh))
+    if attributes is None or not attributes.materials:
         return b"", {}
-    library, files = mtl.library_and_companions(said.materials, _escaped_stem(stem))
+    library, files = mtl.library_and_companions(attributes.materials, _escaped_stem(stem))
     return f"mtllib {library}\n".encode(), files
 
 
@@ -489,16 +489,16 @@ def _escaped_stem(stem: str) -> str:
 
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the bytes of an OBJ file; every coordinate reads back as the same double."""
-    said = with_materials(attributes_or_none(mesh))
+    attributes = with_materials(attributes_or_none(mesh))
     if represents_empty_set(mesh):
         yield EMPTY_SET
-    if said is not None and "color" in said.vertex:
-        for point in listed(np.concatenate([mesh.vertices, said.vertex["color"]], axis=1)):
+    if attributes is not None and "color" in attributes.vertex:
+        for point in listed(np.concatenate([mesh.vertices, attributes.vertex["color"]], axis=1)):
             yield "v {!r} {!r} {!r} {!r} {!r} {!r}\n".format(*point).encode()
     else:
         yield from encoded_lines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in listed(mesh.vertices))
-    if said is not None:
-        yield from _text_with_attributes(mesh, said)
+    if attributes is not None:
+        yield from _text_with_attributes(mesh, attributes)
         return
     parts = parts_of(mesh)
     for name, faces in parts:
@@ -508,17 +508,17 @@ def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
         yield from encoded_lines(f"f {a} {b} {c}\n" for a, b, c in corners)
 
 
-def _text_with_attributes(mesh: Mesh | RawMesh, said: Attributes) -> Iterator[bytes]:
+def _text_with_attributes(mesh: Mesh | RawMesh, attributes: Attributes) -> Iterator[bytes]:
     numbers: dict[str, IndexArray] = {}
     for name, key in (("uv", "vt"), ("normal", "vn")):
-        if said.kind_of(name) in ("vertex", "corner"):
-            corners = said.at_corners(name).reshape(-1, _CORNERS[name])
+        if attributes.kind_of(name) in ("vertex", "corner"):
+            corners = attributes.at_corners(name).reshape(-1, _CORNERS[name])
             rows, inverse = np.unique(corners, axis=0, return_inverse=True)
             is_known = ~np.isnan(rows).any(axis=1)
             numbers[name] = np.where(is_known, np.cumsum(is_known), 0)[inverse].reshape(-1, 3)
             for row in rows[is_known].tolist():
                 yield f"{key} {' '.join(map(repr, row))}\n".encode()
-    names = said.face.get("material")
+    names = attributes.face.get("material")
     current, start = "", 0
     parts = parts_of(mesh)
     for name, faces in parts:

@@ -93,9 +93,9 @@ def _mesh(
     of_faces = _colors([words[to_integral(words[0]) + 1 :] for _, words in polygons])
     vertex = {} if of_points is None else {"color": of_points}
     face = {} if of_faces is None or vertex else {"color": of_faces[flat.owners(positions)]}
-    said = Attributes(faces, vertex, {}, face) if vertex or face else None
+    attributes = Attributes(faces, vertex, {}, face) if vertex or face else None
     dropped = (*_more_than_a_shape(points, polygons, vertex, face), *flat.dropped)
-    return RawMesh(vertices, faces, "", extra, dropped=dropped, attributes=said)
+    return RawMesh(vertices, faces, "", extra, dropped=dropped, attributes=attributes)
 
 
 def _more_than_a_shape(
@@ -127,15 +127,15 @@ def _colors(rows: Sequence[Sequence[bytes]]) -> Values | None:
         return None
 
 
-def storable(said: Attributes) -> Attributes:
+def storable(attributes: Attributes) -> Attributes:
     """Return the attributes that OFF can store: colours of vertices, else of faces, as bytes."""
-    said = corners_to_faces(said, COLOR)
+    attributes = corners_to_faces(attributes, COLOR)
 
     def keep(kind: Kind, name: str, values: Values) -> Values | None:
         is_held = kind != "corner" and is_color(name, values, 1)
         return as_bytes(values) if is_held else None
 
-    return selected_attributes(said, keep)
+    return selected_attributes(attributes, keep)
 
 
 def _body(source: Source) -> tuple[bytes, list[_Line]]:
@@ -219,12 +219,12 @@ def _extra_lines(lines: list[_Line]) -> tuple[Finding, ...]:
 
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the bytes of an OFF file; every coordinate reads back as the same double."""
-    said = attributes_or_none(mesh)
-    keyword = b"COFF\n" if said and said.vertex else b"OFF\n"
+    attributes = attributes_or_none(mesh)
+    keyword = b"COFF\n" if attributes and attributes.vertex else b"OFF\n"
     yield keyword + (EMPTY_SET if represents_empty_set(mesh) else b"")
     yield f"{len(mesh.vertices)} {len(mesh.faces)} 0\n".encode()
-    points = _words(said.vertex if said else {}, len(mesh.vertices))
-    faces = _words(said.face if said else {}, len(mesh.faces))
+    points = _words(attributes.vertex if attributes else {}, len(mesh.vertices))
+    faces = _words(attributes.face if attributes else {}, len(mesh.faces))
     yield from encoded_lines(_data(mesh, points, faces))
 
 

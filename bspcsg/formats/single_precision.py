@@ -147,10 +147,10 @@ def _faulty_triangles(proof: Certificate) -> IndexArray:
     return _in_either(np.array(proof.crossings), np.array(proof.flat))
 
 
-def _in_either(some: IndexArray, others: IndexArray) -> IndexArray:
+def _in_either(first: IndexArray, second: IndexArray) -> IndexArray:
     """Return the numbers that are in at least one of two lists, ascending."""
     # Not numpy.unique: it imports numpy.ma, a tenth of the time of a small boolean operation.
-    return np.array(sorted({*some.ravel().tolist(), *others.tolist()}), dtype=np.int64)
+    return np.array(sorted({*first.ravel().tolist(), *second.tolist()}), dtype=np.int64)
 
 
 def _united(mesh: Mesh) -> Mesh:

@@ -15,8 +15,8 @@ from .raw import RawMesh
 def attributes_or_none(mesh: Mesh | RawMesh) -> Attributes | None:
     """Return the attributes of a mesh; None if it has no attributes or no triangles."""
     has_none = isinstance(mesh, Mesh) and mesh.carried is None
-    said = None if has_none or not len(mesh.faces) else mesh.attributes
-    return None if said is None or said.is_empty else said
+    attributes = None if has_none or not len(mesh.faces) else mesh.attributes
+    return None if attributes is None or attributes.is_empty else attributes
 
 
 def with_attributes(mesh: Mesh | RawMesh, attributes: Attributes | None) -> RawMesh:
@@ -27,7 +27,7 @@ def with_attributes(mesh: Mesh | RawMesh, attributes: Attributes | None) -> RawM
 
 
 def selected_attributes(
-    said: Attributes, keep: Callable[[Kind, str, Values], Values | None]
+    attributes: Attributes, keep: Callable[[Kind, str, Values], Values | None]
 ) -> Attributes:
     """Return the attributes for which `keep` returns values, with these values.
 
@@ -36,43 +36,45 @@ def selected_attributes(
     vertex, corner, face = (
         {
             name: values
-            for name, given in said.of(kind).items()
+            for name, given in attributes.of(kind).items()
             if (values := keep(kind, name, given)) is not None
         }
         for kind in KINDS
     )
     names = face.get("material")
-    materials = said.materials if names is not None and names.dtype.kind == "U" else {}
-    return Attributes(said.faces, vertex, corner, face, materials)
+    materials = attributes.materials if names is not None and names.dtype.kind == "U" else {}
+    return Attributes(attributes.faces, vertex, corner, face, materials)
 
 
-def attribute_losses(said: Attributes, kept: Attributes | None, suffix: str) -> tuple[Finding, ...]:
-    """Return findings about attributes of `said` that are missing or changed in `kept`."""
-    held = Attributes(said.faces) if kept is None else kept
-    lost = [name for name in said.names if name not in held.names]
-    told = [f"“{name}” of {_PLURAL[said.kind_of(name) or 'face']}" for name in lost]
+def attribute_losses(
+    attributes: Attributes, kept: Attributes | None, suffix: str
+) -> tuple[Finding, ...]:
+    """Return findings about attributes of `attributes` that are missing or changed in `kept`."""
+    held = Attributes(attributes.faces) if kept is None else kept
+    lost = [name for name in attributes.names if name not in held.names]
+    told = [f"“{name}” of {_PLURAL[attributes.kind_of(name) or 'face']}" for name in lost]
     if COLOR in lost and "material" in held.names:
         told[lost.index(COLOR)] += " beside “material”"
-    return (*unstorable_finding(told, suffix), *_changed_color(said, held, suffix))
+    return (*unstorable_finding(told, suffix), *_changed_color(attributes, held, suffix))
 
 
-def unstorable_finding(told: Sequence[str], suffix: str) -> tuple[Finding, ...]:
-    """Return the finding that a format cannot store the attributes which `told` describes.
+def unstorable_finding(names: Sequence[str], suffix: str) -> tuple[Finding, ...]:
+    """Return the finding that a format cannot store the attributes which `names` describes.
 
-    Return nothing if `told` is empty.
+    Return nothing if `names` is empty.
     """
-    if not told:
+    if not names:
         return ()
-    were = "was" if len(told) == 1 else "were"
-    message = f"{suffix[1:].upper()} cannot store {', '.join(told)}, which {were} left out."
-    return (Finding("attributes_left_out", "warning", message, (), len(told)),)
+    were = "was" if len(names) == 1 else "were"
+    message = f"{suffix[1:].upper()} cannot store {', '.join(names)}, which {were} left out."
+    return (Finding("attributes_left_out", "warning", message, (), len(names)),)
 
 
-def _changed_color(said: Attributes, held: Attributes, suffix: str) -> tuple[Finding, ...]:
+def _changed_color(attributes: Attributes, stored: Attributes, suffix: str) -> tuple[Finding, ...]:
     """Return a finding if a file stores colours rounded or without opacity, else nothing."""
-    if COLOR not in said.names or COLOR not in held.names:
+    if COLOR not in attributes.names or COLOR not in stored.names:
         return ()
-    given, kept = said.at_corners(COLOR), held.at_corners(COLOR)
+    given, kept = attributes.at_corners(COLOR), stored.at_corners(COLOR)
     if not is_color(COLOR, given, 2):
         return ()
     name = suffix[1:].upper()

@@ -29,7 +29,7 @@ def verify(
     path: str,
     mesh: Mesh | RawMesh,
     scan: ObjectReader,
-    called: NameInFile | None,
+    name_in_file: NameInFile | None,
     repeats: bool,
     file: BinaryIO,
 ) -> None:
@@ -43,7 +43,7 @@ def verify(
         The mesh that was written.
     scan : callable
         Returns the objects of the file.
-    called : callable, optional
+    name_in_file : callable, optional
         Returns the name that the file has for an object; None if the format has no objects.
     repeats : bool
         True if the format can store triangles that name a vertex twice.
@@ -57,15 +57,15 @@ def verify(
         attribute `where` has the number of the first triangle that differs.
     """
     with _reading(path):
-        held = [one for one in scan(file) if one.count]
-    expected = _expected_objects(mesh, called, repeats)
-    _compare_counts(path, expected, held)
+        stored = [one for one in scan(file) if one.count]
+    expected = _expected_objects(mesh, name_in_file, repeats)
+    _compare_counts(path, expected, stored)
     with _reading(path):
-        rounded = _rounded(mesh, held)
+        rounded = _rounded(mesh, stored)
         # The fastest comparison: a file with one object may have exactly the arrays of the mesh.
-        if len(held) == 1 and held[0].has(rounded, expected[0][1]):
+        if len(stored) == 1 and stored[0].has(rounded, expected[0][1]):
             return
-        loaded = [one.loaded() for one in held]
+        loaded = [one.loaded() for one in stored]
     _compare_corners(path, rounded, expected, loaded)
 
 
@@ -84,7 +84,7 @@ def verify_with_attributes(
     path: str,
     mesh: RawMesh,
     read: Callable[[str, bytes], RawMesh],
-    called: NameInFile | None,
+    name_in_file: NameInFile | None,
     repeats: bool,
     file: BinaryIO,
 ) -> None:
@@ -113,11 +113,11 @@ def verify_with_attributes(
     vertices = found.vertices
     if np.array_equal(vertices, vertices.astype(np.float32)):
         vertices = vertices.astype(np.float32)
-    named = [("", found.faces)] if called is None else parts_of(found)
-    held = [StoredMesh(vertices, faces, name) for name, faces in named if len(faces)]
-    expected = _expected_objects(mesh, called, repeats)
-    _compare_counts(path, expected, held)
-    _compare_corners(path, _rounded(mesh, held), expected, held)
+    named = [("", found.faces)] if name_in_file is None else parts_of(found)
+    stored = [StoredMesh(vertices, faces, name) for name, faces in named if len(faces)]
+    expected = _expected_objects(mesh, name_in_file, repeats)
+    _compare_counts(path, expected, stored)
+    _compare_corners(path, _rounded(mesh, stored), expected, stored)
     rows = np.arange(len(mesh.faces)) if repeats else np.flatnonzero(_three_corners(mesh.faces))
     _compare_attributes(path, mesh, found, rows)
 
@@ -151,12 +151,12 @@ def _mismatch(path: str, reason: str, where: tuple[int, ...] = ()) -> FormatErro
 
 
 def _expected_objects(
-    mesh: Mesh | RawMesh, called: NameInFile | None, repeats: bool
+    mesh: Mesh | RawMesh, name_in_file: NameInFile | None, repeats: bool
 ) -> list[tuple[str, IndexArray]]:
     """Return name and triangles of each object that the written file must contain."""
-    parts = [("", mesh.faces)] if called is None else parts_of(mesh)
-    if called is not None:
-        parts = [(called(name), faces) for name, faces in parts]
+    parts = [("", mesh.faces)] if name_in_file is None else parts_of(mesh)
+    if name_in_file is not None:
+        parts = [(name_in_file(name), faces) for name, faces in parts]
     if not repeats:
         parts = [(name, faces[_three_corners(faces)]) for name, faces in parts]
     return [(name, faces) for name, faces in parts if len(faces)]
@@ -169,11 +169,11 @@ def _three_corners(faces: IndexArray) -> npt.NDArray[np.bool_]:
 
 
 def _compare_counts(
-    path: str, expected: list[tuple[str, IndexArray]], held: Sequence[StoredMesh | StoredRows]
+    path: str, expected: list[tuple[str, IndexArray]], stored: Sequence[StoredMesh | StoredRows]
 ) -> None:
-    if len(expected) != len(held):
-        raise _mismatch(path, f"it contains {len(held)} objects instead of {len(expected)}")
-    for (name, faces), one in zip(expected, held, strict=True):
+    if len(expected) != len(stored):
+        raise _mismatch(path, f"it contains {len(stored)} objects instead of {len(expected)}")
+    for (name, faces), one in zip(expected, stored, strict=True):
         if name != one.name:
             raise _mismatch(path, f"an object is called “{one.name}” instead of “{name}”")
         if len(faces) != one.count:
@@ -186,10 +186,10 @@ def _compare_corners(
     path: str,
     rounded: npt.NDArray[Any],
     expected: list[tuple[str, IndexArray]],
-    held: list[StoredMesh],
+    stored: list[StoredMesh],
 ) -> None:
     before = 0
-    for (_, faces), one in zip(expected, held, strict=True):
+    for (_, faces), one in zip(expected, stored, strict=True):
         at = _first_difference(rounded, faces, one)
         if at is not None:
             message = f"the corners of triangle {before + at} differ"
@@ -197,15 +197,15 @@ def _compare_corners(
         before += len(faces)
 
 
-def _rounded(mesh: Mesh | RawMesh, held: Sequence[StoredMesh | StoredRows]) -> npt.NDArray[Any]:
+def _rounded(mesh: Mesh | RawMesh, stored: Sequence[StoredMesh | StoredRows]) -> npt.NDArray[Any]:
     """Return the vertices of a mesh in the precision of the file's objects."""
-    if not held:
+    if not stored:
         return mesh.vertices
-    return mesh.vertices.astype(held[0].vertices.dtype.newbyteorder("="), copy=False)
+    return mesh.vertices.astype(stored[0].vertices.dtype.newbyteorder("="), copy=False)
 
 
 def _first_difference(
-    vertices: npt.NDArray[Any], faces: IndexArray, held: StoredMesh
+    vertices: npt.NDArray[Any], faces: IndexArray, stored: StoredMesh
 ) -> int | None:
     """Return the number of the first triangle whose corners differ from those in the file.
 
@@ -213,16 +213,16 @@ def _first_difference(
     """
     for block in blocks(len(faces)):
         expected = vertices[faces[block]]
-        differ = (expected != _corners(held, block.start, len(expected))).any(axis=(1, 2))
+        differ = (expected != _corners(stored, block.start, len(expected))).any(axis=(1, 2))
         if differ.any():
             return int(block.start + np.flatnonzero(differ)[0])
     return None
 
 
-def _corners(held: StoredMesh, start: int, count: int) -> npt.NDArray[Any]:
-    if held.faces is None:
-        return held.vertices[3 * start : 3 * (start + count)].reshape(-1, 3, 3)
-    faces = held.faces[start : start + count]
-    if not 0 <= faces.min() <= faces.max() < len(held.vertices):
+def _corners(stored: StoredMesh, start: int, count: int) -> npt.NDArray[Any]:
+    if stored.faces is None:
+        return stored.vertices[3 * start : 3 * (start + count)].reshape(-1, 3, 3)
+    faces = stored.faces[start : start + count]
+    if not 0 <= faces.min() <= faces.max() < len(stored.vertices):
         return np.full((count, 3, 3), np.nan)
-    return held.vertices[faces]
+    return stored.vertices[faces]

@@ -36,9 +36,9 @@ def trimesh_of(mesh: Mesh) -> "trimesh.Trimesh":
     made: trimesh.Trimesh = import_optional("trimesh", "trimesh").Trimesh(
         mesh.vertices.copy(), mesh.faces.copy(), process=False
     )
-    said = _consistent_attributes(mesh, "trimesh")
-    if said is not None:
-        _TrimeshAttributes(made, said).run()
+    attributes = _consistent_attributes(mesh, "trimesh")
+    if attributes is not None:
+        _TrimeshAttributes(made, attributes).run()
     return made
 
 
@@ -47,11 +47,11 @@ def _consistent_attributes(mesh: Mesh, library: str) -> Attributes | None:
     if mesh.carried is None:
         return None
     try:
-        said = mesh.attributes.without_empty_material()
+        attributes = mesh.attributes.without_empty_material()
     except InvalidMeshError as error:
         _warn_of_loss(f"the attributes were not passed to {library}: {error.message}", 1)
         return None
-    return None if said.is_empty or not len(mesh.faces) else said
+    return None if attributes.is_empty or not len(mesh.faces) else attributes
 
 
 def _warn_of_loss(message: str, count: int) -> None:
@@ -61,31 +61,33 @@ def _warn_of_loss(message: str, count: int) -> None:
 class _TrimeshAttributes:
     """A conversion of attributes to a trimesh: to its visual, its named arrays and its metadata."""
 
-    def __init__(self, made: "trimesh.Trimesh", said: Attributes) -> None:
+    def __init__(self, made: "trimesh.Trimesh", attributes: Attributes) -> None:
         self._made = made
-        self._said = corners_to_faces(said)
+        self._said = corners_to_faces(attributes)
         self._is_colored = False
 
     def run(self) -> None:
         """Set all attributes of the trimesh."""
-        said, made = self._said, self._made
-        names = set(said.names)
-        if said.materials:
-            made.metadata[MATERIALS] = dict(said.materials)
-        color = said.at_corners(COLOR, np.zeros(0, np.int64)) if COLOR in names else None
+        attributes, made = self._said, self._made
+        names = set(attributes.names)
+        if attributes.materials:
+            made.metadata[MATERIALS] = dict(attributes.materials)
+        color = attributes.at_corners(COLOR, np.zeros(0, np.int64)) if COLOR in names else None
         if color is not None and is_color(COLOR, color, 2):
             self._color()
             names.discard(COLOR)
         self._materials()
-        made.vertex_attributes.update({n: v.copy() for n, v in said.vertex.items() if n in names})
-        made.face_attributes.update({n: v.copy() for n, v in said.face.items() if n in names})
+        made.vertex_attributes.update(
+            {n: v.copy() for n, v in attributes.vertex.items() if n in names}
+        )
+        made.face_attributes.update({n: v.copy() for n, v in attributes.face.items() if n in names})
         self._corners()
 
     def _color(self) -> None:
         """Set the colours of the trimesh's visual; corners' colours become a mean for each face."""
-        said, self._is_colored = self._said, True
-        kind = said.kind_of(COLOR) or "face"
-        values = said.of(kind)[COLOR]
+        attributes, self._is_colored = self._said, True
+        kind = attributes.kind_of(COLOR) or "face"
+        values = attributes.of(kind)[COLOR]
         if kind == "vertex":
             self._show(vertex_colors=opaque(as_bytes(values)))
             return
@@ -105,13 +107,13 @@ class _TrimeshAttributes:
 
     def _materials(self) -> None:
         """Set the material if there is only one and it fits, else the colours of all materials."""
-        said = self._said
-        if "material" not in said.face or not said.materials:
+        attributes = self._said
+        if "material" not in attributes.face or not attributes.materials:
             return
-        names = np.unique(said.face["material"]).tolist()
-        has_picture = any(one.texture for one in said.materials.values())
-        material = said.materials.get(names[0]) if len(names) == 1 else None
-        uv = said.vertex.get("uv")
+        names = np.unique(attributes.face["material"]).tolist()
+        has_picture = any(one.texture for one in attributes.materials.values())
+        material = attributes.materials.get(names[0]) if len(names) == 1 else None
+        uv = attributes.vertex.get("uv")
         if material is not None and _are_places(uv) and not (self._is_colored and not has_picture):
             visual = import_optional("trimesh.visual", "trimesh").TextureVisuals
             self._made.visual = visual(uv=np.array(uv), material=_material(names[0], material))
@@ -125,15 +127,17 @@ class _TrimeshAttributes:
                 1,
             )
         if not self._is_colored:
-            self._show(face_colors=colors_by_materials(said.face["material"], said.materials))
+            self._show(
+                face_colors=colors_by_materials(attributes.face["material"], attributes.materials)
+            )
 
     def _color_as_array(self) -> None:
         """Store colours as a named array, since the trimesh's visual already has a picture."""
-        said = self._said
-        if COLOR in said.vertex:
-            self._made.vertex_attributes[COLOR] = said.vertex[COLOR].copy()
-        if COLOR in said.face:
-            self._made.face_attributes[COLOR] = said.face[COLOR].copy()
+        attributes = self._said
+        if COLOR in attributes.vertex:
+            self._made.vertex_attributes[COLOR] = attributes.vertex[COLOR].copy()
+        if COLOR in attributes.face:
+            self._made.face_attributes[COLOR] = attributes.face[COLOR].copy()
 
     def _corners(self) -> None:
         if self._said.corner:
@@ -231,22 +235,24 @@ def layout_of(ids: Iterable[int]) -> tuple[Column, ...] | None:
 
 def manifold_of(mesh: Mesh) -> "manifold3d.Manifold":
     """Return a `manifold3d.Manifold` of a mesh; numeric attributes become vertex properties."""
-    said = _consistent_attributes(mesh, "manifold3d")
-    if said is None:
+    attributes = _consistent_attributes(mesh, "manifold3d")
+    if attributes is None:
         return to_manifold(mesh)
-    others = [name for name in said.names if not _are_finite(said, name)]
+    others = [name for name in attributes.names if not _are_finite(attributes, name)]
     if others:
         told = ", ".join(f"“{name}”" for name in others)
         _warn_of_loss(
             f"manifold3d stores finite numbers only, so the attributes {told} were left out.",
             len(others),
         )
-    columns = tuple(_column(said, name) for name in _in_order(said) if name not in others)
-    return _with_properties(mesh, said, columns) if columns else to_manifold(mesh)
+    columns = tuple(
+        _column(attributes, name) for name in _in_order(attributes) if name not in others
+    )
+    return _with_properties(mesh, attributes, columns) if columns else to_manifold(mesh)
 
 
-def _are_finite(said: Attributes, name: str) -> bool:
-    values = said.at_corners(name)
+def _are_finite(attributes: Attributes, name: str) -> bool:
+    values = attributes.at_corners(name)
     if is_color(name, values, 2):
         values = as_floats(values)
     return values.dtype.kind != "U" and bool(np.isfinite(values).all())
@@ -255,27 +261,27 @@ def _are_finite(said: Attributes, name: str) -> bool:
 _NO_INDICES: IndexArray = np.zeros(0, dtype=np.int64)
 
 
-def _in_order(said: Attributes) -> list[str]:
+def _in_order(attributes: Attributes) -> list[str]:
     """Return the names of attributes, “properties” first.
 
     “properties” are columns that came from manifold3d; as the first ones they get the same numbers.
     """
-    return sorted(said.names, key=lambda name: name != "properties")
+    return sorted(attributes.names, key=lambda name: name != "properties")
 
 
-def _column(said: Attributes, name: str) -> Column:
-    values = said.at_corners(name, _NO_INDICES)
+def _column(attributes: Attributes, name: str) -> Column:
+    values = attributes.at_corners(name, _NO_INDICES)
     # Colours with and without opacity have four columns, so that both may occur in one mesh.
     shape = (4,) if is_color(name, values, 2) else values.shape[2:]
-    return Column(name, said.kind_of(name) or "face", values.dtype, shape)
+    return Column(name, attributes.kind_of(name) or "face", values.dtype, shape)
 
 
 def _with_properties(
-    mesh: Mesh, said: Attributes, columns: tuple[Column, ...]
+    mesh: Mesh, attributes: Attributes, columns: tuple[Column, ...]
 ) -> "manifold3d.Manifold":
     import manifold3d
 
-    table = np.hstack([column.numbers(said.at_corners(column.name)) for column in columns])
+    table = np.hstack([column.numbers(attributes.at_corners(column.name)) for column in columns])
     corners = mesh.faces.ravel()
     chosen, numbers = _distinct(corners, table)
     vertices = np.hstack([mesh.vertices[corners[chosen]], table[chosen]])

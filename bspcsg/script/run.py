@@ -84,9 +84,9 @@ def show(*solids: Any) -> None:
         _shown.extend(Solid.from_mesh(solid) for solid in _flat(solids))
 
 
-def _flat(things: Iterable[Any]) -> Iterator[Any]:
+def _flat(items: Iterable[Any]) -> Iterator[Any]:
     """Yield the given objects; replace each list by its entries, also in nested lists."""
-    for thing in things:
+    for thing in items:
         yield from _flat(thing) if isinstance(thing, list) else [thing]
 
 

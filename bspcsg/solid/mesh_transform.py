@@ -29,12 +29,12 @@ class AttributedMesh:
 
     def moved(self, factors: FactorChain) -> "AttributedMesh":
         """Return the mesh after a transform; faces are reversed if it mirrors, to face outwards."""
-        said = self.attributes and self.attributes.turned(factors.product[:3, :3])
+        attributes = self.attributes and self.attributes.turned(factors.product[:3, :3])
         faces = self.faces
         if factors.mirrors:
             faces = np.ascontiguousarray(faces[:, ::-1])
-            said = said and said.reordered([2, 1, 0])
-        return AttributedMesh(transform.apply(factors.product, self.vertices), faces, said)
+            attributes = attributes and attributes.reordered([2, 1, 0])
+        return AttributedMesh(transform.apply(factors.product, self.vertices), faces, attributes)
 
     def mended(self, before: FloatArray, pitch: int) -> "Mended | None":
         """Return the mesh without the crossings that moving its vertices caused; None if unchanged.
@@ -56,9 +56,11 @@ class AttributedMesh:
         if found is None:
             return None
         kept, faces = found["kept"], found["triangles"]
-        said = self.attributes and self.attributes.onto(faces, kept)
+        attributes = self.attributes and self.attributes.onto(faces, kept)
         left = np.isin(kept, found["crossings"])
-        return Mended(AttributedMesh(found["vertices"], faces, said), kept, np.flatnonzero(left))
+        return Mended(
+            AttributedMesh(found["vertices"], faces, attributes), kept, np.flatnonzero(left)
+        )
 
     def pitch_in_range(self, given: int | None) -> int | None:
         """Return the given pitch if all vertices lie in the range of its lattice, else None."""

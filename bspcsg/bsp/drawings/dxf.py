@@ -104,8 +104,8 @@ def _known_layers(names: set[str], document: Any, file: str) -> set[str]:
     return {name.casefold() for name in names}
 
 
-def _is_among(wanted: set[str] | None, layer: str) -> bool:
-    return wanted is None or layer.casefold() in wanted
+def _is_among(layers: set[str] | None, layer: str) -> bool:
+    return layers is None or layer.casefold() in layers
 
 
 def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:

@@ -69,12 +69,12 @@ def script_opinion(path: Path, ours: Solid, timeout: float) -> OracleRecord:
 
 
 def _recorded(
-    engine: str, question: EngineRequest, asked: Callable[[], EngineAnswer]
+    engine: str, question: EngineRequest, ask: Callable[[], EngineAnswer]
 ) -> OracleRecord:
     began = time.perf_counter()
     version = ""
     try:
-        answer = asked()
+        answer = ask()
         version, record = answer.version, _compared(question, answer)
     except NoOpinionError as error:
         record = _no_opinion(str(error))

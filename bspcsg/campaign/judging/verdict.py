@@ -8,7 +8,7 @@ from ..record import IdentityRecord, OracleRecord
 
 def verdict_of(
     report: CheckReport,
-    others: Sequence[OracleRecord],
+    records: Sequence[OracleRecord],
     identity: IdentityRecord | None,
     is_script: bool = False,
 ) -> tuple[str, str]:
@@ -18,10 +18,10 @@ def verdict_of(
     ----------
     report : CheckReport
         The comparison of our result with manifold3d's.
-    others : sequence of OracleRecord
+    records : sequence of OracleRecord
     identity : IdentityRecord or None
     is_script : bool
-        True for a script, about which `others` has OpenSCAD's opinion.
+        True for a script, about which `records` has OpenSCAD's opinion.
 
     Notes
     -----
@@ -37,11 +37,11 @@ def verdict_of(
         ), f"the volumes violate the identity {identity['equation']}"
     if verdict is Verdict.SUBJECT_FAILED:
         return str(verdict), reason
-    counts = [other for other in others if other["name"] == "crossing counts"]
+    counts = [other for other in records if other["name"] == "crossing counts"]
     for other in counts:
         if other["agrees"] is False:
             return str(Verdict.DISAGREE), _joined(reason, f"crossing counts: {other['says']}")
-    engines = [other for other in others if other not in counts]
+    engines = [other for other in records if other not in counts]
     if is_script and any(engine["agrees"] is False for engine in engines):
         said = "; ".join(f"{engine['name']} {engine['says']}" for engine in engines)
         return str(Verdict.DISAGREE), _joined(reason, said)

@@ -457,9 +457,9 @@ def is_dropped(path: Path) -> bool:
     return str(path) == os.devnull
 
 
-def is_among(path: Path, others: Iterable[Path]) -> bool:
-    """Say whether a path and one of `others` are the same existing file, under any name."""
-    return any(path.exists() and other.exists() and path.samefile(other) for other in others)
+def is_among(path: Path, paths: Iterable[Path]) -> bool:
+    """Say whether a path and one of `paths` are the same existing file, under any name."""
+    return any(path.exists() and other.exists() and path.samefile(other) for other in paths)
 
 
 def refuse_inputs(file: Path, targets: Iterable[Path], inputs: Sequence[Path]) -> None:

@@ -35,12 +35,12 @@ def linear_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Ge
     """Extrude the children along z or the vector `v`, with `twist` and `scale`."""
     arguments = run.arguments(owner)
     figure = _figure(arguments, owner, children, run)
-    way = _extrusion_vector(arguments)
+    vector = _extrusion_vector(arguments)
     if figure is None:
         return None
-    if figure.is_empty or way[2] == 0:
+    if figure.is_empty or vector[2] == 0:
         return Solid.empty()
-    return _sheared(_extruded(arguments, figure, abs(way[2])), way)
+    return _sheared(_extruded(arguments, figure, abs(vector[2])), vector)
 
 
 def _extrusion_vector(arguments: Arguments) -> tuple[float, float, float]:
@@ -62,12 +62,12 @@ def _extrusion_vector(arguments: Arguments) -> tuple[float, float, float]:
     return x / length * height, y / length * height, z / length * height
 
 
-def _sheared(upright: Solid, way: tuple[float, float, float]) -> Solid:
+def _sheared(upright: Solid, vector: tuple[float, float, float]) -> Solid:
     """Shear an upright extrusion so that its top is displaced by a vector.
 
     The length of the vector along z is the height; if it points down, the solid is mirrored.
     """
-    x, y, z = way
+    x, y, z = vector
     if z < 0:
         upright = upright.mirror((0, 0, 1))
     if x == 0 and y == 0:

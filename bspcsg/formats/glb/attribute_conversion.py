@@ -36,13 +36,13 @@ def stored_name(name: str) -> str:
     return name.encode("utf-8", "replace").decode("utf-8")
 
 
-def storable(said: Attributes, vertices: FloatArray) -> Attributes:
+def storable(attributes: Attributes, vertices: FloatArray) -> Attributes:
     """Return the attributes that GLB can store, in single precision.
 
     These are normals, texture coordinates, colours, materials of faces, and float arrays of
     vertices and corners with up to four components. A missing normal becomes that of its face.
     """
-    told = _with_all_normals(said.without_empty_material(), vertices)
+    told = _with_all_normals(attributes.without_empty_material(), vertices)
     held = selected_attributes(told, _storable_values).with_renamed_materials(stored_name)
     names = held.face.get("material")
     if names is None:
@@ -53,22 +53,22 @@ def storable(said: Attributes, vertices: FloatArray) -> Attributes:
     return Attributes(held.faces, held.vertex, held.corner, held.face, materials)
 
 
-def _with_all_normals(said: Attributes, vertices: FloatArray) -> Attributes:
-    if said.kind_of("normal") not in ("vertex", "corner"):
-        return said
-    normals = said.at_corners("normal")
+def _with_all_normals(attributes: Attributes, vertices: FloatArray) -> Attributes:
+    if attributes.kind_of("normal") not in ("vertex", "corner"):
+        return attributes
+    normals = attributes.at_corners("normal")
     if not is_normal("normal", normals):
-        return said
+        return attributes
     missing: BoolArray = np.asarray(np.isnan(normals).any(axis=-1))
     if not missing.any():
-        return said
-    a, b, c = (vertices[said.faces[:, k]] for k in range(3))
+        return attributes
+    a, b, c = (vertices[attributes.faces[:, k]] for k in range(3))
     outward = np.cross(b - a, c - a)
     lengths = np.linalg.norm(outward, axis=1, keepdims=True)
     unit = np.divide(outward, lengths, out=np.zeros_like(outward), where=lengths > 0)
     filled = np.where(missing[..., None], unit[:, None], normals).astype(normals.dtype)
-    vertex = {name: values for name, values in said.vertex.items() if name != "normal"}
-    return replace(said, vertex=vertex, corner={**said.corner, "normal": filled})
+    vertex = {name: values for name, values in attributes.vertex.items() if name != "normal"}
+    return replace(attributes, vertex=vertex, corner={**attributes.corner, "normal": filled})
 
 
 def _storable_values(kind: Kind, name: str, values: Values) -> Values | None:
@@ -101,13 +101,13 @@ def _flipped_uv(uv: Values) -> Values:
     return turned
 
 
-def columns_of(said: Attributes, rows: IndexArray) -> dict[str, Values]:
+def columns_of(attributes: Attributes, rows: IndexArray) -> dict[str, Values]:
     """Return the attributes at the corners of the triangles `rows`, (k, 3, …), by glTF's names."""
     called = {name: semantic for semantic, name in _KNOWN.items()}
     found = {}
-    for name in said.names:
+    for name in attributes.names:
         if name != "material":
-            values = said.at_corners(name, rows)
+            values = attributes.at_corners(name, rows)
             found[called.get(name, _CUSTOM_PREFIX + name)] = _in_file(name, values)
     return found
 
@@ -180,10 +180,10 @@ def materials_of(tree: Mapping[str, Any], data: bytes) -> Named:
     return found
 
 
-def _texture(tree: Mapping[str, Any], data: bytes, told: Any) -> bytes | None:
+def _texture(tree: Mapping[str, Any], data: bytes, reference: Any) -> bytes | None:
     """Return the picture of a texture; None if the file does not contain it as PNG or JPEG."""
     try:
-        image = tree["images"][tree["textures"][told["index"]]["source"]]
+        image = tree["images"][tree["textures"][reference["index"]]["source"]]
         view = tree["bufferViews"][image["bufferView"]]
         start = view.get("byteOffset", 0)
         picture = bytes(data[start : start + view["byteLength"]])

@@ -142,10 +142,10 @@ class _DescriptionCheck:
         Length of the binary chunk in bytes.
     """
 
-    def __init__(self, source: Source, tree: dict[str, Any], held: int) -> None:
+    def __init__(self, source: Source, tree: dict[str, Any], data_bytes: int) -> None:
         self._source = source
         self._tree = tree
-        self._data_bytes = held
+        self._data_bytes = data_bytes
 
     def check(self) -> None:
         """Raise a `FormatError` if the description has an error that would break decoding."""
@@ -202,11 +202,13 @@ class _DescriptionCheck:
             self._check_elements(number, places, sparse["count"], _bytes_of(places, "SCALAR"))
             self._check_elements(number, sparse["values"], sparse["count"], element)
 
-    def _check_elements(self, number: int, told: dict[str, Any], count: int, element: int) -> None:
-        view = self._entry("bufferViews", told["bufferView"])
+    def _check_elements(
+        self, number: int, accessor: dict[str, Any], count: int, element: int
+    ) -> None:
+        view = self._entry("bufferViews", accessor["bufferView"])
         self._entry("buffers", view["buffer"])
         start, length = view.get("byteOffset", 0), view["byteLength"]
-        offset, stride = told.get("byteOffset", 0), view.get("byteStride") or element
+        offset, stride = accessor.get("byteOffset", 0), view.get("byteStride") or element
         needed = offset + max(count - 1, 0) * stride + (count and element)
         if min(start, length, offset, stride, count) < 0 or start + length > self._data_bytes:
             message = (
@@ -319,9 +321,12 @@ def _conversion_advice(extension: str) -> str:
     return _DECOMPRESSION_ADVICE if extension in _COMPRESSIONS else ""
 
 
-def _bytes_of(told: dict[str, Any], shape: str = "") -> int:
+def _bytes_of(accessor: dict[str, Any], shape: str = "") -> int:
     """Return the number of bytes of an accessor's element; `shape` replaces the accessor's type."""
-    return np.dtype(COMPONENTS[told["componentType"]]).itemsize * ELEMENTS[shape or told["type"]]
+    return (
+        np.dtype(COMPONENTS[accessor["componentType"]]).itemsize
+        * ELEMENTS[shape or accessor["type"]]
+    )
 
 
 def instances_of(node: dict[str, Any]) -> dict[str, Any] | None:

@@ -68,12 +68,12 @@ def _placed(one: NodeMesh) -> PlacedMesh:
     linear = placing[:3, :3]
     with np.errstate(invalid="ignore", over="ignore"):
         size = np.linalg.det(linear)
-        said = None if one.attributes is None else one.attributes.turned(linear)
+        attributes = None if one.attributes is None else one.attributes.turned(linear)
         keeps = size == 0 or is_exact(one.vertices, linear, placing[:3, 3])
     faces = one.faces
     if size < 0:
-        faces, said = faces[:, ::-1], said and said.reordered([2, 1, 0])
-    own = RawMesh(one.vertices.astype(np.float64), faces, one.name, attributes=said)
+        faces, attributes = faces[:, ::-1], attributes and attributes.reordered([2, 1, 0])
+    own = RawMesh(one.vertices.astype(np.float64), faces, one.name, attributes=attributes)
     return PlacedMesh(own, partial(_moved, matrix=placing), keeps, placing.tobytes())
 
 
@@ -121,9 +121,9 @@ def size_problem(mesh: Mesh | RawMesh) -> str:
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the bytes of a GLB file; coordinates are rounded to single precision."""
-    said = attributes_or_none(mesh)
-    if said is not None:
-        yield from _with_attributes(mesh, said)
+    attributes = attributes_or_none(mesh)
+    if attributes is not None:
+        yield from _with_attributes(mesh, attributes)
         return
     described = Description(represents_empty_set(mesh))
     blocks = []
@@ -137,16 +137,18 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     yield from container(described.text(), blocks)
 
 
-def _with_attributes(mesh: Mesh | RawMesh, said: Attributes) -> Iterator[bytes]:
+def _with_attributes(mesh: Mesh | RawMesh, attributes: Attributes) -> Iterator[bytes]:
     """Yield the bytes of a GLB file; a vertex whose corners differ in an attribute is split."""
     described = Description(False)
-    pictures = Pictures(said.materials, described.append)
+    pictures = Pictures(attributes.materials, described.append)
     start = 0
     for name, faces in parts_of(mesh):
         rows = np.arange(start, start + len(faces))
         start += len(faces)
         if len(faces):
-            primitives = described.append_mesh(mesh.vertices, faces, said.for_faces(rows), pictures)
+            primitives = described.append_mesh(
+                mesh.vertices, faces, attributes.for_faces(rows), pictures
+            )
             described.add_object(name, primitives)
     further = pictures.described()
     yield from container(described.text(further), described.blocks)
@@ -219,10 +221,10 @@ class Description:
         return len(self._views) - 1
 
     def append_mesh(
-        self, points: FloatArray, faces: IndexArray, said: Attributes, pictures: Pictures
+        self, points: FloatArray, faces: IndexArray, attributes: Attributes, pictures: Pictures
     ) -> list[dict[str, Any]]:
         """Append triangles with attributes to the data; return a primitive for each material."""
-        columns = columns_of(said, np.arange(len(faces)))
+        columns = columns_of(attributes, np.arange(len(faces)))
         first, corners = _divided(faces, columns)
         vertices = points[faces.ravel()[first]].astype("<f4")
         accessors = {"POSITION": self.append_column(vertices, with_bounds=True)}
@@ -230,7 +232,7 @@ class Description:
             flat = values.reshape(3 * len(faces), *values.shape[2:])
             accessors[key] = self.append_column(flat[first])
         primitives = []
-        for begin, end, material in _runs(said.face.get("material"), len(faces)):
+        for begin, end, material in _runs(attributes.face.get("material"), len(faces)):
             indices = self.append_indices(corners[begin:end])
             painted = {"material": pictures.numbers[material]} if material else {}
             primitives.append({"attributes": accessors, "indices": indices, "mode": 4, **painted})

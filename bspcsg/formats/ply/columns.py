@@ -51,9 +51,9 @@ _NUMBERED = re.compile(r"(.+)_(\d+)")
 _MAX_LIST_LENGTH = 255
 
 
-def storable(said: Attributes) -> Attributes:
+def storable(attributes: Attributes) -> Attributes:
     """Return the attributes that PLY can store: numbers with one-word names."""
-    return selected_attributes(said, _storable_values)
+    return selected_attributes(attributes, _storable_values)
 
 
 def _storable_values(kind: Kind, name: str, values: Values) -> Values | None:

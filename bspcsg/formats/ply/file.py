@@ -83,12 +83,12 @@ def read(source: Source) -> RawMesh:
         raise source.error(
             "the PLY has no element “face” with a list of vertex indices.", line=header.lines
         )
-    faces, said = _triangles_and_attributes(
+    faces, attributes = _triangles_and_attributes(
         found, found.polygons, found.vertices, found.polygon_error
     )
-    dropped = (*_more_than_a_shape(header, said, found.element), *found.polygons.dropped)
+    dropped = (*_more_than_a_shape(header, attributes, found.element), *found.polygons.dropped)
     told = (*_no_statements(header), *rest)
-    return RawMesh(found.vertices, faces, "", told, dropped=dropped, attributes=said)
+    return RawMesh(found.vertices, faces, "", told, dropped=dropped, attributes=attributes)
 
 
 def _no_statements(header: Header) -> tuple[Finding, ...]:
@@ -128,9 +128,11 @@ def _without_repeated_names(*kinds: dict[str, Values]) -> Iterator[dict[str, Val
         taken.update(kind)
 
 
-def _more_than_a_shape(header: Header, said: Attributes | None, faces: str) -> tuple[str, ...]:
+def _more_than_a_shape(
+    header: Header, attributes: Attributes | None, faces: str
+) -> tuple[str, ...]:
     """Return descriptions of the elements, properties and pictures that are not read."""
-    columns = names_in(said)
+    columns = names_in(attributes)
     told = [f"the picture “{name}”" for name in header.pictures]
     for element in header.elements:
         shape = {"vertex": ("x", "y", "z"), faces: _FACE_LISTS}.get(element.name)
@@ -422,10 +424,14 @@ _Columns: TypeAlias = list[tuple[str, Values]]
 
 def _columns(mesh: Mesh | RawMesh) -> tuple[_Columns, _Columns, _Columns]:
     """Return the attributes of a mesh as columns of vertices, columns of faces, lists of faces."""
-    said = attributes_or_none(mesh)
-    if said is None:
+    attributes = attributes_or_none(mesh)
+    if attributes is None:
         return [], [], []
-    return list(columns_of(said.vertex)), list(columns_of(said.face)), list(lists_of(said.corner))
+    return (
+        list(columns_of(attributes.vertex)),
+        list(columns_of(attributes.face)),
+        list(lists_of(attributes.corner)),
+    )
 
 
 def _properties(columns: _Columns, kind: str = "") -> str:

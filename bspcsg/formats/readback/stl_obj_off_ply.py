@@ -153,8 +153,8 @@ def _counted_faces(text: bytes) -> npt.NDArray[Any]:
     return whole_rows_of(text, b"3 # # #\n")
 
 
-def _complete(held: StoredRows) -> StoredRows:
+def _complete(stored: StoredRows) -> StoredRows:
     """Return an object; one without faces is read in full first, as it will not be compared."""
-    if not held.count:
-        held.loaded()
-    return held
+    if not stored.count:
+        stored.loaded()
+    return stored

@@ -134,11 +134,11 @@ class Objects:
         known = part.objects[item]
         vertices, faces = known.arrays()
         try:
-            said = properties_of(part, known, faces, self._package.picture)
+            attributes = properties_of(part, known, faces, self._package.picture)
         except IndexError as error:
             message = f"object {item} in {path}: {error}."
             raise self._package.source.error(message, "index_out_of_range") from error
-        return RawMesh(vertices, faces, attributes=said)
+        return RawMesh(vertices, faces, attributes=attributes)
 
     def _attempted(self, path: str, item: str) -> RawMesh:
         """Return the mesh of a boolean shape; if it cannot be made, the mesh of its base."""
@@ -218,8 +218,8 @@ class Objects:
 
 def _moved(mesh: RawMesh, matrix: FloatArray) -> RawMesh:
     """Return a mesh transformed by a (4, 3) matrix; if it mirrors, triangles are reversed."""
-    faces, said = mesh.faces, mesh.attributes
+    faces, attributes = mesh.faces, mesh.attributes
     if np.linalg.det(matrix[:3]) < 0:
-        faces, said = faces[:, ::-1], said and said.reordered([2, 1, 0])
+        faces, attributes = faces[:, ::-1], attributes and attributes.reordered([2, 1, 0])
     vertices = mesh.vertices @ matrix[:3] + matrix[3]
-    return replace(mesh, vertices=vertices, faces=faces, attributes=said)
+    return replace(mesh, vertices=vertices, faces=faces, attributes=attributes)

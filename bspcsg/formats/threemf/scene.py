@@ -88,14 +88,14 @@ class _SceneReader:
         return self._meshes[path, item]
 
 
-def _color(part: ModelPart, told: Object) -> tuple[float, ...] | None:
+def _color(part: ModelPart, source: Object) -> tuple[float, ...] | None:
     """Return the only colour of an object; None if it has none or its triangles have properties."""
-    if told.usual is None or told.properties or told.usual[0] not in part.bases:
+    if source.usual is None or source.properties or source.usual[0] not in part.bases:
         return None
-    group = part.bases[told.usual[0]]
-    if not 0 <= told.usual[1] < len(group):
+    group = part.bases[source.usual[0]]
+    if not 0 <= source.usual[1] < len(group):
         return None
-    return tuple(value / 255 for value in group[told.usual[1]][1])
+    return tuple(value / 255 for value in group[source.usual[1]][1])
 
 
 def encode(root: SceneNode) -> Iterator[bytes]:

@@ -33,11 +33,11 @@ def smooth(solid: Solid, n: int, sharp_angle: Scalar = 60.0) -> Solid:
     patches = _points(mesh, _handles(mesh, at_corners), weights)
     vertices[faces.reshape(len(mesh.faces), -1)] = patches
     refuse_crossings(vertices, faces, "Bent smoothly")
-    said = None
+    attributes = None
     if mesh.carried is not None:
-        said = attributes_on(mesh, flat, faces, origins).without(NORMALS)
-    bent = AttributedMesh(vertices, faces, said)
-    return solid_with(vertices, faces, said, pitch=bent.pitch_in_range(given_pitch(solid)))
+        attributes = attributes_on(mesh, flat, faces, origins).without(NORMALS)
+    bent = AttributedMesh(vertices, faces, attributes)
+    return solid_with(vertices, faces, attributes, pitch=bent.pitch_in_range(given_pitch(solid)))
 
 
 def _handles(mesh: Mesh, at_corners: FloatArray) -> FloatArray:

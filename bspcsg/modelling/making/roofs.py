@@ -116,33 +116,33 @@ class _RoofBuilder:
 
     def _change(self, now: float) -> None:
         """Reconnect the shrinking outline where corners and sides meet at a time."""
-        met = contacts_at(self._front, now, self._nearness)
-        if not met.is_clear:
+        contacts = contacts_at(self._front, now, self._nearness)
+        if not contacts.is_clear:
             raise _unclear()
-        nodes = self._nodes_of(met)
+        nodes = self._nodes_of(contacts)
         if now == 0:
-            self._base = [(nodes[a], nodes[b], wall) for a, b, wall in met.pieces]
+            self._base = [(nodes[a], nodes[b], wall) for a, b, wall in contacts.pieces]
             for low, high, wall in self._base:
                 self._bounds[wall].append((low, high))
-        for (a, b, wall), (_, _, other) in met.ridges:
+        for (a, b, wall), (_, _, other) in contacts.ridges:
             self._bounds[wall].append((nodes[b], nodes[a]))
             self._bounds[other].append((nodes[a], nodes[b]))
-        self._front = self._next_front(met, nodes)
+        self._front = self._next_front(contacts, nodes)
 
-    def _nodes_of(self, met: Contacts) -> dict[int, int]:
+    def _nodes_of(self, contacts: Contacts) -> dict[int, int]:
         """Make a roof node at each point where the outline changes, and record the edges to it.
 
         Return the node number for each such spot of the meeting.
         """
         front, nodes = self._front, {}
-        for spot, corners in enumerate(met.corners):
-            if met.time > 0 and met.is_calm(spot, front):
+        for spot, corners in enumerate(contacts.corners):
+            if contacts.time > 0 and contacts.is_calm(spot, front):
                 continue
-            x, y = met.positions[corners].mean(axis=0).tolist()
+            x, y = contacts.positions[corners].mean(axis=0).tolist()
             nodes[spot] = len(self._nodes)
-            self._nodes.append((x, y, met.time))
+            self._nodes.append((x, y, contacts.time))
             # At time 0 the corners are on the floor, and no edge leads to their nodes.
-            for corner in corners if met.time > 0 else ():
+            for corner in corners if contacts.time > 0 else ():
                 ahead, behind = int(front.before[corner]), int(front.after[corner])
                 self._trace(int(front.node[corner]), nodes[spot], ahead, behind)
         return nodes
@@ -153,17 +153,17 @@ class _RoofBuilder:
             self._bounds[ahead].append((low, high))
             self._bounds[behind].append((high, low))
 
-    def _next_front(self, met: Contacts, nodes: dict[int, int]) -> ShrinkingOutlines:
+    def _next_front(self, contacts: Contacts, nodes: dict[int, int]) -> ShrinkingOutlines:
         """Return the shrinking outline after a change: unchanged corners, and new ones at nodes."""
         rows: list[tuple[int, int, int, int]] = []
         origins: list[tuple[float, float, float]] = []
         begun: dict[int, int] = {}
-        for spot, pairs in enumerate(met.pairs):
-            corner = met.corners[spot][0]
+        for spot, pairs in enumerate(contacts.pairs):
+            corner = contacts.corners[spot][0]
             node = nodes[spot] if spot in nodes else int(self._front.node[corner])
             for pair in pairs:
                 begun[pair[0]] = len(rows)
-                rows.append((node, *met.walls_of(pair), pair[1]))
+                rows.append((node, *contacts.walls_of(pair), pair[1]))
                 origins.append(self._nodes[node])
         node_of, before, after, piece = np.array(rows, dtype=np.int64).reshape(-1, 4).T
         origin = np.array(origins, dtype=np.float64).reshape(-1, 3)

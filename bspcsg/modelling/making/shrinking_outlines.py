@@ -186,11 +186,11 @@ class Contacts:
         ending, beginning = pair
         return self.pieces[ending][2], self.pieces[beginning][2]
 
-    def is_calm(self, spot: int, front: ShrinkingOutlines) -> bool:
+    def is_calm(self, point: int, front: ShrinkingOutlines) -> bool:
         """Return True if a spot has a single corner, whose walls stay the same."""
-        [corner, *others] = self.corners[spot]
+        [corner, *others] = self.corners[point]
         walls = int(front.before[corner]), int(front.after[corner])
-        return not others and [walls] == [self.walls_of(pair) for pair in self.pairs[spot]]
+        return not others and [walls] == [self.walls_of(pair) for pair in self.pairs[point]]
 
 
 def contacts_at(front: ShrinkingOutlines, time: float, nearness: float) -> Contacts:

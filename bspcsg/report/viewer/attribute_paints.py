@@ -20,20 +20,24 @@ _MAX_LABELS = 1000
 _PLAIN = Material((0.7, 0.76, 0.82, 1.0))
 
 
-def paints_of(said: Attributes | None) -> tuple[Paint, ...]:
+def paints_of(attributes: Attributes | None) -> tuple[Paint, ...]:
     """Return at most six paints for the attributes of a mesh, scales of numbers last."""
-    if said is None or said.is_empty:
+    if attributes is None or attributes.is_empty:
         return ()
-    found = [paint for paint in _each(said) if paint is not None]
+    found = [paint for paint in _each(attributes) if paint is not None]
     return tuple(sorted(found, key=lambda paint: isinstance(paint, Scale))[:_MAX_PAINTS])
 
 
-def _each(said: Attributes) -> Iterator[Paint | None]:
-    if "material" in said.face:
-        yield _materials(said)
-    for name in said.names:
-        values = said.at_corners(name) if said.kind_of(name) != "face" else said.face[name]
-        depth = 1 if said.kind_of(name) == "face" else 2
+def _each(attributes: Attributes) -> Iterator[Paint | None]:
+    if "material" in attributes.face:
+        yield _materials(attributes)
+    for name in attributes.names:
+        values = (
+            attributes.at_corners(name)
+            if attributes.kind_of(name) != "face"
+            else attributes.face[name]
+        )
+        depth = 1 if attributes.kind_of(name) == "face" else 2
         if name == "material" or name == "uv" or name in NORMALS:
             continue
         if is_color(name, values, depth):
@@ -42,15 +46,15 @@ def _each(said: Attributes) -> Iterator[Paint | None]:
             yield _labels(name, values) if depth == 1 else _scale(name, values)
 
 
-def _materials(said: Attributes) -> Labels:
-    names, numbers = np.unique(said.face["material"], return_inverse=True)
-    used = [said.materials.get(name, _PLAIN) for name in names.tolist()]
+def _materials(attributes: Attributes) -> Labels:
+    names, numbers = np.unique(attributes.face["material"], return_inverse=True)
+    used = [attributes.materials.get(name, _PLAIN) for name in names.tolist()]
     colours = [_hexadecimal(material.color) for material in used]
     labels = [name or "no material" for name in names.tolist()]
-    has_images = said.kind_of("uv") not in (None, "face") and any(one.texture for one in used)
+    has_images = attributes.kind_of("uv") not in (None, "face") and any(one.texture for one in used)
     if not has_images:
         return Labels("material", numbers.ravel(), labels, colours)
-    uv = np.asarray(said.at_corners("uv"), dtype=np.float64)
+    uv = np.asarray(attributes.at_corners("uv"), dtype=np.float64)
     images = [material.texture for material in used]
     return Labels("material", numbers.ravel(), labels, colours, uv, images)
 

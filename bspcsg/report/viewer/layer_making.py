@@ -44,14 +44,14 @@ def layers_of_file(raw: RawMesh, name: str) -> list[Layer]:
     for number, (own, count) in enumerate(objects):
         chosen = np.arange(ends[number] - count, ends[number])
         used, renumbered = compacted(faces[chosen])
-        said = None if raw.attributes is None else _taken(raw.attributes, chosen)
+        attributes = None if raw.attributes is None else _taken(raw.attributes, chosen)
         title = own or f"part {number + 1}"
-        layers.append(Layer(title, vertices[used], renumbered, paints=paints_of(said)))
+        layers.append(Layer(title, vertices[used], renumbered, paints=paints_of(attributes)))
     return layers
 
 
-def _taken(said: Attributes, faces: IndexArray) -> Attributes:
-    return said.for_faces(faces).with_used_materials()
+def _taken(attributes: Attributes, faces: IndexArray) -> Attributes:
+    return attributes.for_faces(faces).with_used_materials()
 
 
 def layers_of_solid(solid: Solid, name: str) -> list[Layer]:
@@ -74,13 +74,13 @@ def with_origin(solid: Solid) -> Solid:
     if not found:
         return solid
     mesh = solid.normalized().to_mesh()
-    said = {**mesh.face_attributes, ORIGIN: np.array(found)[mesh.source[:, 0]]}
+    attributes = {**mesh.face_attributes, ORIGIN: np.array(found)[mesh.source[:, 0]]}
     return Solid(
         mesh.vertices,
         mesh.faces,
         vertex_attributes=mesh.vertex_attributes,
         corner_attributes=mesh.corner_attributes,
-        face_attributes=said,
+        face_attributes=attributes,
         materials=mesh.materials,
     )
 
