@@ -166,7 +166,7 @@ def inherited_attributes(
     InvalidMeshError
         If a name has values of different shapes in two sources; code ``"attributes"``.
     """
-    rows_of = dict(_by_slot(surface.source))
+    rows_of = dict(_triangles_by_source(surface.source))
     sources_of_triangles = []
     for slot, attributes in enumerate(sources):
         if attributes is not None:
@@ -201,7 +201,7 @@ _NO_ARRAYS: SourceArrays = (
 )
 
 
-def _by_slot(source: IndexArray) -> Iterator[tuple[int, IndexArray]]:
+def _triangles_by_source(source: IndexArray) -> Iterator[tuple[int, IndexArray]]:
     """Yield each slot and the ascending numbers of the triangles from its source."""
     order = np.argsort(source[:, 0], kind="stable")
     slots, starts = np.unique(source[order, 0], return_index=True)
@@ -220,7 +220,7 @@ def _triangles_of(
     at, corner = np.nonzero(corners < 0)
     places = weights(points[at, corner], lattice[triangles[at]])
     inner = _NewCorners(at, corner, origins[at], places)
-    inner = _brought_inside(inner, surface.faces[rows], corners, origins)
+    inner = _with_positions_inside(inner, surface.faces[rows], corners, origins)
     return _SourceTriangles(attributes, rows, origins, corners, inner, surface.flips[rows])
 
 
@@ -230,7 +230,7 @@ def _matching_corners(points: FloatArray, corners: FloatArray) -> IndexArray:
     return np.where(same.any(axis=2), same.argmax(axis=2), -1)
 
 
-def _brought_inside(
+def _with_positions_inside(
     inner: _NewCorners, vertices: IndexArray, corners: IndexArray, origins: IndexArray
 ) -> _NewCorners:
     """Replace positions outside their source faces.

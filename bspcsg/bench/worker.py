@@ -16,7 +16,7 @@ from pathlib import Path
 from statistics import mean, median
 from typing import Any
 
-from ..machine import forget_peak, memory_mb, peak_mb
+from ..machine import memory_mb, peak_mb, reset_peak
 from .cases import CASES, dome
 from .engines import ENGINES, Engine
 from .result_facts import facts_of
@@ -143,7 +143,7 @@ class _EngineRuns:
         """Do one run of several calls, and return the mean cost of a call with the last outcome."""
         gc.collect()
         held = memory_mb()
-        counted = forget_peak()
+        counted = reset_peak()
         calls = [self._call() for _ in range(self._calls - 1)]
         last, outcome = self._called()
         costs = {name: mean(call[name] for call in [*calls, last]) for name in last}

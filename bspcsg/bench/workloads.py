@@ -10,7 +10,7 @@ import numpy as np
 
 from .._types import MeshArrays
 from ..mesh.mesh import Mesh
-from ..verify.referee import Columns
+from ..verify.referee import RayClassifier
 from .engines import Engine, Operation
 from .meter import Usage
 from .result_facts import area, mesh_volume, size_of
@@ -313,7 +313,7 @@ def wrong_points(
     first: MeshArrays, second: MeshArrays, answer: MeshArrays, samples: int
 ) -> tuple[int, int]:
     """Return at how many random points the difference `answer` is wrong, and the decided points."""
-    meshes = [Columns(_mesh(arrays)) for arrays in (first, second, answer)]
+    meshes = [RayClassifier(_mesh(arrays)) for arrays in (first, second, answer)]
     low, high = first[0].min(axis=0), first[0].max(axis=0)
     points = generator().uniform(low, high, (samples, 3))
     wrong = settled = 0

@@ -74,7 +74,7 @@ _ALIASES = {"cut": "difference", "explode": "split", "validate": "crosscheck"}
 _FORMER = frozenset({"explode", "validate"})
 
 #: The system's error numbers of writing to a file or stream that is full, broken or closed.
-_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
+_WRITE_ERRNOS = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
 
 _COMPLETE = "_BSPCSG_COMPLETE"
 
@@ -193,7 +193,7 @@ def _unwritable(error: OSError) -> FormatError:
     return FormatError(f"{name}: cannot write: {error.strerror}.", "unwritable")
 
 
-def _as_it_came(error: UnicodeError) -> tuple[str | bytes, int]:
+def _unencodable_replacement(error: UnicodeError) -> tuple[str | bytes, int]:
     """Handle encoding errors of printed text, as a codec's error handler.
 
     Bytes of file names that are no Unicode stay unchanged; other characters become ``?``.
@@ -209,7 +209,7 @@ def _as_it_came(error: UnicodeError) -> tuple[str | bytes, int]:
 
 
 _ERRORS = "bspcsg_names"
-codecs.register_error(_ERRORS, _as_it_came)
+codecs.register_error(_ERRORS, _unencodable_replacement)
 
 
 def _invoked(arguments: list[str]) -> int:
@@ -246,7 +246,7 @@ def _asks_for_json(arguments: Sequence[str]) -> bool:
 def _failed(error: Exception, as_json: bool) -> int:
     if isinstance(error, BspcsgError):
         return output.report_error(error, as_json)
-    if isinstance(error, OSError) and error.errno in _NO_ROOM:
+    if isinstance(error, OSError) and error.errno in _WRITE_ERRNOS:
         return output.report_error(_unwritable(error), as_json)
     said = "out of memory" if isinstance(error, MemoryError) else f"{type(error).__name__}: {error}"
     message = (

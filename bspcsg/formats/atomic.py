@@ -65,7 +65,7 @@ def write_file(
         return
     # A link stays a link: its target is replaced.
     target = Path(os.path.realpath(name))
-    with _writing(name):
+    with _write_errors(name):
         _check_target(name)
         _clean_folder(target.parent)
         while True:
@@ -77,12 +77,12 @@ def write_file(
 def refuse_target(path: str | os.PathLike[str]) -> None:
     """Raise a `FormatError` if `path` is a folder or a device, or its folder does not exist."""
     name = file_path(path)
-    with _writing(name):
+    with _write_errors(name):
         _check_target(name)
 
 
 @contextlib.contextmanager
-def _writing(name: str) -> Iterator[None]:
+def _write_errors(name: str) -> Iterator[None]:
     """Turn an `OSError` of the block into a `FormatError`: the file `name` cannot be written."""
     try:
         yield

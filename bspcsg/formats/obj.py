@@ -42,7 +42,7 @@ _FOLLOWING = frozenset({*_NAMING, *_NUMBERS, b"s"})
 
 
 @dataclass
-class _Found:
+class _ObjContent:
     """The content of an OBJ's statements, in file order.
 
     `row_lines` and `face_lines` have the line number of each vertex and polygon. For each polygon
@@ -98,7 +98,7 @@ def read(source: Source) -> RawMesh:
 
 
 def _attributes_of(
-    source: Source, found: _Found, polygons: IndexPolygons, positions: IndexArray
+    source: Source, found: _ObjContent, polygons: IndexPolygons, positions: IndexArray
 ) -> tuple[Attributes, list[str]]:
     """Return the attributes of an OBJ's triangles, and the names of missing companion files."""
     faces = polygons.corners[positions]
@@ -138,7 +138,7 @@ def _number(row: list[bytes], place: int) -> float:
         return math.nan
 
 
-def _references_at(found: _Found, place: int, count: int) -> IndexArray:
+def _references_at(found: _ObjContent, place: int, count: int) -> IndexArray:
     """Return the index of the texture coordinates or normal of each polygon corner, -1 for none.
 
     `place` is 0 for texture coordinates, 1 for normals; indices from `count` on become -1.
@@ -163,7 +163,7 @@ def _row(parts: list[bytes], place: int, known: int) -> int:
     return number - 1 if number > 0 else max(known + number, -1) if number < 0 else -1
 
 
-def _material_names(found: _Found) -> Values:
+def _material_names(found: _ObjContent) -> Values:
     """Return the material name of each polygon, empty if it has none."""
     starts = [start for _, start in found.materials]
     ends = [*starts[1:], len(found.polygons)]
@@ -182,8 +182,8 @@ def _missing(names: list[str]) -> tuple[Finding, ...]:
     return (Finding("ignored", "warning", message, (), len(names)),)
 
 
-def _collected(source: Source) -> _Found:
-    found = _Found()
+def _collected(source: Source) -> _ObjContent:
+    found = _ObjContent()
     for number, words in _statements(source):
         key = words[0]
         if key == b"v":

@@ -8,7 +8,7 @@ from ..attributes.attributes import made
 from ..errors import Finding, core_errors
 from ..mesh.certificate import Certificate, certify
 from ..mesh.mesh import Mesh
-from ..mesh.weld import distinct
+from ..mesh.weld import distinct_count
 from ..solid.solid import solid_of_mesh
 from .blocks import blocks
 from .raw import RawMesh, compacted
@@ -213,7 +213,7 @@ def _crossing(where: IndexArray) -> Finding:
 
 def _merged(vertices: FloatArray, rounded: FloatArray, moved: BoolArray) -> tuple[Finding, ...]:
     near = _beside_moved(rounded, moved)
-    lost = distinct(vertices[near]) - distinct(rounded[near])
+    lost = distinct_count(vertices[near]) - distinct_count(rounded[near])
     if not lost:
         return ()
     message = f"rounding to single precision merges {lost} vertices with others{_REMEDY}"

@@ -181,7 +181,7 @@ def limited_content(path: str | os.PathLike[str]) -> bytes:
         If the file cannot be read, is larger than 256 MiB, or is a pointer of Git LFS.
     """
     name = file_path(path)
-    with _readable(name):
+    with _read_errors(name):
         data = content_of(Path(name)) if Path(name).stat().st_size <= _MAX_TEXT_BYTES else None
     if data is None or len(data) > _MAX_TEXT_BYTES:
         raise FormatError(
@@ -199,7 +199,7 @@ def whole_content(path: str | os.PathLike[str]) -> bytes:
         If the file cannot be read or is a pointer of Git LFS.
     """
     name = file_path(path)
-    with _readable(name):
+    with _read_errors(name):
         data = content_of(Path(name))
     return refuse_pointer_file(name, data)
 
@@ -226,7 +226,7 @@ def _is_pointer(data: bytes) -> bool:
 
 
 @contextmanager
-def _readable(name: str) -> Iterator[None]:
+def _read_errors(name: str) -> Iterator[None]:
     """Turn an exception of the block into a `FormatError`: the file `name` cannot be read."""
     try:
         yield

@@ -56,11 +56,11 @@ def verify(
         If the content differs; code ``"write_mismatch"``. If the number of triangles is right, the
         attribute `where` has the number of the first triangle that differs.
     """
-    with _reading(path):
+    with _readback_errors(path):
         stored = [one for one in scan(file) if one.count]
     expected = _expected_objects(mesh, name_in_file, repeats)
     _compare_counts(path, expected, stored)
-    with _reading(path):
+    with _readback_errors(path):
         rounded = _rounded(mesh, stored)
         # The fastest comparison: a file with one object may have exactly the arrays of the mesh.
         if len(stored) == 1 and stored[0].has(rounded, expected[0][1]):
@@ -70,7 +70,7 @@ def verify(
 
 
 @contextmanager
-def _reading(path: str) -> Iterator[None]:
+def _readback_errors(path: str) -> Iterator[None]:
     """Replace any exception of the block by a `FormatError`: the file cannot be read back."""
     try:
         yield
@@ -108,7 +108,7 @@ def verify_with_attributes(
     FormatError
         If the content differs; code ``"write_mismatch"``.
     """
-    with _reading(path):
+    with _readback_errors(path):
         found = read(path, file.read())
     vertices = found.vertices
     if np.array_equal(vertices, vertices.astype(np.float32)):

@@ -162,7 +162,9 @@ def _run_child(folder: Path, timeout: float | None) -> dict[str, Any]:
     path = folder / "said.json"
     said: dict[str, Any] = json.loads(path.read_text("utf-8")) if path.exists() else {}
     if done.returncode == _MISSING and "missing" in said:
-        raise missing_part("pymeshlab", f"for repairs ({said['missing']})", remedy(said["missing"]))
+        raise missing_part(
+            "pymeshlab", f"for repairs ({said['missing']})", install_command(said["missing"])
+        )
     if done.returncode != 0:
         last = done.stderr.strip().splitlines()[-1:] or ["no message"]
         message = f"pymeshlab failed with exit code {done.returncode}: {last[0]}"
@@ -170,7 +172,7 @@ def _run_child(folder: Path, timeout: float | None) -> dict[str, Any]:
     return said
 
 
-def remedy(reason: str) -> str:
+def install_command(reason: str) -> str:
     """Return the shell command that installs what is missing, pymeshlab or a system library."""
     if "libGL" in reason or "libOpenGL" in reason or "plug-ins" in reason:
         return "apt-get install --no-install-recommends libgl1 libopengl0"

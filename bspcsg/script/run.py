@@ -79,15 +79,15 @@ def show(*solids: Any) -> None:
     if _shown is None:
         from ..report.viewer.show import show as show_here
 
-        show_here(*_flat(solids))
+        show_here(*_flattened(solids))
     else:
-        _shown.extend(Solid.from_mesh(solid) for solid in _flat(solids))
+        _shown.extend(Solid.from_mesh(solid) for solid in _flattened(solids))
 
 
-def _flat(items: Iterable[Any]) -> Iterator[Any]:
+def _flattened(items: Iterable[Any]) -> Iterator[Any]:
     """Yield the given objects; replace each list by its entries, also in nested lists."""
     for thing in items:
-        yield from _flat(thing) if isinstance(thing, list) else [thing]
+        yield from _flattened(thing) if isinstance(thing, list) else [thing]
 
 
 @counted
@@ -210,7 +210,7 @@ def _standard_error() -> int:
         return subprocess.DEVNULL
 
 
-def _answer(
+def _result_or_error(
     name: str, arguments: list[str], defines: dict[str, Any]
 ) -> _ScriptResult | BspcsgError:
     global _shown  # noqa: PLW0603  a process runs one script
@@ -219,7 +219,7 @@ def _answer(
     sys.path.insert(0, str(Path(name).parent.absolute()))
     program = ModuleType("__main__")
     try:
-        _run(program, name, defines)
+        _run_program(program, name, defines)
         result = _result(name, vars(program))
         return result if isinstance(result, BspcsgError) else _with_operation(result)
     except BspcsgError as error:
@@ -228,7 +228,7 @@ def _answer(
         return _located(error, name)
 
 
-def _run(program: ModuleType, name: str, defines: dict[str, Any]) -> None:
+def _run_program(program: ModuleType, name: str, defines: dict[str, Any]) -> None:
     """Run a script as the main program of this process, until its end or an exit with code 0.
 
     Raises
@@ -302,7 +302,7 @@ def serve() -> None:
     except (EOFError, pickle.UnpicklingError):
         # The parent was interrupted while it wrote the task, and reports that.
         sys.exit(_STOPPED)
-    pickled = pickle.dumps(_answer(name, arguments, defines))
+    pickled = pickle.dumps(_result_or_error(name, arguments, defines))
     unfinished = Path(f"{answer}.part")
     unfinished.write_bytes(pickled)
     unfinished.rename(answer)

@@ -24,7 +24,7 @@ from ..parameters import (
 from ..solid.leaf import MeshLeaf
 from ..solid.ledger import counted
 from ..solid.solid import Solid, from_leaf
-from .sweep import RingLayout, strip
+from .sweep import RingLayout, quad_triangles
 from .twist import Rise, extruded
 
 #: The default number of slices for a full turn of twist, equal to the default sides of a circle.
@@ -107,7 +107,7 @@ def extrude(
     ]
     caps = triangulate(contours)
     start, end = directed_edges(contours).T
-    sides = strip(start, end, start + count, end + count)
+    sides = quad_triangles(start, end, start + count, end + count)
     return _solid(np.concatenate(levels), [caps[:, ::-1], caps + count, sides])
 
 
@@ -191,8 +191,8 @@ def _swept(rings: RingLayout, start: int, end: int, full: bool) -> IndexArray:
     """Return the triangles that the polygon's edge from `start` to `end` sweeps around the axis."""
     low, high = rings.ring(start), rings.ring(end)
     if full:
-        return strip(low, np.roll(low, -1), high, np.roll(high, -1))
-    return strip(low[:-1], low[1:], high[:-1], high[1:])
+        return quad_triangles(low, np.roll(low, -1), high, np.roll(high, -1))
+    return quad_triangles(low[:-1], low[1:], high[:-1], high[1:])
 
 
 def _solid(vertices: FloatArray, faces: Sequence[IndexArray]) -> Solid:

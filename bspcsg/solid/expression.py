@@ -15,7 +15,7 @@ from .._types import ProgramLine
 from ..caching import LazyValue
 from ..errors import internal
 from ..geometry.chain import IDENTITY_CHAIN, FactorChain
-from .leaf import ExpressionLeaf, Record, TreeLeaf, run
+from .leaf import ExpressionLeaf, Record, TreeLeaf, evaluated_record
 from .program import Operator
 
 
@@ -75,10 +75,12 @@ def complement(placed: PlacedNode) -> PlacedNode:
 
 def operation(operator: Operator, operands: Sequence[PlacedNode]) -> ExpressionNode:
     """Return a new node, not evaluated, that combines the operands by a set operation."""
-    return ExpressionNode(Pending(operator, tuple(_settled(operand) for operand in operands)))
+    return ExpressionNode(
+        Pending(operator, tuple(_normalized_operand(operand) for operand in operands))
+    )
 
 
-def _settled(placed: PlacedNode) -> PlacedNode:
+def _normalized_operand(placed: PlacedNode) -> PlacedNode:
     """Return an operand; a transformed complement becomes the complement of a transformed solid.
 
     The solid inside the complement is usually bounded, so it has a mesh to transform.
@@ -124,7 +126,7 @@ class Plan:
     def execute(self) -> ExpressionLeaf:
         """Execute the program and return its result; all operands must have been evaluated."""
         leaves = [_operand_leaf(operand) for operand in self.operands]
-        return run(Record(self.program, tuple(leaves)))
+        return evaluated_record(Record(self.program, tuple(leaves)))
 
 
 def make_plan(root: ExpressionNode) -> Plan:

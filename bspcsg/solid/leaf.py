@@ -35,7 +35,7 @@ from .source_attributes import (
     all_tagged,
     attributes_of,
     inherited,
-    patched,
+    with_patches,
 )
 
 
@@ -203,7 +203,7 @@ class MeshLeaf:
     @cached_property
     def mesh_tree(self) -> Tree:
         """The tree from which the mesh is made: faces with different attributes are not joined."""
-        return patched(self.own_tree(), self.source_attributes)
+        return with_patches(self.own_tree(), self.source_attributes)
 
     def _settled(self) -> "_Settled":
         """Return the mesh's arrays and attributes, after mending crossings due to a transform."""
@@ -301,7 +301,7 @@ class TreeLeaf:
     given_pitch : int or None
         As for `MeshLeaf`.
     tags : mapping of str to object
-        The attributes that `tagged` set on all faces, in case the program is run again.
+        The attributes that `tagged_leaf` set on all faces, in case the program is run again.
     """
 
     result: Tree
@@ -354,11 +354,11 @@ class TreeLeaf:
         """
         if self._is_bounded():
             return make(self)
-        outside = run(Record(COMPLEMENT, (self,)))
+        outside = evaluated_record(Record(COMPLEMENT, (self,)))
         mesh = make(outside) if outside._is_bounded() else None
         if mesh is None:
             return None
-        made = run(Record(COMPLEMENT, (mesh,)))
+        made = evaluated_record(Record(COMPLEMENT, (mesh,)))
         return replace(made, record=None, extent=False)
 
     def touches_itself(self, motion: transform.LatticeMotion) -> bool:
@@ -378,7 +378,7 @@ class TreeLeaf:
     @cached_property
     def mesh_tree(self) -> Tree:
         """The tree from which the mesh is made: faces with different attributes are not joined."""
-        return patched(self.result, self.source_attributes)
+        return with_patches(self.result, self.source_attributes)
 
     @property
     def is_constant(self) -> bool:
@@ -491,14 +491,14 @@ def tree_of(leaf: ExpressionLeaf) -> Tree:
     return leaf.tree(_common_pitch([leaf]))
 
 
-def shown_tree(leaf: ExpressionLeaf) -> Tree:
+def mesh_tree_of(leaf: ExpressionLeaf) -> Tree:
     """Return the tree for a leaf's mesh, in which faces of different attributes are not joined."""
     if leaf.source_attributes and isinstance(leaf, (MeshLeaf, TreeLeaf)):
         return leaf.mesh_tree
     return tree_of(leaf)
 
 
-def tagged(leaf: ExpressionLeaf, values: Mapping[str, object]) -> ExpressionLeaf:
+def tagged_leaf(leaf: ExpressionLeaf, values: Mapping[str, object]) -> ExpressionLeaf:
     """Return a leaf of the same set with one value of each given attribute on all faces.
 
     A half-space, the empty set and all of space are returned unchanged, having no faces. The
@@ -531,7 +531,7 @@ def _given_pitch_of(leaves: Sequence[ExpressionLeaf], result: Tree) -> int | Non
     return result.pitch if given == {result.pitch} else None
 
 
-def run(record: Record) -> TreeLeaf:
+def evaluated_record(record: Record) -> TreeLeaf:
     """Evaluate a program on its operands, brought to one lattice, and return the result's leaf."""
     extents = [leaf.extent for leaf in record.leaves]
     extent = EXTENTS.evaluate(record.program, extents)
@@ -565,7 +565,7 @@ def _on_one_lattice(
         return leaves, [leaf.tree(pitch) for leaf in leaves]
     except LimitError:
         coarser = _finest_for_all(leaves, extent)
-        found = [_fitted(leaf, coarser, extent) for leaf in leaves]
+        found = [_on_lattice_or_none(leaf, coarser, extent) for leaf in leaves]
         fitted = [leaf for leaf in found if leaf is not None]
         if len(fitted) < len(found):
             raise
@@ -594,7 +594,7 @@ def _fits_lattice(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> bool:
     return True
 
 
-def _fitted(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> ExpressionLeaf | None:
+def _on_lattice_or_none(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> ExpressionLeaf | None:
     """Return a leaf for the lattice of `pitch`, coarsened if need be; None if that fails."""
     if isinstance(leaf, PlaneLeaf):
         return leaf if extent is None else leaf.constant_leaf(pitch) or leaf
@@ -683,4 +683,4 @@ def _operand_steps(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Transfor
     leaves = []
     for operand in leaf.record.leaves:
         leaves.append((yield operand, factors))
-    return tagged(run(Record(leaf.record.program, tuple(leaves))), leaf.tags)
+    return tagged_leaf(evaluated_record(Record(leaf.record.program, tuple(leaves))), leaf.tags)

@@ -44,8 +44,8 @@ from .leaf import (
     Record,
     TreeLeaf,
     bounded_on_one_lattice,
-    shown_tree,
-    tagged,
+    mesh_tree_of,
+    tagged_leaf,
     tree_of,
 )
 from .ledger import count, counted, uncounted
@@ -313,7 +313,7 @@ class Solid(Movable, PointSet):
     @property
     def tree(self) -> Tree:
         """The solid's partition tree, an object of the compiled core; this evaluates the solid."""
-        return shown_tree(self._leaf())
+        return mesh_tree_of(self._leaf())
 
     def _leaf(self) -> ExpressionLeaf:
         """Evaluate the solid and return its leaf, to which the transform has been applied."""
@@ -1442,7 +1442,7 @@ class Solid(Movable, PointSet):
         [1, 2]
         """
         leaf = self._leaf()
-        told = tagged(leaf, values)
+        told = tagged_leaf(leaf, values)
         return self if told is leaf else from_leaf(told)
 
     # Conversion
@@ -1675,7 +1675,7 @@ def from_node(node: ExpressionNode, factors: FactorChain = IDENTITY_CHAIN) -> So
     return Solid._of(node, factors)
 
 
-def passing_mesh(solid: Solid) -> Mesh:
+def uncached_mesh(solid: Solid) -> Mesh:
     """Return the mesh of a solid, without making the solid cache it."""
     return solid._made_mesh() if solid._mesh is None else solid._mesh
 

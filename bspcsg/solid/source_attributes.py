@@ -16,7 +16,7 @@ from ..geometry import transform
 SourceAttributes: TypeAlias = tuple[Attributes | None, ...]
 
 
-def patched(tree: Tree, source_attributes: SourceAttributes) -> Tree:
+def with_patches(tree: Tree, source_attributes: SourceAttributes) -> Tree:
     """Return a tree whose mesh joins only faces with the same attributes."""
     return tree.patched(patches_of(source_attributes)) if source_attributes else tree
 

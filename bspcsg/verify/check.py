@@ -35,21 +35,21 @@ from ..parameters import instance_of
 from ..shapes.primitives import box as box_of
 from ..solid.ledger import uncounted
 from ..solid.program import name_of, program_of
-from ..solid.solid import Solid, passing_mesh
+from ..solid.solid import Solid, uncached_mesh
 from . import oracle
 from .discrepancy import SetDifference, difference_of
 from .oracle import Answer
-from .quick_comparison import SUMMING, areas_differ, measures_differ, sides_differ, volume_of_film
+from .quick_comparison import SUM_ERROR, areas_differ, measures_differ, sides_differ, volume_of_film
 from .referee import Ruling, settle
 from .verdict import CheckReport, Facts, Verdict
 
 __all__ = [
     "CheckReport",
-    "Examination",
     "Facts",
+    "ReportWithMeshes",
     "Verdict",
     "check_result",
-    "examine",
+    "report_with_meshes",
     "same_set_bound",
     "validate",
 ]
@@ -116,11 +116,11 @@ def check_result(
     UnboundedError
         If the result reaches to infinity.
     """
-    return examine(result, op, operands, depth).report
+    return report_with_meshes(result, op, operands, depth).report
 
 
 @dataclass(frozen=True, eq=False)
-class Examination:
+class ReportWithMeshes:
     """The report of a check, with the meshes that it is based on.
 
     Parameters
@@ -149,12 +149,12 @@ class Examination:
         return _meshes_of(self.came)
 
 
-def examine(
+def report_with_meshes(
     result: Solid,
     op: SetOp | None = None,
     operands: Sequence[Solid] | None = None,
     depth: Depth = "full",
-) -> Examination:
+) -> ReportWithMeshes:
     """Compare a result as `check_result` does, and return the report with the meshes."""
     if op is not None and operands is not None:
         return _Check(op, program_of(op, len(operands)), list(operands), result, depth).run()
@@ -197,10 +197,10 @@ class _Check:
     theirs: Mesh | None = None
     difference: Mesh | None = None
 
-    def run(self) -> Examination:
+    def run(self) -> ReportWithMeshes:
         mesh = self.result.normalized().to_mesh()
         report = self._judged(mesh)
-        return Examination(report, self.program, self.came, mesh, self.theirs, self.difference)
+        return ReportWithMeshes(report, self.program, self.came, mesh, self.theirs, self.difference)
 
     def _judged(self, mesh: Mesh) -> CheckReport:
         ours = Facts.of(mesh)
@@ -237,7 +237,7 @@ class _Check:
         if status != "NoError":
             return f"manifold3d does not accept the result: its status is {status}"
         gap = abs(ours.volume - self.set_volume)
-        if gap > self._film(mesh) * ours.area + SUMMING * abs(ours.volume):
+        if gap > self._film(mesh) * ours.area + SUM_ERROR * abs(ours.volume):
             return (
                 "the volume of the resulting mesh differs from the exact volume of the set by"
                 f" {gap:.3g}"
@@ -273,9 +273,9 @@ class _Check:
 
     def _reduced(self, number: int, solid: Solid) -> Mesh:
         """Return the reduced boundary of an operand; add a note if it differs from the operand."""
-        reduced = passing_mesh(solid.normalized())
+        reduced = uncached_mesh(solid.normalized())
         if solid.normalized() is not solid:
-            faces = passing_mesh(solid).faces
+            faces = uncached_mesh(solid).faces
             if not np.array_equal(faces, reduced.faces):
                 self.notes.append(
                     f"operand {number} overlaps itself, so manifold3d was given its reduced"

@@ -11,11 +11,11 @@ import numpy.typing as npt
 
 from ..mesh.mesh import Mesh
 from ..mesh.pieces import Point
-from .referee import Columns
+from .referee import RayClassifier
 from .verdict import Facts
 
 #: The relative error of volumes and areas that are summed in doubles.
-SUMMING = 1e-11
+SUM_ERROR = 1e-11
 
 #: The largest number of faces at the seam with sample points, one on each side.
 _MAX_FACES_PROBED = 16
@@ -56,12 +56,12 @@ def _bounds_differ(mesh: Mesh, other: Mesh, film: float) -> bool:
 
 def volume_of_film(ours: Facts, theirs: Facts, film: float) -> float:
     """Return the largest difference of volumes if both surfaces are at most `film` apart."""
-    return film * (ours.area + theirs.area) + SUMMING * abs(ours.volume)
+    return film * (ours.area + theirs.area) + SUM_ERROR * abs(ours.volume)
 
 
 def areas_differ(ours: Facts, theirs: Facts, mesh: Mesh, film: float) -> bool:
     """Return true if the areas differ by more than `film` times the length of all our edges."""
-    gap = abs(ours.area - theirs.area) - SUMMING * ours.area
+    gap = abs(ours.area - theirs.area) - SUM_ERROR * ours.area
     return gap > 0 and gap > film * _edge_length(mesh)
 
 
@@ -73,7 +73,7 @@ def _edge_length(mesh: Mesh) -> float:
 def sides_differ(ours: Mesh, theirs: Mesh, film: float) -> tuple[int, bool]:
     """Return the number of sample points near the seam, and whether a point is in one mesh only."""
     points = _points_at_seam(ours, film)
-    first, second = Columns(ours), Columns(theirs)
+    first, second = RayClassifier(ours), RayClassifier(theirs)
     sides = [(first.is_inside(point), second.is_inside(point)) for point in points]
     known = [(one, other) for one, other in sides if one is not None and other is not None]
     return len(known), any(one != other for one, other in known)

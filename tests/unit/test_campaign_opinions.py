@@ -16,7 +16,7 @@ from bspcsg.campaign.engines.engine_request import EngineRequest, NoOpinionError
 from bspcsg.campaign.judging.opinions import crossings_opinion, opinion, script_opinion
 from bspcsg.campaign.judging.verdict import verdict_of
 from bspcsg.mesh.mesh import Mesh
-from bspcsg.verify.check import CheckReport, Facts, Verdict, examine
+from bspcsg.verify.check import CheckReport, Facts, Verdict, report_with_meshes
 
 needs_openscad = pytest.mark.skipif(
     not shutil.which("openscad"), reason="openscad is not installed"
@@ -26,7 +26,7 @@ needs_openscad = pytest.mark.skipif(
 def question(ours: "b.Solid | None" = None, operation: str = "difference") -> EngineRequest:
     """Return a question about a cube without a corner, with `ours` as our result."""
     operands = [b.cube(3), b.cube(2).translate(2, 2, 2)]
-    found = examine(operands[0] - operands[1], "difference", operands)
+    found = report_with_meshes(operands[0] - operands[1], "difference", operands)
     meshes = [solid.normalized().to_mesh() for solid in operands]
     mesh = found.ours if ours is None else ours.normalized().to_mesh()
     return EngineRequest(operation, found.program, meshes, mesh, -9, 60.0)
@@ -82,7 +82,7 @@ def test_lattices_of_two_pitches_are_no_disagreement() -> None:
     large = b.cube(1, center=True).rotate(33, axis=(1, 2, 3)).to_mesh()
     operands = [b.Solid(*large), b.box(1, 0.8, 0.6), b.cube(1e-4).translate(3, 0, 0)]
     result = b.union(operands)
-    found = examine(result, "union", operands)
+    found = report_with_meshes(result, "union", operands)
     meshes = [large, *(solid.to_mesh() for solid in operands[1:])]
     place = ("union", found.program, meshes, found.ours, result.pitch, 60.0)
     assert result.pitch < operands[0].pitch

@@ -17,7 +17,7 @@ from ...formats.source import limited_content
 from ...parameters import file_path, instance_of, positive, shown
 from ..sets.region import Region
 from .dxf_curves import chains_of
-from .dxf_layouts import drawn_layout
+from .dxf_layouts import layout_with_content
 from .dxf_markers import module_of_ezdxf, with_markers
 from .unread_content import UnreadContent
 
@@ -66,7 +66,7 @@ def load_dxf(
         wanted = None if names is None else _known_layers(names, document, os.fspath(path))
         lost = UnreadContent()
         is_wanted = partial(_is_among, wanted)
-        layout = drawn_layout(document, is_wanted, lost)
+        layout = layout_with_content(document, is_wanted, lost)
         chains = list(chains_of(layout, is_wanted, chord, lost))
     region = Region(
         lost.surrounding(_closed(chains, os.fspath(path))), winding=winding, pitch=pitch

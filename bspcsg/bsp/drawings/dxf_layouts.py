@@ -12,7 +12,9 @@ ANY_LAYER = "0"
 VIEWPORT = "VIEWPORT"
 
 
-def drawn_layout(document: Any, is_wanted: Callable[[str], bool], lost: UnreadContent) -> Any:
+def layout_with_content(
+    document: Any, is_wanted: Callable[[str], bool], lost: UnreadContent
+) -> Any:
     """Return the model space of a drawing or, if it is empty, the first nonempty paper space.
 
     Wanted entities of the other spaces are counted in `lost`.

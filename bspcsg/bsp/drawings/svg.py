@@ -65,7 +65,7 @@ def load_svg(
     lost = UnreadContent()
     chord = positive(tolerance, "tolerance")
     rule = None if winding is None else winding_rule(winding)
-    shapes = shown_shapes(path, make_plain, lost)
+    shapes = visible_shapes(path, make_plain, lost)
     filled = [shape for shape in shapes if _is_filled(shape.element)]
     with format_errors(os.fspath(path), "SVG"):
         found_loops = iter(outlines_of(filled, chord_counts_within(_own_lengths(filled, chord))))
@@ -102,7 +102,7 @@ class Shape(NamedTuple):
     path: Segments | None
 
 
-def shown_shapes(
+def visible_shapes(
     path: str | os.PathLike[str],
     prepare: Callable[[ElementTree.Element], None],
     lost: UnreadContent,
@@ -134,7 +134,7 @@ def shown_shapes(
         plain = io.BytesIO(ElementTree.tostring(root))
         drawing = elements.SVG.parse(plain, reify=False, ppi=96.0)
         # svgelements returns nothing for a drawing that is not displayed.
-        found = [] if drawing is None else [one for one in drawing.elements() if _is_shown(one)]
+        found = [] if drawing is None else [one for one in drawing.elements() if _is_visible(one)]
         shapes = [
             # svgelements also gives shapes inside a path the path's data.
             Shape(
@@ -263,7 +263,7 @@ def _checked_bytes(path: str | os.PathLike[str]) -> bytes:
     return data
 
 
-def _is_shown(shape: Any) -> bool:
+def _is_visible(shape: Any) -> bool:
     is_visible = _keyword(shape, "visibility") not in ("hidden", "collapse")
     return is_visible and _keyword(shape, "display") != "none"
 

@@ -5,8 +5,8 @@ from typing import TypeAlias
 import numpy as np
 
 from ..._types import FloatArray, IndexArray
-from ..trees.fragments import ranges
-from .clip import Polygons, following, owners
+from ..trees.fragments import concatenated_ranges
+from .clip import Polygons, next_corners, polygon_of_corner
 
 #: A part of a segment as two parameters: 0 is the segment's start, 1 its end.
 SegmentPart: TypeAlias = tuple[float, float]
@@ -78,7 +78,7 @@ def _near_pairs(
     if (last - first).sum() > _MAX_NEAR_PAIRS:
         return None
     segment = np.repeat(segments, last - first)
-    polygon = members[ranges(first, last)]
+    polygon = members[concatenated_ranges(first, last)]
     meets = polygon > owner[segment]
     meets &= (low[polygon] <= ends.max(axis=1)[segment]).all(axis=1)
     meets &= (high[polygon] >= ends.min(axis=1)[segment]).all(axis=1)
@@ -92,7 +92,7 @@ def _squares(low: FloatArray, high: FloatArray) -> tuple[IndexArray, IndexArray]
     sides = np.floor(high / _GRID_WIDTH).astype(np.int64) - first + 1
     counts = sides[:, 0] * sides[:, 1]
     box = np.repeat(np.arange(len(low)), counts)
-    place = ranges(np.zeros_like(counts), counts)
+    place = concatenated_ranges(np.zeros_like(counts), counts)
     column, row = np.divmod(place, sides[box, 1])
     # A picture has fewer than 1 << 20 squares in a column.
     return (first[box, 0] + column) * (1 << 20) + first[box, 1] + row, box
@@ -119,9 +119,9 @@ def _clip_parameters(
     There is one value for each pair of `segment` and `polygon`; enter ≥ leave if they do not meet.
     """
     starts, stops = polygons.offsets[:-1][polygon], polygons.offsets[1:][polygon]
-    corner = ranges(starts, stops)
+    corner = concatenated_ranges(starts, stops)
     pair = np.repeat(np.arange(len(polygon)), stops - starts)
-    after = following(polygons.offsets)
+    after = next_corners(polygons.offsets)
     along = polygons.corners[after] - polygons.corners
     turn = np.sign(_areas(polygons))[polygon[pair]]
     tail, head = ends[segment[pair], 0], ends[segment[pair], 1]
@@ -143,7 +143,7 @@ def _clip_parameters(
 
 def _areas(polygons: Polygons) -> FloatArray:
     """Return twice the signed area of each polygon, (k,)."""
-    owner, after = owners(polygons.offsets), following(polygons.offsets)
+    owner, after = polygon_of_corner(polygons.offsets), next_corners(polygons.offsets)
     arms = polygons.corners - polygons.corners[polygons.offsets[:-1]][owner]
     sums: FloatArray = np.add.reduceat(_cross(arms, arms[after]), polygons.offsets[:-1])
     return sums

@@ -9,8 +9,8 @@ from ..._types import BoolArray, FloatArray, IndexArray
 from ..trees.fragments import Fragments
 from ..trees.tree import PartitionTree
 from .camera import Camera
-from .clip import Polygons, clip, following, owners
-from .colours import ColourArray, lit
+from .clip import Polygons, clip, next_corners, polygon_of_corner
+from .colours import ColourArray, shaded_colours
 from .creases import Facets
 from .hidden_lines import visible_parts
 
@@ -119,11 +119,11 @@ def _lined(polygons: Polygons, style: Style) -> tuple[Polygons, FloatArray]:
     If there are too many edges, return the marked polygons and no lines.
     """
     marked = np.flatnonzero(polygons.marked)
-    ends = polygons.corners[np.stack([marked, following(polygons.offsets)[marked]], axis=1)]
+    ends = polygons.corners[np.stack([marked, next_corners(polygons.offsets)[marked]], axis=1)]
     lines = (
         ends
         if style == "edges"
-        else visible_parts(polygons, ends, owners(polygons.offsets)[marked])
+        else visible_parts(polygons, ends, polygon_of_corner(polygons.offsets)[marked])
     )
     if lines is None:
         return polygons, ends[:0]
@@ -174,7 +174,7 @@ def _fills(scene: Scene, camera: Camera, style: Style) -> ColourArray:
         return np.full((len(scene.facets), 3), 255, dtype=np.uint8)
     normals = scene.facets.normals
     turned = np.where(facing(scene.facets, camera)[:, None], normals, -normals)
-    return lit(scene.colours, turned, camera.axes)
+    return shaded_colours(scene.colours, turned, camera.axes)
 
 
 def _run_numbers(node: IndexArray, fills: ColourArray | None) -> IndexArray:

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..._types import BoolArray, FloatArray, IndexArray
 from .camera import Camera
-from .colours import ColourArray, lit
+from .colours import ColourArray, shaded_colours
 from .painting import EDGE_ON, Edges, Style
 
 #: The largest number of samples, or of rows of triangles, in one array, which then takes about ten
@@ -289,7 +289,7 @@ def raster(
         fills = np.full((len(scene.faces), 3), 255, dtype=np.uint8)
     else:
         normals = np.where(front[:, None], scene.normals, -scene.normals)
-        fills = lit(scene.colours, normals, camera.axes)
+        fills = shaded_colours(scene.colours, normals, camera.axes)
     return buffer.nearest.reshape(shape), fills, _thickened(ink, line)
 
 

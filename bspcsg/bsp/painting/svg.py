@@ -6,7 +6,7 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...attributes.colours import hexadecimal
-from .clip import following
+from .clip import next_corners
 from .colours import ColourArray
 from .outline import DirectedEdge, GridPoint, outlines, polylines, straightened
 from .painting import Painting
@@ -53,7 +53,7 @@ def _hex(value: ColourArray) -> str:
 def _paths(painting: Painting) -> list[str]:
     polygons = painting.polygons
     spots = _grid_points(polygons.corners)
-    after = following(polygons.offsets).tolist()
+    after = next_corners(polygons.offsets).tolist()
     marked, starts = polygons.marked.tolist(), polygons.offsets.tolist()
     paths = []
     for _, members in groupby(range(len(painting.group)), key=painting.group.tolist().__getitem__):

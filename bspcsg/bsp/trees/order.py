@@ -9,7 +9,7 @@ from ..._types import FloatArray, IndexArray, SideArray
 from ...errors import core_errors, invalid_parameter
 from ...geometry.arrays import doubles
 from ...parameters import one_of, shown
-from .fragments import Fragments, ranges
+from .fragments import Fragments, concatenated_ranges
 from .node import Leaf, Node, Visitor
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def _painted(tree: "PartitionTree", eye: Any, direction: Any) -> IndexArray:
     with core_errors():
         order = tree.core.order(place, at_infinity)
     arrays = tree.arrays
-    return ranges(arrays["start"][order], arrays["end"][order])
+    return concatenated_ranges(arrays["start"][order], arrays["end"][order])
 
 
 def _viewpoint(tree: "PartitionTree", eye: Any, direction: Any) -> tuple[list[float], bool]:

@@ -11,12 +11,12 @@ from ... import csg
 from ..._types import FloatArray, SetOp
 from ...errors import BspcsgError, InternalError, MissingPartError
 from ...formats.atomic import write_file
-from ...machine import forget_peak, peak_mb
+from ...machine import peak_mb, reset_peak
 from ...mesh.mesh import Mesh
 from ...operations.setops import OPERATIONS
 from ...solid.solid import Solid
 from ...verify import oracle
-from ...verify.check import Examination, examine
+from ...verify.check import ReportWithMeshes, report_with_meshes
 from ...verify.comparison import hausdorff
 from ...verify.verdict import CheckReport, Facts, Verdict
 from ..cases.case import SCRIPT, Case
@@ -133,7 +133,7 @@ def evaluate(case: Case, settings: EvaluationSettings, keep: bool = False) -> Ca
     keep : bool
         True to write the meshes even if the case is not interesting.
     """
-    forget_peak()
+    reset_peak()
     clock = _Stopwatch()
     try:
         record = _Evaluation(case, settings, clock).run(keep)
@@ -192,16 +192,16 @@ class _Evaluation:
             path = str(self._case.operands[0].file)
             return [csg.load(path, on_invalid="warn")], [None]
 
-    def _examined(self, result: Solid, solids: list[Solid]) -> Examination:
+    def _examined(self, result: Solid, solids: list[Solid]) -> ReportWithMeshes:
         if not self._is_script:
-            return examine(result, cast(SetOp, self._case.operation), solids)
+            return report_with_meshes(result, cast(SetOp, self._case.operation), solids)
         if result.last_operation is None:
             # A script without operations: manifold3d gets its mesh as the union of one operand.
-            return examine(result, "union", [result])
-        return examine(result)
+            return report_with_meshes(result, "union", [result])
+        return report_with_meshes(result)
 
     def _further(
-        self, found: Examination, solids: list[Solid], result: Solid
+        self, found: ReportWithMeshes, solids: list[Solid], result: Solid
     ) -> list[OracleRecord]:
         """Return the records of all engines that are asked besides manifold3d."""
         wanted = [name for name in self._settings.against if name != "manifold3d"]
@@ -233,7 +233,7 @@ class _Evaluation:
             operand["volume"] = solid.volume
             operand["pose"] = None if pose is None else pose.tolist()
 
-    def _distances(self, found: Examination) -> HausdorffRecord | None:
+    def _distances(self, found: ReportWithMeshes) -> HausdorffRecord | None:
         theirs, difference = found.theirs, found.difference
         if theirs is None or not self._settings.samples or found.report.set_difference is None:
             return None
@@ -242,7 +242,7 @@ class _Evaluation:
         forth, back, count = hausdorff(found.ours, theirs, difference, self._settings.samples)
         return {"forward": forth, "backward": back, "samples": count}
 
-    def _stored_path(self, found: Examination) -> str:
+    def _stored_path(self, found: ReportWithMeshes) -> str:
         """Write the meshes of a case to a file, and return its path as in the record."""
         folder = Path(str(self._settings.meshes))
         folder.mkdir(parents=True, exist_ok=True)
@@ -251,7 +251,7 @@ class _Evaluation:
         return f"{self._settings.relative}/{name}"
 
 
-def _manifold_record(found: Examination, seconds: float) -> OracleRecord:
+def _manifold_record(found: ReportWithMeshes, seconds: float) -> OracleRecord:
     report = found.report
     name, _, version = oracle.versioned_name().partition(" ")
     return {

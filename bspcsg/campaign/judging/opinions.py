@@ -58,7 +58,7 @@ def require(engines: Sequence[str]) -> None:
 
 def opinion(engine: str, question: EngineRequest) -> OracleRecord:
     """Return the record of an engine's result, compared with ours as sets."""
-    return _recorded(engine, question, lambda: _ASKED[engine](question))
+    return _recorded(engine, question, lambda: _ENGINE_FUNCTIONS[engine](question))
 
 
 def script_opinion(path: Path, ours: Solid, timeout: float) -> OracleRecord:
@@ -127,7 +127,7 @@ def _difference_text(found: SetDifference, bound: float) -> str:
     return f"{words}; rounding explains {bound:.2g}"
 
 
-_ASKED: dict[str, Callable[[EngineRequest], EngineAnswer]] = {
+_ENGINE_FUNCTIONS: dict[str, Callable[[EngineRequest], EngineAnswer]] = {
     "pymeshlab": ask_pymeshlab,
     "openscad": ask_openscad,
 }

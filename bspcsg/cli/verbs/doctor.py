@@ -130,7 +130,7 @@ def _with_libraries(part: _Part) -> _Part:
     pymeshlab is loaded in a separate process.
     """
     from ...repair.pymeshlab_child import PLUGINS
-    from ...repair.repair import remedy
+    from ...repair.repair import install_command
 
     if not part.found:
         return part
@@ -139,7 +139,7 @@ def _with_libraries(part: _Part) -> _Part:
     if count.isdigit() and int(count) >= PLUGINS:
         return part
     reason = f"{count} of {PLUGINS} plug-ins" if count.isdigit() else "cannot be loaded"
-    remedied = remedy("plug-ins" if count.isdigit() else said)
+    remedied = install_command("plug-ins" if count.isdigit() else said)
     return _Part(part.name, f"{part.found}, {reason}", part.purpose, remedied)
 
 

@@ -11,7 +11,7 @@ from ..._types import FloatArray
 from ...bsp import Region
 from ...bsp.drawings.dxf import read_document
 from ...bsp.drawings.dxf_curves import MAX_BLOCK_ENTITIES, block_entities
-from ...bsp.drawings.dxf_layouts import ANY_LAYER, VIEWPORT, drawn_layout
+from ...bsp.drawings.dxf_layouts import ANY_LAYER, VIEWPORT, layout_with_content
 from ...bsp.drawings.unread_content import UnreadContent
 from ...errors import format_errors
 from ..syntax.arguments import Arguments
@@ -74,7 +74,7 @@ def _entities(document: Any, layer: str, lost: UnreadContent) -> Iterator[Any]:
     def is_wanted(name: str) -> bool:
         return not layer or name == layer
 
-    entities = drawn_layout(document, is_wanted, lost)
+    entities = layout_with_content(document, is_wanted, lost)
     return (one for one in entities if is_wanted(one.dxf.get("layer") or ANY_LAYER))
 
 

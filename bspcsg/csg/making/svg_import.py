@@ -11,13 +11,13 @@ import numpy as np
 
 from ..._types import FloatArray, IndexArray
 from ...bsp import Region
-from ...bsp.drawings.svg import Shape, outlines_of, shown_shapes
+from ...bsp.drawings.svg import Shape, outlines_of, visible_shapes
 from ...bsp.drawings.svg_curves import Cubics, Curves, Steps
 from ...bsp.drawings.svg_tree import HREF, name_of
 from ...bsp.drawings.unread_content import UnreadContent
 from ...errors import format_errors
 from ...mesh.interop import import_optional
-from ...modelling.planar.offsetting import stroked
+from ...modelling.planar.offsetting import stroke_area
 
 _MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6}
 _LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][+-]?\d+)?)\s*([a-zA-Z%]*)\s*")
@@ -78,7 +78,7 @@ def svg_region(path: Path, dpi: float, centered: bool, lost: UnreadContent) -> R
 
 def _drawn(path: Path, lost: UnreadContent) -> Region:
     region = Region()
-    shapes = shown_shapes(path, _prepare, lost)
+    shapes = visible_shapes(path, _prepare, lost)
     with format_errors(str(path), "SVG"):
         found = outlines_of(shapes, _steps_of(shapes))
     for shape, outlines in zip(shapes, found, strict=True):
@@ -134,11 +134,11 @@ def _stroke(shape: Any, corners: FloatArray) -> Region:
     width = width if width >= _MIN_LINE_WIDTH else 1.0
     cap = shape.values.get("stroke-linecap")
     join = str(shape.values.get("stroke-linejoin"))
-    return stroked(corners, width, cap if cap in ("butt", "round") else "square", join)
+    return stroke_area(corners, width, cap if cap in ("butt", "round") else "square", join)
 
 
 def _page(path: Path, dpi: float) -> _PageTransform:
-    # `shown_shapes` has refused files that declare an entity.
+    # `visible_shapes` has refused files that declare an entity.
     _, root = next(iter(ElementTree.iterparse(path, events=("start",))))
     width, height = (_length(root.get(name, ""), dpi) for name in ("width", "height"))
     with format_errors(str(path), "SVG"):

@@ -4,7 +4,7 @@ import numpy as np
 
 from ...bsp import Region
 from ...geometry.polygon import signed_area
-from ...modelling.planar.offsetting import cleaned, grown, refuse_far
+from ...modelling.planar.offsetting import offset_outline, openscad_union, refuse_far
 from ...shapes.sweep import unit_circle
 from ..making.tessellation import Fineness
 from ..syntax.arguments import Arguments
@@ -78,11 +78,11 @@ def offset(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     if figure.is_empty or delta == 0:
         return figure
     sides = arguments.sides(Fineness.of(arguments).fragments(abs(delta)), "a corner")
-    figure = cleaned(run.parts_of(figure)) if _is_combined(owner) else figure
+    figure = openscad_union(run.parts_of(figure)) if _is_combined(owner) else figure
     if figure.is_empty:
         return figure
     refuse_far(figure, delta)
-    return grown(figure, delta, _join(is_round, arguments), sides)
+    return offset_outline(figure, delta, _join(is_round, arguments), sides)
 
 
 @node("fill")

@@ -8,7 +8,7 @@ from ...modelling.planar.lettering.fonts import (
     FAMILY,
     FontFile,
     font_file,
-    stand_in,
+    substitute_font,
     wants_whole_pixels,
 )
 from ...modelling.planar.lettering.shaping import Writing
@@ -18,8 +18,8 @@ from ...modelling.planar.lettering.text import (
     HorizontalAlignment,
     Lettering,
     VerticalAlignment,
-    lettered,
     steps_of,
+    text_region,
 )
 from ..making.tessellation import Fineness
 from ..syntax.arguments import Arguments
@@ -61,7 +61,7 @@ def text(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
         _TIGHTNESS,
         _PIXEL * size,
     )
-    region, missing = lettered(string, file, look)
+    region, missing = text_region(string, file, look)
     if missing:
         run.warn(owner, f"the font has no glyph for {' '.join(missing[:8])}")
     return region
@@ -82,7 +82,7 @@ def _font(owner: Node, arguments: Arguments, run: Evaluation) -> FontFile:
         return font_file(name, paths=False)
     except InvalidParameterError:
         run.warn(owner, f"the font “{name}” is not installed; {FAMILY} is used instead")
-        return stand_in(name)
+        return substitute_font(name)
 
 
 def _choice(

@@ -31,7 +31,7 @@ _LISTS_OF_VERTICES = "the vertices have list properties, which are not supported
 
 
 @dataclass
-class _Found:
+class _PlyContent:
     """The content of the elements that have been read from a PLY file."""
 
     vertices: FloatArray | None = None
@@ -70,7 +70,7 @@ def read(source: Source) -> RawMesh:
     """
     source = source.without_mark()
     header = read_header(source)
-    found = _Found()
+    found = _PlyContent()
     if header.order is None:
         rest = _read_text(source, header, found)
     else:
@@ -99,7 +99,7 @@ def _no_statements(header: Header) -> tuple[Finding, ...]:
 
 
 def _triangles_and_attributes(
-    found: _Found,
+    found: _PlyContent,
     polygons: IndexPolygons,
     vertices: FloatArray,
     error_at: Callable[[int, str, str], FormatError],
@@ -164,7 +164,7 @@ def _face_column(source: Source, header: Header, element: Element) -> int | None
     return column
 
 
-def _read_text(source: Source, header: Header, found: _Found) -> tuple[Finding, ...]:
+def _read_text(source: Source, header: Header, found: _PlyContent) -> tuple[Finding, ...]:
     lines = [line for line in source.text_lines() if line[0] > header.lines]
     try:
         return _read_lines(source, header, lines, found)
@@ -202,7 +202,7 @@ def _one_record_per_line(header: Header, lines: list[_Line]) -> list[_Line] | No
 
 
 def _read_lines(
-    source: Source, header: Header, lines: list[_Line], found: _Found
+    source: Source, header: Header, lines: list[_Line], found: _PlyContent
 ) -> tuple[Finding, ...]:
     start = 0
     for element in header.elements:
@@ -250,7 +250,7 @@ def _text_faces(
     block: list[_Line],
     element: Element,
     column: int,
-    found: _Found,
+    found: _PlyContent,
 ) -> None:
     lists = [_text_list(source, number, words, element, column) for number, words in block]
     found.take(
@@ -349,7 +349,7 @@ def _index(word: bytes) -> int:
 
 
 def _read_binary(
-    source: Source, header: Header, order: Order, found: _Found
+    source: Source, header: Header, order: Order, found: _PlyContent
 ) -> tuple[Finding, ...]:
     offset = header.end
     for element in header.elements:
@@ -371,7 +371,9 @@ def _read_binary(
     return () if source.data[offset:].isspace() or not extra else _extra(extra, "bytes", (offset,))
 
 
-def _read_records(source: Source, order: Order, element: Element, start: int, found: _Found) -> int:
+def _read_records(
+    source: Source, order: Order, element: Element, start: int, found: _PlyContent
+) -> int:
     """Read a binary element without lists; return the byte offset at which its data end."""
     fields = [(f"p{k}", p.item.newbyteorder(order)) for k, p in enumerate(element.properties)]
     record = np.dtype(fields)

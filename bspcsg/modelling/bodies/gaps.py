@@ -71,10 +71,12 @@ def intersects(solid: Solid, other: Solid) -> bool:
     """Return True if two solids have a point in common, also if they only touch."""
     if solid.is_empty or instance_of(Solid, other, "other").is_empty:
         return False
-    return not _apart(solid, other) and (not solid.isdisjoint(other) or surfaces_meet(solid, other))
+    return not _are_boxes_apart(solid, other) and (
+        not solid.isdisjoint(other) or surfaces_meet(solid, other)
+    )
 
 
-def _apart(solid: Solid, other: Solid) -> bool:
+def _are_boxes_apart(solid: Solid, other: Solid) -> bool:
     """Return True if the bounding boxes of two solids lie apart by more than rounding errors."""
     (low, high), (low_b, high_b) = (_box(one) for one in (solid, other))
     doubt = _ROUNDING * max(float(np.abs(box).max()) for box in (low, high, low_b, high_b))
@@ -119,7 +121,7 @@ def _candidates(first: FloatArray, second: FloatArray) -> tuple[IndexArray, Inde
     """
     scale = max(float(np.abs(first).max()), float(np.abs(second).max()))
     trees = BoxTree.over(first), BoxTree.over(second)
-    search = NearPairSearch(*trees, _bounded(_some_gap(first, second), scale))
+    search = NearPairSearch(*trees, _bounded(_gap_upper_bound(first, second), scale))
     boxes = [(corners.min(axis=1), corners.max(axis=1)) for corners in (first, second)]
     best, found = np.inf, []
     for leaves in search.leaves():
@@ -151,7 +153,7 @@ def _bounded(gap: float, scale: float) -> float:
     return (math.sqrt(gap) + _NOISE * scale) ** 2
 
 
-def _some_gap(first: FloatArray, second: FloatArray) -> float:
+def _gap_upper_bound(first: FloatArray, second: FloatArray) -> float:
     """Return an upper bound of the squared distance of two lists of triangles.
 
     It is the squared distance between a corner of one list and a nearby corner of the other.

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..._types import FloatArray, IndexArray
 from ...mesh.mesh import surfaces_of
-from .shading import half_edges, unit
+from .shading import half_edges, unit_vectors
 
 #: An array of Python integers, which cannot overflow.
 LongArray: TypeAlias = np.ndarray[Any, np.dtype[np.object_]]
@@ -213,7 +213,9 @@ def _directions(vectors: LongArray) -> Directions:
     numbers: dict[tuple[int, ...], int] = {}
     of = [numbers.setdefault(tuple(row), len(numbers)) for row in shortest.tolist()]
     whole = np.array(list(numbers), dtype=object).reshape(-1, 3)
-    return Directions(Vectors(whole, unit(whole.astype(np.float64))), np.array(of, np.int64))
+    return Directions(
+        Vectors(whole, unit_vectors(whole.astype(np.float64))), np.array(of, np.int64)
+    )
 
 
 def positive_products(first: Vectors, second: Vectors) -> Mask:

@@ -12,7 +12,7 @@ from ...solid.ledger import counted, uncounted
 from ...solid.solid import Solid, given_pitch, keeping_pitch, solid_of_mesh
 
 #: The smallest positive double.
-_LEAST = float(np.nextafter(0, 1))
+_MIN_POSITIVE = float(np.nextafter(0, 1))
 
 
 @uncounted
@@ -50,7 +50,7 @@ def _part(mesh: Mesh, pitch: int) -> Solid | None:
         return solid_of_mesh(mesh, pitch=pitch)
     largest = float(np.abs(mesh.vertices).max())
     with core_errors():
-        finest = suited_pitch(largest, _LEAST)
+        finest = suited_pitch(largest, _MIN_POSITIVE)
     found = (
         _solid_on(mesh, exponent) for exponent in sorted({pitch, min(pitch, finest)}, reverse=True)
     )

@@ -33,10 +33,10 @@ def nearest_points(first: Numbers, second: Numbers) -> tuple[Numbers, Numbers, N
     for edge in range(1, 9):
         best, p, q = _nearer((best, p, q), _of_edges(first, second, edge // 3, edge % 3))
     for corner in range(3):
-        foot, gap, counts = _feet(first[:, corner], second)
+        foot, gap, counts = _plane_projections(first[:, corner], second)
         gap = np.where(counts, gap, best)
         best, p, q = _nearer((best, p, q), (gap, first[:, corner], foot))
-        foot, gap, counts = _feet(second[:, corner], first)
+        foot, gap, counts = _plane_projections(second[:, corner], first)
         gap = np.where(counts, gap, best)
         best, p, q = _nearer((best, p, q), (gap, foot, second[:, corner]))
     return best, p, q
@@ -107,7 +107,7 @@ def _of_edges(first: Numbers, second: Numbers, i: int, j: int) -> tuple[Numbers,
     return _dot(x - y, x - y), x, y
 
 
-def _feet(points: Numbers, triangles: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+def _plane_projections(points: Numbers, triangles: Numbers) -> tuple[Numbers, Numbers, Numbers]:
     """Project each point onto the plane of one triangle.
 
     Return the projections, (k, 3), the squared distances, (k,), and where a projection lies in its

@@ -24,7 +24,7 @@ Chain: TypeAlias = list[tuple[int, int]]
 _FLATTEST = 1e-3
 
 #: Lattice steps by which a tool extends past a face if rounding may move its corners off the face.
-_BEYOND = 20
+_EXTENSION_STEPS = 20
 
 
 def closed_chains(graph: FaceGraph, chosen: Set[int]) -> list[Chain]:
@@ -172,7 +172,7 @@ class ChainTools:
         else:
             (third,) = set(self.graph.edges_at(vertex)) - {edge, after}
             is_exact = self._is_on(third, corner)
-        beyond = 0.0 if is_exact else _BEYOND * 10.0**self.pitch
+        beyond = 0.0 if is_exact else _EXTENSION_STEPS * 10.0**self.pitch
         return normals * (1 if self.graph.is_convex[edge] else -1), np.full(2, beyond)
 
     def _is_level(self, face: int, vertex: int) -> bool:

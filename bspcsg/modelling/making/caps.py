@@ -23,7 +23,7 @@ from .roofs import roof
 _SQUARE = 1e-4
 
 #: Lattice steps by which the removed solid extends past the face and its walls.
-_BEYOND = 20
+_EXTENSION_STEPS = 20
 
 #: The share of a blend's size by which rounding may lower a roof.
 _SAME = 1e-6
@@ -65,7 +65,7 @@ def cap_tool(graph: FaceGraph, face: int, sign: int, profile: FloatArray, pitch:
     loops = [points @ frame.T for points in face_loops(graph, face)]
     level = float(np.concatenate(loops)[:, 2].mean())
     figure = Region([points[:: int(sign), :2] for points in loops], pitch=pitch)
-    beyond, size = _BEYOND * 10.0**pitch, float(profile[-1, 1])
+    beyond, size = _EXTENSION_STEPS * 10.0**pitch, float(profile[-1, 1])
     roofs = []
     for part in figure.components:
         above = _roof_or_none(part)

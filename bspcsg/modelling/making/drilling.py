@@ -123,7 +123,9 @@ def _drilled(
     points = _points_on(graph, normal, offset, face.middle if at is None else at)
     refuse_many_corners(len(points) * around * (len(head) + 2), "These holes")
     deepest = max((below for _, below in head), default=0.0)
-    bottom = _bottom(graph, normal, points, bore) if depth is None else positive(depth, "depth")
+    bottom = (
+        _through_depth(graph, normal, points, bore) if depth is None else positive(depth, "depth")
+    )
     if bottom <= deepest:
         raise invalid_parameter(
             f"depth must be greater than the depth of the head, {deepest:g}, but is {bottom:g}."
@@ -135,7 +137,7 @@ def _drilled(
     return solid - union(tools) if tools else solid
 
 
-def _bottom(graph: FaceGraph, normal: FloatArray, points: FloatArray, bore: float) -> float:
+def _through_depth(graph: FaceGraph, normal: FloatArray, points: FloatArray, bore: float) -> float:
     """Return a depth below the face at which a hole has passed the whole solid."""
     return float((points @ normal).max(initial=0) - (graph.vertices @ normal).min()) + bore
 
@@ -158,7 +160,7 @@ def _points_on(graph: FaceGraph, normal: FloatArray, offset: float, at: Any) -> 
     is_level = (np.abs(corners @ normal - offset) <= near).all(axis=1)
     level = corners[is_level & (graph.areas @ normal > 0)]
     for point in points:
-        if abs(float(point @ normal) - offset) > near or not _hold(level, normal, point, near):
+        if abs(float(point @ normal) - offset) > near or not _contain(level, normal, point, near):
             place = ", ".join(f"{value:.6g}" for value in point)
             raise invalid_parameter(
                 f"The solid has no face in the plane of the hole at the point ({place}); choose a"
@@ -167,7 +169,7 @@ def _points_on(graph: FaceGraph, normal: FloatArray, offset: float, at: Any) -> 
     return points
 
 
-def _hold(triangles: FloatArray, normal: FloatArray, point: FloatArray, near: float) -> bool:
+def _contain(triangles: FloatArray, normal: FloatArray, point: FloatArray, near: float) -> bool:
     """Return True if one of several coplanar triangles contains a point, up to rounding."""
     along = np.roll(triangles, -1, axis=1) - triangles
     left = np.cross(along, point - triangles) @ normal

@@ -15,7 +15,7 @@ from ...geometry.arrays import doubles
 from ...geometry.polygon import directed_edges
 from ...mesh.interop import import_optional
 from ...parameters import number, positive, refuse_many_corners, truth_value, two_values
-from ...shapes.sweep import strip
+from ...shapes.sweep import quad_triangles
 from ...solid.ledger import counted
 from ...solid.solid import Solid
 
@@ -216,7 +216,7 @@ def height_map(heights: Heights, *, centered: bool) -> Solid:
     top = [np.column_stack([s, e, tips]) for s, e in ((a, b), (b, c), (c, d), (d, a))]
     start, end = directed_edges([corners[rim]]).T
     low = len(corners) + len(middles)
-    sides = strip(low + start, low + end, rim[start], rim[end])
+    sides = quad_triangles(low + start, low + end, rim[start], rim[end])
     fan = np.arange(1, len(rim) - 1)
     bottom = np.column_stack([np.zeros_like(fan), fan + 1, fan]) + low
     return Solid(vertices, np.concatenate([*top, sides, bottom]))

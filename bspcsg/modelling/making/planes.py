@@ -14,7 +14,7 @@ from .plane_faces import FaceGraph
 
 #: Lattice steps by which a half-space extends past a face whose plane is not exact. Rounding moves
 #: the face's corners by less than one step.
-_BEYOND = 20
+_EXTENSION_STEPS = 20
 
 
 class Planes:
@@ -64,7 +64,9 @@ class Planes:
             return Hyperplane.of(normal, sign * exact.offset)
         unit = sign * self._graph.normals[face]
         products = self._corners(face) @ unit
-        offset = products.max() + _BEYOND * 10.0**self._pitch if beyond else products.mean()
+        offset = (
+            products.max() + _EXTENSION_STEPS * 10.0**self._pitch if beyond else products.mean()
+        )
         return Hyperplane.from_numbers(unit.tolist(), float(offset))
 
     def _corners(self, face: int) -> FloatArray:

@@ -99,7 +99,7 @@ def path_points(path: Any) -> tuple[FloatArray, bool]:
     return (points[:-1] if closed else points), closed
 
 
-def divided(points: FloatArray, closed: bool, slices: int) -> FloatArray:
+def divided_path(points: FloatArray, closed: bool, slices: int) -> FloatArray:
     """Return the path with additional points, so that it has about `slices` equal parts."""
     ends = np.roll(points, -1, axis=0) if closed else points[1:]
     starts = points[: len(ends)]

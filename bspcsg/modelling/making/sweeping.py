@@ -24,7 +24,7 @@ from ...shapes.sweep import unit_circle
 from ...solid.ledger import counted
 from ...solid.solid import Solid
 from .rings import solid_of, walls
-from .spine import Along, Frame, Spine, divided, frame_rotation, path_points, spine_of
+from .spine import Along, Frame, Spine, divided_path, frame_rotation, path_points, spine_of
 
 #: Corners of a rotated profile equal corners of the original profile if they differ by at most this
 #: share of its extent.
@@ -97,7 +97,7 @@ def sweep(
     slices = _slices(twist, scale, around)
     # Check before the path is divided, since dividing takes a second for very many points.
     refuse_many_corners(max(len(points), slices) * max(len(corners), 1), "This sweep")
-    points = divided(points, closed, slices)
+    points = divided_path(points, closed, slices)
     refuse_many_corners(len(points) * len(corners), "This sweep")
     spine = spine_of(points, closed, frame)
     if not contours:

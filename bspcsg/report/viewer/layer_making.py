@@ -44,13 +44,15 @@ def layers_of_file(raw: RawMesh, name: str) -> list[Layer]:
     for number, (own, count) in enumerate(objects):
         chosen = np.arange(ends[number] - count, ends[number])
         used, renumbered = compacted(faces[chosen])
-        attributes = None if raw.attributes is None else _taken(raw.attributes, chosen)
+        attributes = (
+            None if raw.attributes is None else _attributes_of_faces(raw.attributes, chosen)
+        )
         title = own or f"part {number + 1}"
         layers.append(Layer(title, vertices[used], renumbered, paints=paints_of(attributes)))
     return layers
 
 
-def _taken(attributes: Attributes, faces: IndexArray) -> Attributes:
+def _attributes_of_faces(attributes: Attributes, faces: IndexArray) -> Attributes:
     return attributes.for_faces(faces).with_used_materials()
 
 

@@ -26,14 +26,14 @@ def show(*things: Any) -> None:
         for thing in shown:
             display(thing)
     elif shown:
-        _open([layer for thing in shown for layer in _layers(thing)])
+        _open_page([layer for thing in shown for layer in _layers(thing)])
 
 
 def _seen(thing: Any) -> Solid | Region | Assembly:
     return thing if isinstance(thing, (Solid, Region, Assembly)) else Solid.from_mesh(thing)
 
 
-def _open(layers: list[Layer]) -> None:
+def _open_page(layers: list[Layer]) -> None:
     """Open a page with layers in the browser, or print its path on standard error."""
     path = temporary_page("show")
     page = view_page(with_distinct_colours(layers), ", ".join(layer.name for layer in layers))

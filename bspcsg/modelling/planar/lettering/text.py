@@ -13,8 +13,8 @@ from ...._types import FloatArray, Scalar
 from ....bsp import Region
 from ....errors import InvalidParameterError, invalid_parameter
 from ....parameters import SEGMENTS, positive, refuse_many_corners, shown, sides_around
-from .fonts import FAMILY, FontFile, font_file, opened
-from .shaping import Glyph, PlacedGlyph, Writing, shaped
+from .fonts import FAMILY, FontFile, font_file, harfbuzz_font
+from .shaping import Glyph, PlacedGlyph, Writing, shaped_glyphs
 
 HorizontalAlignment: TypeAlias = Literal["left", "center", "right"]
 VerticalAlignment: TypeAlias = Literal["baseline", "bottom", "center", "top"]
@@ -146,7 +146,7 @@ def text(
         _writing(direction, language, script),
         steps_of(sides_around(3, segments, "segments")),
     )
-    region, missing = lettered(line, font_file(font), look)
+    region, missing = text_region(line, font_file(font), look)
     if missing:
         letters = " ".join(f"{letter} (U+{ord(letter):04X})" for letter in missing[:8])
         message = (
@@ -157,13 +157,13 @@ def text(
     return region
 
 
-def lettered(string: str, file: FontFile, lettering: Lettering) -> tuple[Region, list[str]]:
+def text_region(string: str, file: FontFile, lettering: Lettering) -> tuple[Region, list[str]]:
     """Return a line of text in the font of a file, and the letters that the font lacks.
 
     Missing glyphs get the font's substitute, usually a box.
     """
-    font = opened(file)
-    placed, is_horizontal = shaped(font, string, lettering.writing)
+    font = harfbuzz_font(file)
+    placed, is_horizontal = shaped_glyphs(font, string, lettering.writing)
     glyphs = {one.glyph: Glyph(font, one.glyph) for one in placed}
     unit = lettering.em / font.face.upem
     loops = {
