@@ -129,52 +129,54 @@ class Part:
 PARTS = {
     "plate": Part(
         "A plate with twelve holes",
-        "build123d is a line shorter: places are values there, which multiply a shape. Here a "
-        "pattern is a function of the shape, and the two do not fit on one line.",
+        "build123d needs one line less: a list of positions times a shape places copies of it. In "
+        "bspcsg the function `grid` takes the shape and the positions, so the call is longer.",
     ),
     "knob": Part(
         "A block with round edges and a bore",
-        "Manifold, trimesh and OpenSCAD have no round boxes; the hull of eight balls is one.",
+        "manifold3d, trimesh and OpenSCAD have no boxes with round edges, so their scripts make "
+        "the hull of eight balls.",
     ),
     "flange": Part(
         "A flange with six counterbored holes",
-        "build123d is a line shorter: a counterbored hole is one shape there, and places multiply "
-        "it. OpenSCAD's cuts reach a little beyond the faces that they open, for its previews "
-        "flicker where two faces coincide.",
+        "build123d needs one line less: it has a shape for counterbored holes. The OpenSCAD script "
+        "makes the subtracted cylinders longer than the holes, because OpenSCAD's preview flickers "
+        "where two faces coincide.",
     ),
     "case": Part(
         "A case with a rim for its lid",
-        "manifold3d, trimesh and OpenSCAD have no fillets in the plane; a smaller rectangle, moved "
-        "outwards, has round corners. build123d has round rectangles.",
+        "manifold3d, trimesh and OpenSCAD have no fillets in the plane; offsetting a smaller "
+        "rectangle outwards makes round corners. build123d has rectangles with round corners.",
     ),
     "nut": Part(
         "A nut without its thread",
-        "One profile, turned about the axis, has the bore and all chamfers. Here and in build123d "
-        "a hexagon has a width across flats; elsewhere its corners lie on a circle, whose size is "
-        "computed.",
+        "All scripts revolve one profile, which has the bore and all chamfers, about the axis. "
+        "bspcsg and build123d make a hexagon from its width across flats; the other scripts "
+        "compute the radius of the circle through its corners.",
     ),
     "bracket": Part(
         "A bracket with a rib and four holes",
-        "Here holes are drilled into faces, right through. The other scripts subtract cylinders, "
-        "which have a length and are turned or have two ends.",
+        "In bspcsg, `hole` drills from points of a face right through the part. The other scripts "
+        "subtract cylinders, whose lengths and directions they must give.",
     ),
     "label": Part(
         "A label",
-        "manifold3d and trimesh have no text. build123d's sizes are those of the em, which is 1.39 "
-        "times the height of capitals.",
+        "manifold3d and trimesh have no text. build123d takes the em size of the font, which is "
+        "1.39 times the height of capitals; bspcsg and OpenSCAD take that height.",
     ),
     "vase": Part(
         "A twisted hexagon",
-        "build123d lofts sixty-one hexagons, for its extrusions do not twist.",
+        "build123d has no twisted extrusion, so its script makes a loft through 61 hexagons.",
     ),
     "link": Part(
         "The hull of two balls, with a bore",
-        "build123d has hulls in the plane only; this one happens to be a solid of revolution.",
+        "build123d has hulls in the plane only; its script revolves one, because this hull is a "
+        "solid of revolution.",
     ),
     "bend": Part(
         "A pipe around two corners",
-        "manifold3d and OpenSCAD have no sweeps. trimesh's does not mitre: the pipe gets thinner "
-        "between the corners, and has two thirds of the volume.",
+        "manifold3d and OpenSCAD have no sweeps. trimesh's sweep does not mitre corners: its pipe "
+        "is too thin between the corners, with two thirds of the right volume.",
     ),
 }
 

@@ -75,5 +75,5 @@ def read(path: Path) -> dict[str, Any]:
         raise FormatError(message, "unreadable")
     if record.get("schema") != SCHEMA:
         said = f"the record has schema {record.get('schema')}, but this version reads {SCHEMA} only"
-        raise FormatError(f"{path}: {said}; measure it again.", "unreadable")
+        raise FormatError(f"{path}: {said}; run bspcsg bench again.", "unreadable")
     return record

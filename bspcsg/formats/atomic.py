@@ -102,9 +102,9 @@ def _check_target(name: str) -> None:
     # Do not resolve the path: if /dev/stdout is a pipe, it resolves to a file that does not exist.
     path = Path(name)
     if path.is_dir():
-        raise IsADirectoryError(21, "it is a folder")
+        raise IsADirectoryError(21, "the path names a folder")
     if path.exists() and not path.is_file():
-        raise OSError(22, "it is not an ordinary file")
+        raise OSError(22, "the path does not name an ordinary file")
     folder = Path(os.path.realpath(name)).parent
     if not folder.is_dir():
         raise FileNotFoundError(2, f"the folder {folder} does not exist")

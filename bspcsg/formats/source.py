@@ -168,7 +168,7 @@ def content_of(path: Path) -> bytes:
     """Return the bytes of a file or pipe; raise an `OSError` for devices, which may never end."""
     mode = path.stat().st_mode
     if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
-        raise OSError(errno.EINVAL, "it is a device, not a file")
+        raise OSError(errno.EINVAL, "the path names a device, not a file")
     return path.read_bytes()
 
 

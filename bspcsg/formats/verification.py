@@ -77,7 +77,7 @@ def _readback_errors(path: str) -> Iterator[None]:
     except MemoryError:
         raise
     except Exception as error:
-        raise _mismatch(path, f"it cannot be read back ({message_of(error)})") from error
+        raise _mismatch(path, f"the file cannot be read back ({message_of(error)})") from error
 
 
 def verify_with_attributes(
@@ -125,15 +125,15 @@ def verify_with_attributes(
 def _compare_attributes(path: str, mesh: RawMesh, found: RawMesh, rows: IndexArray) -> None:
     for name in () if mesh.attributes is None else mesh.attributes.names:
         if found.attributes is None or found.attributes.kind_of(name) is None:
-            raise _mismatch(path, f"it lacks the attribute “{name}”")
+            raise _mismatch(path, f"the file lacks the attribute “{name}”")
         expected = mesh.attributes.at_corners(name, rows) if mesh.attributes else None
         told = found.attributes.at_corners(name)
         if expected is None or not _are_same(expected, told):
-            raise _mismatch(path, f"the values of the attribute “{name}” differ")
+            raise _mismatch(path, f"the file has other values of the attribute “{name}”")
     meant_materials = {} if mesh.attributes is None else mesh.attributes.materials
     told_materials = {} if found.attributes is None else found.attributes.materials
     if any(told_materials.get(name) != one for name, one in meant_materials.items()):
-        raise _mismatch(path, "the materials differ")
+        raise _mismatch(path, "the file has other materials")
 
 
 def _are_same(one: npt.NDArray[Any], other: npt.NDArray[Any]) -> bool:
@@ -172,13 +172,15 @@ def _compare_counts(
     path: str, expected: list[tuple[str, IndexArray]], stored: Sequence[StoredMesh | StoredRows]
 ) -> None:
     if len(expected) != len(stored):
-        raise _mismatch(path, f"it contains {len(stored)} objects instead of {len(expected)}")
+        raise _mismatch(path, f"the file contains {len(stored)} objects instead of {len(expected)}")
     for (name, faces), one in zip(expected, stored, strict=True):
         if name != one.name:
-            raise _mismatch(path, f"an object is called “{one.name}” instead of “{name}”")
+            raise _mismatch(
+                path, f"an object of the file is called “{one.name}” instead of “{name}”"
+            )
         if len(faces) != one.count:
             told = f" in “{name}”" if name else ""
-            message = f"it contains {one.count} triangles{told} instead of {len(faces)}"
+            message = f"the file contains {one.count} triangles{told} instead of {len(faces)}"
             raise _mismatch(path, message)
 
 
@@ -192,7 +194,7 @@ def _compare_corners(
     for (_, faces), one in zip(expected, stored, strict=True):
         at = _first_difference(rounded, faces, one)
         if at is not None:
-            message = f"the corners of triangle {before + at} differ"
+            message = f"triangle {before + at} of the file has other corners"
             raise _mismatch(path, message, (before + at,))
         before += len(faces)
 

@@ -7,7 +7,7 @@ mod support;
 
 use bspcsg::geometry::cell::Cell;
 use bspcsg::merge::SetOp;
-use bspcsg::tree::node::{Branch, Deferred, Node};
+use bspcsg::tree::node::{Branch, DeferredLeaf, Node};
 use bspcsg::tree::solid::Solid;
 use support::{applied, Shape};
 
@@ -65,8 +65,8 @@ fn is_drawn(cell: &Cell) -> bool {
     low[2] < HEIGHT && HEIGHT < high[2]
 }
 
-fn meaning(leaf: &Deferred, solids: &[Solid; 2]) -> usize {
-    if leaf.worked {
+fn meaning(leaf: &DeferredLeaf, solids: &[Solid; 2]) -> usize {
+    if leaf.by_kernel {
         return 2;
     }
     let first = solids[0].sources().iter().next().map(|s| s.id());

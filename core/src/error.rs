@@ -18,7 +18,8 @@ pub enum ErrorKind {
     Shape,
     /// A coordinate or coefficient does not fit the lattice.
     TooLarge,
-    /// There are more facets than an exhaustive search can handle, or a number is too long.
+    /// A limit of the program is exceeded: too many facets for an exhaustive search, an exact result of more
+    /// bits than the caller allows, or more threads than the system starts.
     TooMany,
     /// A mesh without faces of positive area.
     EmptyMesh,
@@ -28,7 +29,7 @@ pub enum ErrorKind {
     Cancelled,
     /// The normal of a half-space, or the direction of a ray, is zero or not finite.
     BadNormal,
-    /// Operands are on lattices of different pitch.
+    /// The operands are on lattices with different steps.
     PitchMismatch,
     /// A facet without extent: a segment of zero length, a polygon of zero area.
     Degenerate,

@@ -33,7 +33,7 @@ const NO_CALL: u64 = 0;
 
 static NEXT: AtomicU64 = AtomicU64::new(1);
 
-/// The number of calls that were stopped and have not ended.
+/// The number of calls of the core that were stopped and have not ended.
 static STOPPING: AtomicUsize = AtomicUsize::new(0);
 
 static STOPPED: Mutex<Vec<u64>> = Mutex::new(Vec::new());
@@ -65,13 +65,13 @@ pub struct Call {
     number: u64,
 }
 
-/// The call that a thread works for; work that a thread gives to other threads takes it along.
+/// The call of the core that a thread works for; work that this thread gives to other threads takes it along.
 #[derive(Clone, Copy, Debug)]
 pub struct Task {
     call: u64,
 }
 
-/// A share of work that a caller may give to other threads; it runs once.
+/// A part of the work of a call that may be given to other threads; it runs once.
 pub type Share<'a> = &'a mut (dyn FnMut() + Send);
 
 /// What a caller provides that runs a call on its own thread.
@@ -79,8 +79,8 @@ pub type Share<'a> = &'a mut (dyn FnMut() + Send);
 pub struct CallerHooks {
     /// Returns true if the call should stop, for example because of a signal.
     pub wants_to_stop: fn() -> bool,
-    /// Runs a share of the work, for the call of a task, in a pool, and waits; does nothing if the system
-    /// starts no threads.
+    /// Runs a part of the work, for the call of a task, in a thread pool, and waits; does nothing if the
+    /// system starts no threads.
     pub hand_over: fn(Task, Share<'_>),
 }
 
@@ -253,7 +253,8 @@ fn caller_wants_to_stop() -> bool {
     (caller.hooks.wants_to_stop)()
 }
 
-/// Runs a share of the work in a pool, if the call runs on its caller's thread and the caller has a pool.
+/// Runs a part of the work in a thread pool, if the call runs on its caller's thread and the caller has a
+/// pool.
 ///
 /// # Errors
 /// `needs`, the data of the work, if the work was not run.

@@ -99,9 +99,9 @@ fn faces_of_different_patches_are_not_joined() {
     let mesh = round::mesh_of_patches(&cut, &one_each).expect("mesh");
     for (triangle, [slot, face]) in mesh.triangles.iter().zip(&mesh.origins) {
         let source = cut.sources().get(Slot(*slot)).mesh().expect("a mesh");
-        let corners = source.faces[*face as usize].map(|v| source.doubles[v.place()]);
+        let corners = source.faces[*face as usize].map(|v| source.doubles[v.index()]);
         for v in triangle {
-            let p = mesh.vertices[v.place()];
+            let p = mesh.vertices[v.index()];
             let inside = |i: usize| {
                 let bounds = corners.map(|c| c[i]);
                 let low = bounds.iter().copied().fold(f64::INFINITY, f64::min);

@@ -108,7 +108,7 @@ fn an_expression_is_what_its_two_parts_make() {
     for count in 2..9 {
         for _ in 0..60 {
             let expression = Expression::new(any_terms(&mut numbers, count)).expect("well formed");
-            let Some(parts) = expression.parted() else {
+            let Some(parts) = expression.split() else {
                 continue;
             };
             parted += 1;
@@ -137,7 +137,7 @@ fn an_operand_in_both_parts_is_not_parted() {
     ];
     assert!(Expression::new(terms)
         .expect("well formed")
-        .parted()
+        .split()
         .is_none());
 }
 

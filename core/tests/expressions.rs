@@ -64,7 +64,7 @@ fn parts_make_the_whole() {
     let mut numbers = Numbers::new(32);
     for _ in 0..400 {
         let whole = any_expression(&mut numbers);
-        let Some(parted) = whole.parted() else {
+        let Some(parted) = whole.split() else {
             continue;
         };
         for bits in 0..1 << OPERANDS {

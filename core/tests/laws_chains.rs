@@ -10,7 +10,7 @@ use bspcsg::mesh::half_space::half_space;
 use bspcsg::mesh::handle::Slot;
 use bspcsg::query::measure::volume_rounded;
 use bspcsg::tree::solid::Solid;
-use bspcsg::tree::table::Table;
+use bspcsg::tree::table::SourceTable;
 
 use super::support::{applied, complement, is_empty, normalized, volume, Numbers, Ratio, Shape};
 
@@ -138,8 +138,8 @@ fn tables_keep_the_order_of_the_expression() {
     let sources: Vec<_> = (0..9)
         .map(|i| Shape::cuboid([i; 3], [i + 1; 3]).source())
         .collect();
-    let table = |list: &[usize]| list.iter().map(|i| &sources[*i]).collect::<Table>();
-    let order = |t: &Table| -> Vec<u64> { t.iter().map(|s| s.id()).collect() };
+    let table = |list: &[usize]| list.iter().map(|i| &sources[*i]).collect::<SourceTable>();
+    let order = |t: &SourceTable| -> Vec<u64> { t.iter().map(|s| s.id()).collect() };
     let expected = |list: &[usize]| -> Vec<u64> { list.iter().map(|i| sources[*i].id()).collect() };
     let base = table(&[0, 1, 2]);
     let first = base.joined(&table(&[3, 1]));

@@ -10,7 +10,7 @@ use bspcsg::extract::mesh::Mesh;
 use bspcsg::extract::rounding::round;
 use bspcsg::geometry::plane::Lattice;
 use bspcsg::geometry::spaces::motion::Motion;
-use bspcsg::merge::evaluate::{evaluate, explained, normalize};
+use bspcsg::merge::evaluate::{blamed_on_snapshot, evaluate, normalize};
 use bspcsg::merge::expression::{Expression, Term};
 use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
@@ -137,7 +137,7 @@ fn used(solid: &Solid, tool: &Solid) -> Result<()> {
         ] {
             let expression = Expression::new(leaves().chain([last]).collect())?;
             let (result, _) = evaluate(&expression, &[solid.clone(), tool.clone()])?;
-            round::mesh(&result).map_err(|e| explained(&result, e))?;
+            round::mesh(&result).map_err(|e| blamed_on_snapshot(&result, e))?;
         }
         Ok(())
     };
@@ -149,7 +149,7 @@ fn used(solid: &Solid, tool: &Solid) -> Result<()> {
         &normal,
         &operated,
     ] {
-        let ended = caught(use_of).map_err(|e| explained(solid, e));
+        let ended = caught(use_of).map_err(|e| blamed_on_snapshot(solid, e));
         match ended.map_err(|e| (e.kind(), e)) {
             Ok(())
             | Err((ErrorKind::BadSnapshot | ErrorKind::Unbounded | ErrorKind::PitchMismatch, _)) => {

@@ -16,7 +16,7 @@ use bspcsg::geometry::spaces::dim3::Dim3;
 use bspcsg::geometry::vertex::Vertex;
 use bspcsg::merge::expression::{Expression, Term};
 use bspcsg::merge::kernels::general::GeneralPosition;
-use bspcsg::merge::kernels::problem::{CellProblem, Kernel, Listed};
+use bspcsg::merge::kernels::problem::{CellProblem, Kernel, ListedOperand};
 use bspcsg::merge::kernels::trees::{LeafTree, LocalTrees};
 use bspcsg::merge::lists::list::{List, Sources};
 use bspcsg::merge::rule::Rule;
@@ -142,7 +142,7 @@ fn list_in(solid: &Solid, cell: &Cell, sources: &Sources) -> Option<List> {
     };
     let mut at = root.cell;
     let mut list = List::open(leaf, root, sources);
-    while at.holds(cell) && at != *cell {
+    while at.contains(cell) && at != *cell {
         let cut = at.cut()?;
         let half = half_of(cut, cell.low());
         let (minus, plus) = list.divide(&at, cut, sources);
@@ -266,7 +266,7 @@ impl Pair {
     fn compare(&self, op: SetOp) -> bool {
         let listed = |(number, list)| {
             let list = Cow::Borrowed(list);
-            Listed { number, list }
+            ListedOperand { number, list }
         };
         let problem = CellProblem {
             cell: &self.cell,

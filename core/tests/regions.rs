@@ -1,6 +1,6 @@
 //! Sets built from outlines that cross: invariants of their trees, and results of queries.
 
-use bspcsg::arith::bounds::REACH;
+use bspcsg::arith::bounds::MAX_COORDINATE;
 use bspcsg::geometry::side::{Half, Side};
 use bspcsg::geometry::spaces::axis::AxisSpace;
 use bspcsg::geometry::spaces::dim1::{Dim1, Direction, Point1};
@@ -47,7 +47,7 @@ fn same<S: Space>(a: &PartitionTree<S>, b: &PartitionTree<S>) -> bool {
 
 #[test]
 fn trees_with_axis_cuts_keep_the_invariants() {
-    for (seed, size) in (0..20).zip([8, 1000, REACH].into_iter().cycle()) {
+    for (seed, size) in (0..20).zip([8, 1000, MAX_COORDINATE].into_iter().cycle()) {
         let tree = random_region(seed, size);
         check(&tree, &Square).unwrap();
         assert!(is_bounded(&tree));
@@ -133,16 +133,26 @@ fn a_chain_of_nodes_needs_no_stack() {
 #[test]
 fn wide_coordinates_stay_exact() {
     // Two lines that meet far from the lattice points that define them, with the widest coordinates.
-    let (a, b) = ([-REACH, -REACH], [REACH, REACH - 1]);
-    let (c, d) = ([-REACH, -REACH + 1], [REACH, REACH]);
+    let (a, b) = (
+        [-MAX_COORDINATE, -MAX_COORDINATE],
+        [MAX_COORDINATE, MAX_COORDINATE - 1],
+    );
+    let (c, d) = (
+        [-MAX_COORDINATE, -MAX_COORDINATE + 1],
+        [MAX_COORDINATE, MAX_COORDINATE],
+    );
     let lines = [Line2::through(a, b).unwrap(), Line2::through(c, d).unwrap()];
     assert!(Point2::meet(&lines[0], &lines[1]).is_none());
-    let across = Line2::through([-REACH, REACH], [REACH - 1, -REACH]).unwrap();
+    let across = Line2::through(
+        [-MAX_COORDINATE, MAX_COORDINATE],
+        [MAX_COORDINATE - 1, -MAX_COORDINATE],
+    )
+    .unwrap();
     let meet = Point2::meet(&lines[0], &across).unwrap();
     assert_eq!(Dim2::side(&lines[0], &meet), Side::On);
     assert_eq!(Dim2::side(&across, &meet), Side::On);
     assert_eq!(Dim2::side(&lines[1], &meet), Side::Plus);
-    assert!(Line2::through([REACH + 1, 0], [0, 0]).is_none());
+    assert!(Line2::through([MAX_COORDINATE + 1, 0], [0, 0]).is_none());
 }
 
 #[test]

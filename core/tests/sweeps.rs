@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use bspcsg::arith::bounds::REACH;
+use bspcsg::arith::bounds::MAX_COORDINATE;
 use bspcsg::error::ErrorKind;
 use bspcsg::geometry::spaces::dim2::{Dim2, Point2, Segment2, Square};
 use bspcsg::geometry::spaces::motion::Motion;
@@ -45,7 +45,7 @@ fn built(corners: &Corners, rule: fn(i32) -> bool) -> PartitionTree<Dim2> {
 const RULES: [fn(i32) -> bool; 3] = [|n| n > 0, |n| n != 0, |n| n % 2 != 0];
 
 /// Sizes of grids: small ones, on which all segments meet, and one as wide as the lattice.
-const SIZES: [i64; 5] = [3, 6, 12, 1000, 2 * REACH];
+const SIZES: [i64; 5] = [3, 6, 12, 1000, 2 * MAX_COORDINATE];
 
 /// Asserts that two boundaries are equal, and that their parts are the same up to numbering.
 fn assert_same(a: &Boundary, b: &Boundary, what: &str) {
@@ -189,7 +189,7 @@ fn moved_boundaries_are_those_of_moved_outlines() {
         let moved = swept(&corners, RULES[0]).moved(&motion).unwrap();
         assert_same(&moved, &swept(&image, RULES[0]), &format!("{motion:?}"));
     }
-    let far = Motion::of_axes(&[1, 2], &[REACH, 0]).unwrap();
+    let far = Motion::of_axes(&[1, 2], &[MAX_COORDINATE, 0]).unwrap();
     assert!(swept(&vec![[0, 0], [1, 0], [0, 1]], RULES[0])
         .moved(&far)
         .is_none());

@@ -85,7 +85,7 @@ fn divisions_tell_of_every_node_and_of_the_best_candidate() {
             let parts = division.minus.len() + division.plus.len() + division.coplanar.len();
             assert_eq!(parts, division.pieces.len() + division.split.len());
             if let Some((above, half)) = division.place {
-                let above = &told[above.place()];
+                let above = &told[above.index()];
                 let side = [&above.minus, &above.plus][usize::from(half == Half::Plus)];
                 assert_eq!(&division.pieces, side);
             }

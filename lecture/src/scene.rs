@@ -195,7 +195,7 @@ impl<S: Affine> Scene<S> {
                 let [minus, plus] = parted(&piece, &node.hyperplane);
                 for (part, child) in [(minus, node.minus), (plus, node.plus)] {
                     if let (Some(part), Some(child)) = (part, child) {
-                        lists[child.place()].push(part);
+                        lists[child.index()].push(part);
                     }
                 }
             }
@@ -323,7 +323,7 @@ fn pairs<S: Affine>(tree: &FragmentTree<S>) -> Vec<(usize, usize)> {
     let mut found: Vec<_> = tree
         .crossings()
         .iter()
-        .filter_map(|crossing| match tree.nodes()[crossing.node.place()].cut {
+        .filter_map(|crossing| match tree.nodes()[crossing.node.index()].cut {
             NodeCut::Pivot(cutter) => Some((cutter as usize, crossing.piece as usize)),
             NodeCut::Axis { .. } | NodeCut::Own(_) => None,
         })

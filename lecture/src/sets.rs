@@ -6,7 +6,7 @@ use bspcsg::geometry::spaces::affine::{Affine, Polytope};
 use bspcsg::geometry::spaces::axis::AxisSpace;
 use bspcsg::merge::generic::merge_trees::merge_watched;
 use bspcsg::merge::generic::split_tree::split_tree_watched;
-use bspcsg::merge::generic::trace::{Decision, Journal, MergeStep, Name};
+use bspcsg::merge::generic::trace::{Decision, Journal, MergeStep, NodeName};
 use bspcsg::merge::op::SetOp;
 use bspcsg::tree::partition::{enclosed, Facet, Label, PartitionTree, PivotPolicy, Plan};
 use serde::Serialize;
@@ -237,8 +237,8 @@ fn places<S: AxisSpace + Affine>(
         match step {
             MergeStep::Pair { a, decision, .. } => {
                 now = waiting.pop().flatten();
-                if let (Name::First(number), Decision::Divide) = (a, decision) {
-                    if let Some((cut, _)) = inner.get(number.place()) {
+                if let (NodeName::First(number), Decision::Divide) = (a, decision) {
+                    if let Some((cut, _)) = inner.get(number.index()) {
                         let [minus, plus] = now.as_ref().map_or([None, None], |r| r.divided(cut));
                         waiting.extend([plus, minus]);
                     }
@@ -246,11 +246,11 @@ fn places<S: AxisSpace + Affine>(
                 found.push(shown(&now));
             }
             MergeStep::Join {
-                node: Name::First(number),
+                node: NodeName::First(number),
                 ..
             } => {
                 let own = inner
-                    .get(number.place())
+                    .get(number.index())
                     .and_then(|(_, region)| region.clone());
                 found.push(shown(&own));
             }

@@ -31,8 +31,8 @@ fn crossing(own: &Segment2, other: &Segment2) -> Option<Point2> {
 /// Return whether `p` lies between the segment and `q`, on the same side of the segment.
 fn is_between(own: &Segment2, p: &Point2, q: &Point2) -> bool {
     let [first, last] = own.points();
-    let ahead = |x: &Point2| own.along(last, x) != Ordering::Greater;
-    let behind = |x: &Point2| own.along(x, first) != Ordering::Greater;
-    (ahead(q) && ahead(p) && own.along(p, q) == Ordering::Less)
-        || (behind(q) && behind(p) && own.along(q, p) == Ordering::Less)
+    let ahead = |x: &Point2| own.order_along(last, x) != Ordering::Greater;
+    let behind = |x: &Point2| own.order_along(x, first) != Ordering::Greater;
+    (ahead(q) && ahead(p) && own.order_along(p, q) == Ordering::Less)
+        || (behind(q) && behind(p) && own.order_along(q, p) == Ordering::Less)
 }

@@ -214,10 +214,8 @@ def test_damaged_records_are_refused(capsys: Capture, tmp_path: Path, left: str)
     path = tmp_path / "r.json"
     path.write_text(json.dumps({"type": "bench", "schema": 1, **json.loads(left)}))
     code, out, err = ran(capsys, "bench", "--from", str(path))
-    assert (code, out) == (
-        3,
-        "",
-    ) and err == f"bspcsg: error: {path}: this record of measurements is damaged; measure again.\n"
+    said = f"{path}: this record of measurements is damaged; run bspcsg bench again."
+    assert (code, out, err) == (3, "", f"bspcsg: error: {said}\n")
 
 
 def test_records_of_another_schema_are_refused(capsys: Capture, tmp_path: Path) -> None:
@@ -226,7 +224,7 @@ def test_records_of_another_schema_are_refused(capsys: Capture, tmp_path: Path) 
     code, _, err = ran(capsys, "bench", "--from", str(path))
     assert (
         code == 3
-        and "the record has schema 0, but this version reads 1 only; measure it again." in err
+        and "the record has schema 0, but this version reads 1 only; run bspcsg bench again." in err
     )
 
 

@@ -370,7 +370,10 @@ def test_code_3_of_devices_that_never_end(place: Path, capsys: Capture) -> None:
     }.items():
         Path(name).symlink_to("/dev/zero")
         code, _, err = ran(capsys, *shlex.split(line))
-        assert code == 3 and f"{name}: cannot read this file: it is a device, not a file." in err
+        assert (
+            code == 3
+            and f"{name}: cannot read this file: the path names a device, not a file." in err
+        )
         os.unlink(name)
 
 

@@ -117,7 +117,7 @@ def test_openscad_that_left_something_out_does_not_count(monkeypatch: pytest.Mon
 def test_openscad_that_writes_nothing_has_no_opinion(monkeypatch: pytest.MonkeyPatch) -> None:
     fake_openscad(monkeypatch, "Aborted\n", None)
     found = opinion("openscad", question())
-    assert (found["agrees"], found["says"]) == (None, "it failed: Aborted")
+    assert (found["agrees"], found["says"]) == (None, "OpenSCAD failed: Aborted")
 
 
 def test_openscad_is_not_asked_about_large_meshes() -> None:
@@ -129,7 +129,7 @@ def test_openscad_is_not_asked_about_large_meshes() -> None:
 def test_engine_that_takes_too_long_has_no_opinion() -> None:
     found = question()
     late = EngineRequest(found.operation, found.program, found.operands, found.ours, -9, 0.001)
-    assert opinion("pymeshlab", late)["says"] == "it took longer than 0.001 s"
+    assert opinion("pymeshlab", late)["says"] == "pymeshlab took longer than 0.001 s"
 
 
 def report(verdict: Verdict, reason: str = "") -> CheckReport:
@@ -204,9 +204,12 @@ def test_child_without_pymeshlab_is_no_opinion(
         "sys.exit(6)\n"
     )
     monkeypatch.setattr(pymeshlab_engine, "_CHILD", child)
-    assert opinion("pymeshlab", question())["says"] == "it could not be loaded: no module"
+    assert opinion("pymeshlab", question())["says"] == "pymeshlab could not be loaded: no module"
     child.write_text("import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)\n")
-    assert opinion("pymeshlab", question())["says"] == "its process ended with exit code -11"
+    assert (
+        opinion("pymeshlab", question())["says"]
+        == "the process of pymeshlab ended with exit code -11"
+    )
 
 
 def test_inertia_of_a_mesh_is_that_of_its_solid() -> None:

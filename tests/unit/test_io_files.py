@@ -259,7 +259,7 @@ def test_real_files(shared_meshes: Path) -> None:
 def test_open_pipes_are_no_ordinary_files() -> None:
     read_end, write_end = os.pipe()
     try:
-        with pytest.raises(FormatError, match="it is not an ordinary file"):
+        with pytest.raises(FormatError, match="does not name an ordinary file"):
             write_file(f"/dev/fd/{write_end}", [b"x"])
     finally:
         os.close(read_end)

@@ -39,7 +39,7 @@ def ask_openscad(question: EngineRequest) -> EngineAnswer:
     count = sum(len(mesh.faces) for mesh in question.operands)
     if count > _MAX_TRIANGLES:
         raise NoOpinionError(
-            f"its exact engine takes at most {_MAX_TRIANGLES} triangles, not {count}"
+            f"the exact engine of OpenSCAD takes at most {_MAX_TRIANGLES} triangles, not {count}"
         )
     with tempfile.TemporaryDirectory(prefix="bspcsg-") as name:
         script = Path(name, "question.csg")
@@ -97,11 +97,13 @@ def _written(target: Path, done: "subprocess.CompletedProcess[str]") -> Mesh:
         return mesh_of(np.zeros((0, 3)), np.zeros((0, 3)))
     if done.returncode != 0 or not target.is_file():
         lines = [line.strip() for line in done.stderr.splitlines() if line.strip()]
-        raise NoOpinionError(f"it failed: {(lines or ['no message'])[-1]}")
+        raise NoOpinionError(f"OpenSCAD failed: {(lines or ['no message'])[-1]}")
     try:
         raw = read(target)
     except BspcsgError as error:
-        raise NoOpinionError(f"its STL cannot be read: {error.message}") from error
+        raise NoOpinionError(
+            f"the STL that OpenSCAD wrote cannot be read: {error.message}"
+        ) from error
     return mesh_of(raw.vertices, raw.faces)
 
 
@@ -117,4 +119,4 @@ def _ran(command: list[str], timeout: float) -> "subprocess.CompletedProcess[str
     try:
         return run_program(command, timeout, environment)
     except subprocess.TimeoutExpired as error:
-        raise NoOpinionError(f"it took longer than {timeout:g} s") from error
+        raise NoOpinionError(f"OpenSCAD took longer than {timeout:g} s") from error

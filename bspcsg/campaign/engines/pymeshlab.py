@@ -25,13 +25,13 @@ def ask_pymeshlab(question: EngineRequest) -> EngineAnswer:
         If pymeshlab is not installed, fails, crashes or takes too long.
     """
     if any(len(mesh.faces) == 0 for mesh in question.operands):
-        raise NoOpinionError("it does not accept empty operands")
+        raise NoOpinionError("pymeshlab does not accept empty operands")
     with tempfile.TemporaryDirectory(prefix="bspcsg-") as name:
         folder = Path(name)
         _put_operands(folder, question)
         said = _run_child(folder, question.timeout)
         if "failed" in said:
-            raise NoOpinionError(f"it failed: {said['failed']}")
+            raise NoOpinionError(f"pymeshlab failed: {said['failed']}")
         with np.load(folder / "result.npz", allow_pickle=False) as found:
             return EngineAnswer(said["version"], mesh_of(found["vertices"], found["faces"]))
 
@@ -53,11 +53,11 @@ def _run_child(folder: Path, timeout: float) -> dict[str, str]:
     try:
         done = run_program(command, timeout)
     except subprocess.TimeoutExpired as error:
-        raise NoOpinionError(f"it took longer than {timeout:g} s") from error
+        raise NoOpinionError(f"pymeshlab took longer than {timeout:g} s") from error
     path = folder / "said.json"
     said: dict[str, str] = json.loads(path.read_text("utf-8")) if path.exists() else {}
     if done.returncode == _MISSING and "missing" in said:
-        raise NoOpinionError(f"it could not be loaded: {said['missing']}")
+        raise NoOpinionError(f"pymeshlab could not be loaded: {said['missing']}")
     if done.returncode != 0 or not said:
-        raise NoOpinionError(f"its process ended with exit code {done.returncode}")
+        raise NoOpinionError(f"the process of pymeshlab ended with exit code {done.returncode}")
     return said

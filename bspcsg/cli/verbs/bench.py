@@ -278,7 +278,7 @@ def _whole_record(source: Path | None) -> Iterator[None]:
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
         if source is None:
             raise
-        message = f"{source}: this record of measurements is damaged; measure again."
+        message = f"{source}: this record of measurements is damaged; run bspcsg bench again."
         raise FormatError(message, "malformed") from error
 
 

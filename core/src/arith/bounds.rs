@@ -25,18 +25,19 @@ pub const COORDINATE_BITS: u32 = 53;
 
 /// The least integer above all lattice coordinates; points on the line, and lines in the plane that are
 /// perpendicular to an axis, may lie there.
-pub const REACH: i64 = 1 << COORDINATE_BITS;
+pub const MAX_COORDINATE: i64 = 1 << COORDINATE_BITS;
 
 /// Return whether an integer is below 2^[`COORDINATE_BITS`] in magnitude, so that it is a lattice coordinate.
 pub const fn is_coordinate(k: i64) -> bool {
-    k.unsigned_abs() < REACH.unsigned_abs()
+    k.unsigned_abs() < MAX_COORDINATE.unsigned_abs()
 }
 
 /// The number of bits of a half-space's normal: its components are below 2^`HALF_SPACE_NORMAL_BITS` in
 /// magnitude.
 ///
-/// A plane n·x = d that meets the lattice has |d| < 3·2^(bits + p), no wider than the offset of a plane
-/// through lattice points; the same holds after a motion or refinement that keeps it on the lattice.
+/// A plane n·x = d that meets the lattice has |d| < 3·2^(`HALF_SPACE_NORMAL_BITS` + `COORDINATE_BITS`), no
+/// wider than the offset of a plane through lattice points; the same holds after a motion or refinement that
+/// keeps the plane on the lattice.
 pub const HALF_SPACE_NORMAL_BITS: u32 = normal(COORDINATE_BITS) - 2;
 
 /// Limbs of a component of a plane's normal; as many as an `i128` has.
@@ -59,7 +60,7 @@ pub const SHORT_OFFSET_BITS: u32 = 124;
 pub const LINE_NORMAL_BITS: u32 = 62;
 
 /// The number of bits of the offset of a line in the plane, if the line meets the square |x|, |y| ≤
-/// [`REACH`].
+/// [`MAX_COORDINATE`].
 pub const LINE_OFFSET_BITS: u32 = LINE_NORMAL_BITS + COORDINATE_BITS + 2;
 
 /// Limbs of each homogeneous coordinate of a point where two lines of the plane meet.
@@ -92,14 +93,16 @@ pub const CROSS_LIMBS: usize = 12;
 /// Limbs of the orientation of three points, each the meet of three planes, in a projection along an axis.
 pub const ORIENTATION_LIMBS: usize = 18;
 
-/// Limbs of the cosine and sine, up to a factor, of an angle between three points, each the meet of three
-/// planes, in a projection along an axis.
+/// Limbs of the dot product, and of the cross product, of two vectors between points where three planes meet,
+/// projected along an axis: the cosine and the sine of the angle between the vectors, times both lengths.
 pub const ANGLE_LIMBS: usize = 24;
 
-/// Limbs of the volume, up to a factor, spanned by four points, each the meet of three planes.
+/// Limbs of the determinant whose sign says on which side of the plane through three points a fourth one
+/// lies, where each point is the meet of three planes.
 pub const SIDE_LIMBS: usize = 36;
 
-/// Limbs of the sine, up to a factor, of a sum of two angles, each as wide as [`ANGLE_LIMBS`].
+/// Limbs of the sine of the sum of two angles, times the lengths of the vectors at both angles; cosines and
+/// sines times lengths have [`ANGLE_LIMBS`] limbs.
 pub const ANGLES_LIMBS: usize = 48;
 
 /// The bound, in bits, of a sum of two integers, from their bounds.
@@ -122,92 +125,99 @@ const fn det4(columns: [u32; 4]) -> u32 {
     columns[0] + columns[1] + columns[2] + columns[3] + 4
 }
 
-/// Bound, in bits, on a component of the normal of a plane through three lattice points.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on a component of the normal of a plane through three
+/// lattice points.
 pub const fn normal(p: u32) -> u32 {
     det3([p, p, 0])
 }
 
-/// Bound, in bits, on the offset of a plane through three lattice points.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on the offset of a plane through three lattice
+/// points.
 pub const fn offset(p: u32) -> u32 {
     det3([p, p, p])
 }
 
-/// Bound, in bits, on a plane's value at a lattice point.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on a plane's value at a lattice point.
 pub const fn plane_at_lattice_point(p: u32) -> u32 {
     det4([p, p, p, 0])
 }
 
-/// Bound, in bits, on a plane's value at the doubled corner of a cell.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on a plane's value at the doubled corner of a cell.
 pub const fn plane_at_corner(p: u32) -> u32 {
     plane_at_lattice_point(p) + 1
 }
 
-/// Bound, in bits, on the determinant that orients a cell's doubled corner against a lattice edge, in a
-/// projection along an axis.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on the determinant that orients a cell's doubled
+/// corner against a lattice edge, in a projection along an axis.
 pub const fn edge_at_corner(p: u32) -> u32 {
     det3([p, p, 0]) + 1
 }
 
-/// Bound, in bits, on the determinant that decides on which side of a plane an axis-parallel line through a
-/// cell's doubled corner meets another plane.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on the determinant that decides on which side of a
+/// plane an axis-parallel line through a cell's doubled corner meets another plane.
 pub const fn plane_pair_at_corner(p: u32) -> u32 {
     det2([normal(p), plane_at_corner(p)])
 }
 
-/// Bound, in bits, on a component of the direction of the line in which two planes meet.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on a component of the direction of the line in which
+/// two planes meet.
 pub const fn line_direction(p: u32) -> u32 {
     det2([normal(p), normal(p)])
 }
 
-/// Bound, in bits, on the determinant that decides on which side of one plane another plane cuts a lattice
-/// edge, or which of two planes cuts the edge first.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on the determinant that decides on which side of one
+/// plane another plane cuts a lattice edge, or which of two planes cuts the edge first.
 pub const fn edge_point_at_plane(p: u32) -> u32 {
     det2([plane_at_lattice_point(p), plane_at_lattice_point(p)])
 }
 
-/// Bound, in bits, on the determinant that decides on which side of a cut, halfway between lattice planes, a
-/// plane cuts a lattice edge.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on the determinant that decides on which side of a
+/// cut, halfway between lattice planes, a plane cuts a lattice edge.
 pub const fn edge_point_at_cut(p: u32) -> u32 {
     let end_to_cut = sum(p + 1, p + 1);
     det2([end_to_cut, plane_at_lattice_point(p)])
 }
 
-/// Bound, in bits, on the determinant that decides on which side of a plane two coplanar lattice edges cross.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on the determinant that decides on which side of a
+/// plane two coplanar lattice edges cross.
 pub const fn edge_crossing_at_plane(p: u32) -> u32 {
     let edge_at_lattice_point = det3([p, p, 0]);
     det2([edge_at_lattice_point, plane_at_lattice_point(p)])
 }
 
-/// Bound, in bits, on a plane's value at the point where two other planes meet a cut across an axis.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on a plane's value at the point where two other
+/// planes meet a cut across an axis.
 pub const fn plane_pair_in_cut_at_plane(p: u32) -> u32 {
     det3([normal(p), normal(p), plane_at_corner(p)])
 }
 
-/// Bound, in bits, on the weight of a point where three planes meet, which is also the product of a plane's
-/// normal with the direction of a line of two planes.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on the weight of a point where three planes meet,
+/// which is also the product of a plane's normal with the direction of a line of two planes.
 pub const fn point_weight(p: u32) -> u32 {
     det3([normal(p), normal(p), normal(p)])
 }
 
-/// Bound, in bits, on a homogeneous coordinate x, y or z of a point where three planes meet.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on a homogeneous coordinate x, y or z of a point
+/// where three planes meet.
 pub const fn point_numerator(p: u32) -> u32 {
     det3([normal(p), normal(p), offset(p)])
 }
 
-/// Bound, in bits, on the value of a cut, halfway between lattice planes, at a point where three planes meet.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on the value of a cut, halfway between lattice
+/// planes, at a point where three planes meet.
 pub const fn point_at_cut(p: u32) -> u32 {
     let cut = p + 1;
     sum(point_numerator(p) + 1, point_weight(p) + cut)
 }
 
-/// Bound, in bits, on a plane's value at a point where three planes meet; the same determinant orders two
-/// such points on any line.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on a plane's value at a point where three planes
+/// meet; the same determinant orders two such points on any line.
 pub const fn plane_at_point(p: u32) -> u32 {
     det4([normal(p), normal(p), normal(p), offset(p)])
 }
 
-/// Bound, in bits, on a difference of products, each of one plane's value at a cell's corner and another
-/// plane's value at a meet of three planes.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on a difference of products, each of one plane's
+/// value at a cell's corner and another plane's value at a meet of three planes.
 pub const fn corner_times_point(p: u32) -> u32 {
     sum(
         plane_at_corner(p) + plane_at_point(p),
@@ -215,37 +225,38 @@ pub const fn corner_times_point(p: u32) -> u32 {
     )
 }
 
-/// Bound, in bits, on the determinant of three vectors, each the difference between a doubled lattice point
-/// and a doubled corner of a cell.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on the determinant of three vectors, each the
+/// difference between a doubled lattice point and a doubled corner of a cell.
 pub const fn determinant_at_corner(p: u32) -> u32 {
     det3([p + 2, p + 2, p + 2])
 }
 
-/// Bound, in bits, on a homogeneous coordinate of one meet of three planes times the weight of another such
-/// meet.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on a homogeneous coordinate of one meet of three
+/// planes times the weight of another such meet.
 pub const fn numerator_times_weight(p: u32) -> u32 {
     point_numerator(p) + point_weight(p)
 }
 
-/// Bound, in bits, on the orientation of three points, each the meet of three planes, in a projection along
-/// an axis.
+/// Bound, in bits, for lattice coordinates below 2^`p`, on the orientation of three points, each the meet of
+/// three planes, in a projection along an axis.
 pub const fn point_orientation(p: u32) -> u32 {
     det3([point_numerator(p), point_numerator(p), point_weight(p)])
 }
 
-/// Bound, in bits, on the cosine and sine, up to a factor, of the angle between two vectors with components
-/// below 2^`d`, in a projection along an axis.
+/// Bound, in bits, on the dot product and on the cross product of two plane vectors with components below
+/// 2^`d`: the cosine and the sine of the angle between the vectors, times both lengths.
 pub const fn angle(d: u32) -> u32 {
     sum(2 * d, 2 * d)
 }
 
-/// Bound, in bits, on the volume, up to a factor, spanned by three vectors with components below 2^`d`.
+/// Bound, in bits, on the determinant of three vectors with components below 2^`d`: the signed volume of the
+/// box that they span.
 pub const fn volume(d: u32) -> u32 {
     det3([d, d, d])
 }
 
-/// Bound, in bits, on the sine, up to a factor, of the sum of two angles between vectors with components
-/// below 2^`d`.
+/// Bound, in bits, on the sine of the sum of two angles, times the lengths of the four plane vectors at the
+/// angles, which have components below 2^`d`.
 pub const fn sum_of_angles(d: u32) -> u32 {
     sum(2 * angle(d), 2 * angle(d))
 }

@@ -62,7 +62,7 @@ pub const fn as_number(count: usize) -> u32 {
     clippy::cast_possible_truncation,
     reason = "places fit the address space"
 )]
-pub const fn as_place(number: u64) -> usize {
+pub const fn as_index(number: u64) -> usize {
     number as usize
 }
 

@@ -213,7 +213,7 @@ impl<const N: usize> Int<N> {
         let product = Int { limbs: product };
         let sign = product.sign_limb();
         if R < N + B && top[..N + B - R].iter().any(|limb| *limb != sign) {
-            exceeds("a product", R);
+            panic_on_overflow("a product", R);
         }
         product
     }
@@ -290,6 +290,6 @@ impl<const N: usize> Int<N> {
 /// Panics with the message that `what` does not fit into `limbs` limbs.
 #[cold]
 #[inline(never)]
-pub(super) fn exceeds(what: &str, limbs: usize) -> ! {
+pub(super) fn panic_on_overflow(what: &str, limbs: usize) -> ! {
     panic!("{what} exceeds {limbs} limbs")
 }

@@ -3,19 +3,19 @@
 use super::convert::low_limb;
 use super::round::nearly_to_f64;
 
-/// The number of bits of the lower part of a [`Split`].
+/// The number of bits of the lower part of a [`SplitInteger`].
 pub const SPLIT_BITS: u32 = 40;
 
 /// The integer high·2^[`SPLIT_BITS`] + low, with 0 ≤ low < 2^[`SPLIT_BITS`].
 ///
 /// Nothing checks that sums fit: callers bound them.
 #[derive(Clone, Copy, Debug)]
-pub struct Split {
+pub struct SplitInteger {
     high: i128,
     low: i128,
 }
 
-impl Split {
+impl SplitInteger {
     /// The integer high·2^[`SPLIT_BITS`] + low, for any low part and a high part below 2^126 in magnitude.
     #[inline]
     pub const fn new(high: i128, low: i128) -> Self {
@@ -150,7 +150,10 @@ mod tests {
         for pair in parts.chunks_exact(4) {
             let [a, b, c, d] = [pair[0], pair[1], pair[2] >> 9, pair[3] | 1];
             let exact = ratio_to_f64(&whole(a, b), &whole(c, d));
-            let (n, m) = (Split::new(a, b).leading(), Split::new(c, d).leading());
+            let (n, m) = (
+                SplitInteger::new(a, b).leading(),
+                SplitInteger::new(c, d).leading(),
+            );
             if let Some(nearest) = n.over(&m) {
                 assert_eq!(nearest.to_bits(), exact.to_bits(), "{a}, {b} over {c}, {d}");
                 decided += 1;
@@ -188,10 +191,10 @@ mod tests {
 
     #[test]
     fn sums_and_signs_carry() {
-        let minus = Split::new(0, -1);
+        let minus = SplitInteger::new(0, -1);
         assert!(minus.is_negative() && !minus.negated().is_negative());
         assert!(minus.plus(&minus.negated()).is_zero());
-        let half = Split::new(0, 1 << 39);
+        let half = SplitInteger::new(0, 1 << 39);
         assert_eq!(half.plus(&half).leading().bits, 1 << 127);
     }
 }

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 use std::fmt;
 use std::ops::{Add, AddAssign, Neg, Sub, SubAssign};
 
-use super::int::exceeds;
+use super::int::panic_on_overflow;
 use super::limbs::{borrowing_sub, carrying_add};
 use super::Int;
 
@@ -25,7 +25,7 @@ impl<const N: usize> Add for Int<N> {
         let (a, b, c) = (ours[N - 1], theirs[N - 1], limbs[N - 1]);
         // Both terms have the same sign, and the sum has the other.
         if ((a ^ c) & (b ^ c)).cast_signed() < 0 {
-            exceeds("a sum", N);
+            panic_on_overflow("a sum", N);
         }
         Self::from_limbs(limbs)
     }
@@ -48,7 +48,7 @@ impl<const N: usize> Sub for Int<N> {
         let (a, b, c) = (ours[N - 1], theirs[N - 1], limbs[N - 1]);
         // The terms differ in sign, and the difference has the wrong one.
         if ((a ^ b) & (a ^ c)).cast_signed() < 0 {
-            exceeds("a difference", N);
+            panic_on_overflow("a difference", N);
         }
         Self::from_limbs(limbs)
     }

@@ -3,8 +3,8 @@
 
 use smallvec::SmallVec;
 
-/// The parts that a sum stores without allocation; at least 40, because as many doubles of 53 bits fit side
-/// by side in the 2098 bits from the least to the largest double.
+/// The number of doubles that a [`Sum`] stores without allocation; at least 40, because as many doubles of 53
+/// bits fit side by side in the 2098 bits from the least to the largest double.
 const PARTS: usize = 64;
 
 /// An exact sum of doubles, stored as doubles whose bits do not overlap, the smallest first.

@@ -28,14 +28,15 @@ use crate::mesh::handle::{OrientedFace, Slot, SourceFace, VertexId};
 use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::tree::solid::Solid;
 
-/// A face that is boundary as a whole, and the numbers of the points inserted on each of its three edges.
+/// A face that belongs to a solid's boundary as a whole, and the numbers of the points inserted on each of
+/// its three edges.
 struct SplitFace {
     face: OrientedFace,
     inner: [Vec<u32>; 3],
 }
 
-/// In a group of at most this many edges the ends are searched one by one: making a table of them takes
-/// longer.
+/// In a plane group (the boundary faces of one plane) of at most this many edges, the ends of edges are
+/// searched one by one: making a table of them takes longer.
 const MAX_EDGES_SEARCHED: usize = 16;
 
 /// Returns the exact triangle mesh of a bounded solid.
@@ -118,8 +119,8 @@ fn unbounded() -> Error {
     Error::new(ErrorKind::Unbounded, text)
 }
 
-/// Returns true if an edge of the group lies on the border of the universe; only faces of half-spaces reach
-/// it.
+/// Returns true if an edge of a plane group (the boundary faces of one plane) lies on the border of the
+/// universe; only faces of half-spaces reach it.
 fn reaches_infinity(group: &PlaneGroup, sources: &Sources) -> bool {
     let mut faces = group.faces.iter();
     faces.any(|f| sources.get(f.slot()).mesh().is_none())
@@ -173,8 +174,8 @@ impl Assembly<'_> {
         Ok(self.emit_groups(groups, &edges, &inner)?)
     }
 
-    /// Appends the edges of a group as pairs of point numbers; looks up an end shared by two edges only
-    /// once.
+    /// Appends the edges of a plane group (the boundary faces of one plane) as pairs of point numbers; looks
+    /// up an end shared by two edges only once.
     fn number_edges(&mut self, group: &PlaneGroup, edges: &mut Vec<Edge>) {
         let start = edges.len();
         if group.edges().len() > MAX_EDGES_SEARCHED {
@@ -182,7 +183,7 @@ impl Assembly<'_> {
             for e in group.edges() {
                 let [from, to] = [&e.from, &e.to].map(|at| {
                     let entry = known.entry(Arc::as_ptr(at));
-                    *entry.or_insert_with(|| self.table.number(at))
+                    *entry.or_insert_with(|| self.table.number_of(at))
                 });
                 edges.push(Edge { from, to });
             }
@@ -191,14 +192,14 @@ impl Assembly<'_> {
         for (i, e) in group.edges().iter().enumerate() {
             let before = group.edges()[..i].iter().zip(&edges[start..]);
             let [from, to] = [&e.from, &e.to].map(|at| known_end(at, before.clone()));
-            let from = from.unwrap_or_else(|| self.table.number(&e.from));
-            let to = to.unwrap_or_else(|| self.table.number(&e.to));
+            let from = from.unwrap_or_else(|| self.table.number_of(&e.from));
+            let to = to.unwrap_or_else(|| self.table.number_of(&e.to));
             edges.push(Edge { from, to });
         }
     }
 
-    /// Finds, for each line, the points on it at which a polygon of a group touches or crosses its own
-    /// edges.
+    /// Finds, for each line, the points on it at which a polygon (the joined boundary faces of one plane)
+    /// touches or crosses its own edges.
     fn touching(&mut self, groups: &mut [PlaneGroup], edges: &[Edge]) -> LinePoints {
         let mut touching = LinePoints::default();
         let mut start = 0;
@@ -210,8 +211,8 @@ impl Assembly<'_> {
         touching
     }
 
-    /// Numbers the corners of whole faces in cells where several operands met as table points, because the
-    /// surface may touch itself there.
+    /// Adds to the vertex table the corners of whole faces in cells where several operands met, because the
+    /// surface may touch itself at these corners.
     fn identify_near(&mut self, near: &[SourceFace], fates: &Fates) {
         for face in near {
             if matches!(fates[*face], Fate::Whole(_)) {
@@ -220,7 +221,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// Numbers the corners of a face as points of the vertex table.
+    /// Adds the corners of a face to the vertex table, which numbers them.
     fn identify(&mut self, face: SourceFace) {
         let source = Arc::clone(self.sources.get(face.slot));
         if let Some(mesh) = source.mesh() {
@@ -239,8 +240,8 @@ impl Assembly<'_> {
         Some(Edge { from, to })
     }
 
-    /// Records for each corner of a group the source vertex at the same position, whose original doubles it
-    /// gets.
+    /// Records for each corner of a plane group (the joined boundary faces of one plane) the source vertex at
+    /// the same position, whose original doubles the corner gets.
     ///
     /// Only vertices of the group's own faces count, though a vertex of another face may lie at a corner,
     /// too.
@@ -265,7 +266,7 @@ impl Assembly<'_> {
                     continue;
                 };
                 for vertex in mesh.vertices_of(face.id()) {
-                    let place = Vertex::lattice(mesh.vertices[vertex.place()]);
+                    let place = Vertex::lattice(mesh.vertices[vertex.index()]);
                     let found = self.table.find(&place);
                     if let Some(point) = found.filter(|p| group_of[*p as usize] == number) {
                         self.name(point, (slot, vertex));
@@ -275,7 +276,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// Numbers as table points the vertices on edges that more than two faces of one source share.
+    /// Adds to the vertex table the vertices on edges that more than two faces of one source share.
     fn mark_irregular(&mut self, fates: &Fates, rims: &Rims) {
         let irregular = carried(|(slot, fates): (Slot, &[Fate])| {
             let rim = rims.get(slot);
@@ -302,7 +303,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// Numbers all corners of split faces as table points, before triangles are emitted, and marks split
+    /// Adds the corners of split faces to the vertex table before triangles are emitted, and marks the split
     /// faces as cut.
     fn identify_corners(&mut self, split: &[SplitFace], fates: &mut Fates) {
         for SplitFace { face, .. } in split {
@@ -327,7 +328,7 @@ impl Assembly<'_> {
         self.untouched = Untouched::new(first..VertexId::of(self.vertices.len()));
         for (slot, fates) in fates.by_slot() {
             let source = self.sources.get(slot);
-            let (Some(mesh), images) = (source.mesh(), &self.images[slot.place()]) else {
+            let (Some(mesh), images) = (source.mesh(), &self.images[slot.index()]) else {
                 continue;
             };
             let source = Emitted { slot, mesh, images };
@@ -408,7 +409,7 @@ mod tests {
         let mesh = assemble(&made_of(&tetrahedra(), Term::Or)).expect("bounded");
         assert_closed(&mesh);
         assert_eq!(mesh.untouched, 4);
-        let is_source = |v: &VertexId| matches!(mesh.vertices[v.place()], Corner::Source(..));
+        let is_source = |v: &VertexId| matches!(mesh.vertices[v.index()], Corner::Source(..));
         assert!(mesh.triangles[..4].iter().flatten().all(is_source));
         // The corner inside is gone; its three edges meet the first one's last face.
         assert_eq!(mesh.vertices.len(), 4 + 3 + 3);

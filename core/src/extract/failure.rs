@@ -12,7 +12,7 @@ use crate::tree::solid::Solid;
 pub(super) enum Failure {
     /// Faces cross or overlap each other.
     Overlap(Overlap),
-    /// The core refuses the solid for another reason.
+    /// No mesh can be made for another reason, such as an infinite boundary.
     Refused(Error),
 }
 
@@ -49,7 +49,7 @@ impl Failure {
 
 impl Overlap {
     fn error(self, solid: &Solid) -> Error {
-        if solid.is_claimed() {
+        if solid.is_reduced_by_claim() {
             return Error::internal(self.sign);
         }
         let (slot, source) = match culprit(solid) {

@@ -35,11 +35,11 @@ pub struct ExactMesh {
 impl ExactMesh {
     /// The exact position of a vertex.
     pub fn exact(&self, vertex: VertexId, sources: &Sources) -> Arc<Vertex> {
-        match self.vertices[vertex.place()] {
+        match self.vertices[vertex.index()] {
             Corner::Point(point) => Arc::clone(self.table.point(point)),
             Corner::Source(slot, index) => {
                 let mesh = sources.get(slot).mesh();
-                let place = mesh.map_or([0; 3], |m| m.vertices[index.place()]);
+                let place = mesh.map_or([0; 3], |m| m.vertices[index.index()]);
                 Arc::new(Vertex::lattice(place))
             }
         }
@@ -52,7 +52,7 @@ impl ExactMesh {
             Corner::Point(point) => solid.pitch().position(self.table.point(point)),
             Corner::Source(slot, vertex) => {
                 let mesh = solid.sources().get(slot).mesh();
-                mesh.map_or([0.0; 3], |m| m.doubles[vertex.place()])
+                mesh.map_or([0.0; 3], |m| m.doubles[vertex.index()])
             }
         };
         let mut positions = vec![[0.0; 3]; self.vertices.len()];
@@ -95,12 +95,12 @@ pub fn renumber(
 ) -> Vec<VertexId> {
     let mut numbers = vec![VertexId::default(); vertices.len()];
     for (number, vertex) in VertexId::all().zip(order) {
-        numbers[vertex.place()] = number;
+        numbers[vertex.index()] = number;
     }
-    *vertices = order.iter().map(|v| vertices[v.place()]).collect();
+    *vertices = order.iter().map(|v| vertices[v.index()]).collect();
     spend(triangles.len());
     for vertex in triangles.iter_mut().flatten() {
-        *vertex = numbers[vertex.place()];
+        *vertex = numbers[vertex.index()];
     }
     numbers
 }

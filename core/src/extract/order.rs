@@ -37,7 +37,7 @@ fn sort_points(mesh: &mut ExactMesh, positions: &mut [[f64; 3]]) {
     }
     // Untouched faces have no constructed corners.
     for vertex in mesh.triangles[mesh.untouched..].iter_mut().flatten() {
-        if let Some(place) = vertex.place().checked_sub(first) {
+        if let Some(place) = vertex.index().checked_sub(first) {
             *vertex = numbers[place];
         }
     }

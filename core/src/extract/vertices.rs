@@ -80,14 +80,14 @@ impl Planar for Projection<'_> {
     }
 
     fn approx(&self, a: u32) -> [f64; 2] {
-        let p = self.table.place(a);
+        let p = self.table.position(a);
         [p[self.u], p[self.v]]
     }
 }
 
 impl Projection<'_> {
     fn compare_by(&self, a: u32, b: u32, axis: usize) -> Ordering {
-        let (p, q) = (self.table.place(a)[axis], self.table.place(b)[axis]);
+        let (p, q) = (self.table.position(a)[axis], self.table.position(b)[axis]);
         if (p - q).abs() > (p.abs() + q.abs()) * MAX_COORDINATE_ERROR {
             return p.total_cmp(&q);
         }

@@ -29,7 +29,7 @@ impl NearTriangle {
         let corners = each_axis(|k| each_axis(|i| as_double(corners[k][i])));
         let [a, b, c] = &corners;
         Self {
-            normal: NearCross::of_rounded(&less(b, a), &less(c, a)),
+            normal: NearCross::of_rounded(&difference(b, a), &difference(c, a)),
             corners,
         }
     }
@@ -40,9 +40,9 @@ impl NearTriangle {
         let base = &self.corners[0];
         let [x, y, z] = &other.corners;
         [
-            self.normal.sign_with_rounded(&less(x, base)),
-            self.normal.sign_with_rounded(&less(y, base)),
-            self.normal.sign_with_rounded(&less(z, base)),
+            self.normal.sign_with_rounded(&difference(x, base)),
+            self.normal.sign_with_rounded(&difference(y, base)),
+            self.normal.sign_with_rounded(&difference(z, base)),
         ]
     }
 }
@@ -53,21 +53,21 @@ impl NearTriangle {
 /// common line of both planes are apart (Möller 1997; in signs alone as Guigue and Devillers 2003).
 pub fn are_apart(p: &NearTriangle, q: &NearTriangle) -> bool {
     let of_p = q.sides_of(p);
-    if is_beside(of_p) {
+    if are_on_one_side(of_p) {
         return true;
     }
     let of_q = p.sides_of(q);
-    if is_beside(of_q) {
+    if are_on_one_side(of_q) {
         return true;
     }
     match (lone_corner(of_p), lone_corner(of_q)) {
-        (Some(i), Some(k)) => stretches_are_apart(&p.corners, i, &q.corners, k),
+        (Some(i), Some(k)) => segments_are_apart(&p.corners, i, &q.corners, k),
         _ => false,
     }
 }
 
 /// Return whether all three corners certainly lie strictly on one side.
-fn is_beside(sides: Sides) -> bool {
+fn are_on_one_side(sides: Sides) -> bool {
     sides[0].is_certain() && sides[1] == sides[0] && sides[2] == sides[0]
 }
 
@@ -90,11 +90,11 @@ fn lone_corner(sides: Sides) -> Option<usize> {
 ///
 /// The sign of the volume that two edges of different triangles and a step between them span says which edge
 /// meets the line first, up to a sign that is the same for all four pairs.
-fn stretches_are_apart(p: &[[f64; 3]; 3], i: usize, q: &[[f64; 3]; 3], k: usize) -> bool {
+fn segments_are_apart(p: &[[f64; 3]; 3], i: usize, q: &[[f64; 3]; 3], k: usize) -> bool {
     let (from, other) = (&p[i], &q[k]);
-    let toward = less(other, from);
+    let toward = difference(other, from);
     let edges = |t: &[[f64; 3]; 3], at: usize| {
-        let edge = |step: usize| less(&t[(at + step) % 3], &t[at]);
+        let edge = |step: usize| difference(&t[(at + step) % 3], &t[at]);
         [edge(1), edge(2)]
     };
     let (ours, theirs) = (edges(p, i), edges(q, k));
@@ -107,16 +107,16 @@ fn stretches_are_apart(p: &[[f64; 3]; 3], i: usize, q: &[[f64; 3]; 3], k: usize)
 }
 
 #[inline]
-fn less(p: &[f64; 3], q: &[f64; 3]) -> [f64; 3] {
+fn difference(p: &[f64; 3], q: &[f64; 3]) -> [f64; 3] {
     [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
 }
 
 /// Return whether any point of an edge of `p` lies in `q`, by exact determinants.
 #[cfg(test)]
 pub fn pierces(p: &[Lattice; 3], q: &[Lattice; 3]) -> bool {
-    let less = |p: &Lattice, q: &Lattice| each_axis(|i| p[i] - q[i]);
+    let difference = |p: &Lattice, q: &Lattice| each_axis(|i| p[i] - q[i]);
     let volume = |a: &Lattice, b: &Lattice, c: &Lattice, d: &Lattice| {
-        let (u, v, w) = (less(b, a), less(c, a), less(d, a));
+        let (u, v, w) = (difference(b, a), difference(c, a), difference(d, a));
         u[0] * (v[1] * w[2] - v[2] * w[1])
             + u[1] * (v[2] * w[0] - v[0] * w[2])
             + u[2] * (v[0] * w[1] - v[1] * w[0])
@@ -171,11 +171,11 @@ mod tests {
         ) {
             let (near_p, near_q) = (NearTriangle::of(&p), NearTriangle::of(&q));
             let sides = [near_p.sides_of(&near_q), near_q.sides_of(&near_p)];
-            let less = |p: &Lattice, q: &Lattice| each_axis(|i| p[i] - q[i]);
+            let difference = |p: &Lattice, q: &Lattice| each_axis(|i| p[i] - q[i]);
             prop_assume!(sides.iter().flatten().all(Filtered::is_certain));
             let edges = |t: &[Lattice; 3]| [0, 1, 2].map(|i| (t[i], t[(i + 1) % 3]));
             let flat = edges(&p).iter().any(|(a, b)| edges(&q).iter().any(|(c, d)| {
-                !near_determinant(&less(b, a), &less(c, a), &less(d, a)).is_certain()
+                !near_determinant(&difference(b, a), &difference(c, a), &difference(d, a)).is_certain()
             }));
             prop_assume!(!flat);
             prop_assert_eq!(are_apart(&near_p, &near_q), !(pierces(&p, &q) || pierces(&q, &p)));

@@ -97,12 +97,12 @@ impl Cell {
     }
 
     /// Return whether every lattice point of `other` is also in this cell.
-    pub fn holds(&self, other: &Self) -> bool {
-        self.holds_box(other.low(), &other.high())
+    pub fn contains(&self, other: &Self) -> bool {
+        self.contains_box(other.low(), &other.high())
     }
 
     /// Return whether this cell contains all lattice points of a box, given by its lowest and highest point.
-    pub fn holds_box(&self, low: &Lattice, high: &Lattice) -> bool {
+    pub fn contains_box(&self, low: &Lattice, high: &Lattice) -> bool {
         let top = self.high();
         (0..3).all(|i| self.low[i] <= low[i] && high[i] <= top[i])
     }
@@ -189,7 +189,7 @@ mod tests {
             let mut cell = Cell::UNIVERSE;
             while let Some(cut) = cell.cut() {
                 let halves = Half::BOTH.map(|half| cell.half(cut, half));
-                match halves.into_iter().find(|half| half.holds_box(&low, &high)) {
+                match halves.into_iter().find(|half| half.contains_box(&low, &high)) {
                     Some(half) => cell = half,
                     None => break,
                 }

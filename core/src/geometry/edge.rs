@@ -68,9 +68,9 @@ impl LatticeEdge {
     }
 
     /// Return whether a lattice point lies on the infinite line through the edge.
-    pub fn line_holds(&self, place: &Lattice) -> bool {
+    pub fn line_contains(&self, point: &Lattice) -> bool {
         let (a, b) = self.ends();
-        normal(a, b, place) == [0; 3]
+        normal(a, b, point) == [0; 3]
     }
 
     /// The sign that says on which side a lattice point lies, of the plane that contains the edge and is
@@ -78,11 +78,11 @@ impl LatticeEdge {
     ///
     /// # Bits
     /// Steps between lattice points are below 2^54, and a sum of two products of them below 2^110.
-    pub fn sign_beside(&self, place: &Lattice, axis: usize) -> Sign {
+    pub fn sign_beside(&self, point: &Lattice, axis: usize) -> Sign {
         let (a, b) = self.ends();
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         let product = |p: i64, q: i64| i128::from(p) * i128::from(q);
-        let value = product(b[v] - a[v], place[u] - a[u]) + product(a[u] - b[u], place[v] - a[v]);
+        let value = product(b[v] - a[v], point[u] - a[u]) + product(a[u] - b[u], point[v] - a[v]);
         Sign::of(value)
     }
 

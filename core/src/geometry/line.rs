@@ -44,7 +44,7 @@ struct Pluecker<const P: u64> {
 pub struct PlaneResidues<'a> {
     first: Coefficients<P1>,
     second: Coefficients<P2>,
-    given: Given<'a>,
+    exact_plane: ExactPlane<'a>,
 }
 
 /// A plane's coefficients modulo the prime `P`, up to a common factor.
@@ -56,7 +56,7 @@ struct Coefficients<const P: u64> {
 
 /// The exact form of a plane: three lattice points on it, or its coefficients.
 #[derive(Clone, Copy, Debug)]
-enum Given<'a> {
+enum ExactPlane<'a> {
     Corners([Lattice; 3]),
     Plane(&'a Plane),
 }
@@ -92,7 +92,7 @@ impl<'a> PlaneResidues<'a> {
         Self {
             first: Coefficients::through(&normal, a),
             second: Coefficients::through(&normal, a),
-            given: Given::Corners(*corners),
+            exact_plane: ExactPlane::Corners(*corners),
         }
     }
 
@@ -101,7 +101,7 @@ impl<'a> PlaneResidues<'a> {
         Self {
             first: Coefficients::of(plane),
             second: Coefficients::of(plane),
-            given: Given::Plane(plane),
+            exact_plane: ExactPlane::Plane(plane),
         }
     }
 
@@ -111,9 +111,9 @@ impl<'a> PlaneResidues<'a> {
             let [x, y, z] = plane.normal().map(BigInt::from);
             [x, y, z, big(plane.offset())]
         };
-        match &self.given {
-            Given::Plane(plane) => of_plane(plane),
-            Given::Corners([a, b, c]) => {
+        match &self.exact_plane {
+            ExactPlane::Plane(plane) => of_plane(plane),
+            ExactPlane::Corners([a, b, c]) => {
                 let plane = Plane::through(a, b, c);
                 of_plane(&plane.expect("a face has an area"))
             }
@@ -272,7 +272,7 @@ impl LineKey {
     }
 
     /// A 64-bit hash of the key, for sorting: equal keys have equal hashes, different keys rarely do.
-    pub fn mixed(&self) -> u64 {
+    pub fn line_hash(&self) -> u64 {
         // Odd constants of SplitMix (Steele, Lea, Flood 2014) keep small coordinates apart.
         let [_, v, w, x, y, z] = self.first;
         let first = v.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(x);

@@ -19,7 +19,7 @@ pub struct OutlineEdge {
     pub from: Arc<Vertex>,
     /// The end of the edge.
     pub to: Arc<Vertex>,
-    /// The carrier of the edge: the edge lies on it and in the region's plane.
+    /// The lattice edge or the plane that carries the edge, which lies on it and in the region's plane.
     pub carrier: Carrier,
     /// The key of the line through the edge.
     pub line: LineKey,
@@ -33,7 +33,7 @@ pub struct BareEdge {
     pub from: Arc<Vertex>,
     /// The end of the edge.
     pub to: Arc<Vertex>,
-    /// The carrier of the edge: the edge lies on it and in the region's plane.
+    /// The lattice edge or the plane that carries the edge, which lies on it and in the region's plane.
     pub carrier: Carrier,
 }
 
@@ -49,7 +49,7 @@ impl From<OutlineEdge> for BareEdge {
 
 impl BareEdge {
     /// The edges of a polygon, counterclockwise.
-    pub fn all_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
+    pub fn edges_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
         polygon.edges().map(|(from, to, carrier)| Self {
             from: Arc::clone(from),
             to: Arc::clone(to),
@@ -69,12 +69,12 @@ impl BareEdge {
 
 impl OutlineEdge {
     /// The edges of a polygon, counterclockwise, with the keys of their lines.
-    pub fn all_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
+    pub fn edges_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
         let lines = lines(
             polygon.edges().map(|e| e.2),
             &PlaneResidues::of(polygon.support()),
         );
-        let bare = BareEdge::all_of(polygon).zip(lines);
+        let bare = BareEdge::edges_of(polygon).zip(lines);
         bare.map(|(edge, line)| edge.keyed(line))
     }
 
@@ -121,7 +121,7 @@ impl Outline {
     /// Return the outline of any edges: overlapping opposite edges cancel, and edges that continue each other
     /// are joined.
     pub fn of(edges: Vec<OutlineEdge>) -> Self {
-        let edges = maximal(edges);
+        let edges = maximal_edges(edges);
         let lines = edges.iter().map(|e| e.line).collect();
         let edges = edges.into_iter().map(BareEdge::from).collect();
         Self { edges, lines }
@@ -175,7 +175,7 @@ pub fn order_along(a: &Arc<Vertex>, b: &Arc<Vertex>, axis: usize) -> Ordering {
 }
 
 /// The maximal edges that remain when opposite ones cancel as in [`cancel`], without spare capacity.
-pub fn maximal(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
+pub fn maximal_edges(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
     if edges.is_sorted_by(|a, b| a.line < b.line) {
         return edges;
     }
@@ -185,7 +185,7 @@ pub fn maximal(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
 }
 
 /// The given edges in their order if none of them cancel or continue each other, else the edges that remain.
-pub fn settled(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
+pub fn cancelled_if_needed(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
     let ends = |e: &OutlineEdge| (Arc::as_ptr(&e.from), Arc::as_ptr(&e.to));
     let mut kept = cancel(edges.clone());
     let given: HashSet<_> = edges.iter().map(ends).collect();
@@ -204,8 +204,8 @@ pub fn cancel(mut edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
     let order = by_line(&edges);
     let mut alone: SmallVec<[bool; 64]> = SmallVec::from_elem(false, edges.len());
     let mut joined = Vec::new();
-    let line = |place: &Place| &edges[place.edge as usize].line;
-    for run in order.chunk_by(|a, b| a.mixed == b.mixed && line(a) == line(b)) {
+    let line = |entry: &EdgeByLine| &edges[entry.edge as usize].line;
+    for run in order.chunk_by(|a, b| a.line_hash == b.line_hash && line(a) == line(b)) {
         match run {
             [single] => alone[single.edge as usize] = true,
             _ => cancel_line(&edges, run, &mut joined),
@@ -219,23 +219,23 @@ pub fn cancel(mut edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
 }
 
 /// An edge's index, with the sort key of its line.
-struct Place {
+struct EdgeByLine {
     /// A hash of the line's key, faster to compare than the key itself.
-    mixed: u64,
+    line_hash: u64,
     edge: u32,
 }
 
 /// Indices of the edges, grouped by line; within a line in the given order.
-fn by_line(edges: &[OutlineEdge]) -> SmallVec<[Place; 32]> {
-    let places = (0..).zip(edges).map(|(edge, e)| Place {
-        mixed: e.line.mixed(),
+fn by_line(edges: &[OutlineEdge]) -> SmallVec<[EdgeByLine; 32]> {
+    let entries = (0..).zip(edges).map(|(edge, e)| EdgeByLine {
+        line_hash: e.line.line_hash(),
         edge,
     });
-    let mut order: SmallVec<[Place; 32]> = places.collect();
+    let mut order: SmallVec<[EdgeByLine; 32]> = entries.collect();
     order.sort_unstable_by(|a, b| {
-        let line = |place: &Place| &edges[place.edge as usize].line;
+        let line = |entry: &EdgeByLine| &edges[entry.edge as usize].line;
         let by_key = || line(a).cmp(line(b)).then(a.edge.cmp(&b.edge));
-        a.mixed.cmp(&b.mixed).then_with(by_key)
+        a.line_hash.cmp(&b.line_hash).then_with(by_key)
     });
     order
 }
@@ -245,8 +245,9 @@ struct Event<'a> {
     change: i32,
 }
 
-/// Cancels the edges `run` of one line against each other, and appends the remaining maximal edges to `kept`.
-fn cancel_line(edges: &[OutlineEdge], run: &[Place], kept: &mut Vec<OutlineEdge>) {
+/// Cancels the edges `run`, which lie on one line, against each other, and appends the remaining maximal
+/// edges to `kept`.
+fn cancel_line(edges: &[OutlineEdge], run: &[EdgeByLine], kept: &mut Vec<OutlineEdge>) {
     let run: SmallVec<[&OutlineEdge; 16]> = run.iter().map(|p| &edges[p.edge as usize]).collect();
     let axis = run[0].line.axis();
     if let [a, b] = run[..]
@@ -265,14 +266,14 @@ fn cancel_line(edges: &[OutlineEdge], run: &[Place], kept: &mut Vec<OutlineEdge>
             change: -1,
         });
     }
-    stretches(&mut events, axis, |sum, low, high| {
-        emit(&run, sum, low, high, kept);
+    each_segment(&mut events, axis, |sum, low, high| {
+        push_copies(&run, sum, low, high, kept);
     });
 }
 
 /// Calls `emit` for each interval of a line on which the running sum of the events' changes is a nonzero
 /// constant, with the sum and both ends.
-fn stretches<'a>(
+fn each_segment<'a>(
     events: &mut [Event<'a>],
     axis: usize,
     mut emit: impl FnMut(i32, &'a Arc<Vertex>, &'a Arc<Vertex>),
@@ -300,7 +301,7 @@ fn is_opposite(a: &OutlineEdge, b: &OutlineEdge, axis: usize) -> bool {
 
 /// Appends |sum| copies of the edge between two points of a line; it runs from `low` to `high` if `sum` is
 /// positive, else back.
-fn emit(
+fn push_copies(
     run: &[&OutlineEdge],
     sum: i32,
     low: &Arc<Vertex>,
@@ -354,8 +355,8 @@ fn continues(first: &Carrier, second: &Carrier) -> bool {
     }
 }
 
-/// Return whether no corner of an outline lies outside a carrier of one of its edges, and exactly two lie on
-/// it; always true for a carrier that is an edge of the face.
+/// Return whether the plane or lattice edge that carries each edge has no corner of the outline on its outer
+/// side, and exactly two corners on it; always true for a lattice edge of the face.
 fn bounds(carrier: &Carrier, edges: &[BareEdge]) -> bool {
     let Carrier::Cut(plane, plus) = carrier else {
         return true;
@@ -421,7 +422,7 @@ pub fn pieces(polygon: Polygon, edges: &[BareEdge]) -> Vec<Polygon> {
 /// let floor = Arc::new(Plane::through(a, b, c).expect("not on a line"));
 /// let triangle = Polygon::triangle(&corners, Arc::clone(&floor));
 /// let cut = Arc::new(Plane::through(&[1, 0, 0], &[1, 1, 0], &[1, 0, 1]).expect("a plane"));
-/// let parts = halves(BareEdge::all_of(&triangle).collect(), &floor, &cut);
+/// let parts = halves(BareEdge::edges_of(&triangle).collect(), &floor, &cut);
 /// assert_eq!(parts.map(|edges| edges.len()), [4, 3]);
 /// ```
 pub fn halves(edges: Vec<BareEdge>, support: &Arc<Plane>, cut: &Arc<Plane>) -> [Vec<BareEdge>; 2] {
@@ -448,7 +449,7 @@ fn chords(edges: &[BareEdge], carrier: &Carrier, cut: &Plane, axis: usize) -> Ve
     let met = ends.filter(|(at, _)| at.side_of(cut) == Side::On);
     let mut events: Vec<Event> = met.map(|(at, change)| Event { at, change }).collect();
     let mut chords = Vec::new();
-    stretches(&mut events, axis, |sum, low, high| {
+    each_segment(&mut events, axis, |sum, low, high| {
         let (from, to) = if sum > 0 { (low, high) } else { (high, low) };
         let chord = BareEdge {
             from: Arc::clone(from),

@@ -92,7 +92,12 @@ impl Plane {
     }
 
     fn primitive(n: [i128; 3], d: Int<3>) -> Self {
-        let approx = [near(n[0]), near(n[1]), near(n[2]), d.to_f64()];
+        let approx = [
+            nearest_double(n[0]),
+            nearest_double(n[1]),
+            nearest_double(n[2]),
+            d.to_f64(),
+        ];
         Self { n, d, approx }
     }
 
@@ -103,14 +108,14 @@ impl Plane {
         let n = normal(a, b, c);
         let level = |i: &usize| a[*i] == b[*i] && b[*i] == c[*i];
         match (0..3).find(level) {
-            Some(axis) => Self::level(axis, a[axis], Sign::of(n[axis])),
+            Some(axis) => Self::axis_plane(axis, a[axis], Sign::of(n[axis])),
             None => Self::new(n, -dot_lattice(&n, a)),
         }
     }
 
     /// The plane across an axis at a lattice coordinate, its normal pointing along the axis with this sign;
     /// `None` if the sign is zero.
-    fn level(axis: usize, at: i64, sign: Sign) -> Option<Self> {
+    fn axis_plane(axis: usize, at: i64, sign: Sign) -> Option<Self> {
         let plane = Self::axis_cut(axis, 2 * at);
         match sign {
             Sign::Zero => None,
@@ -244,7 +249,7 @@ impl Plane {
 
     /// Twice the coordinate of a plane perpendicular to `axis`, if the plane lies on the lattice or halfway
     /// between lattice planes; else `None`.
-    pub fn doubled_place(&self, axis: usize) -> Option<i64> {
+    pub fn doubled_coordinate(&self, axis: usize) -> Option<i64> {
         let lead = self.n[axis];
         let short = lead.unsigned_abs() <= 2 && self.only_axis() == Some(axis);
         let offset = short.then(|| self.d.narrow::<1>()).flatten()?;
@@ -322,7 +327,7 @@ impl Plane {
     /// Returns `None` if the coefficients leave their width.
     pub fn scaled(&self, s: i64) -> Option<Self> {
         let wide: Int<4> = self.d.mul(&Int::<1>::from_i64(s));
-        Self::new(self.n, fitting(wide.narrow()?)?)
+        Self::new(self.n, if_it_fits(wide.narrow()?)?)
     }
 
     /// The image of the plane under a lattice motion: a signed permutation of the axes, then a translation.
@@ -330,12 +335,12 @@ impl Plane {
     /// Returns `None` if the coefficients leave their width.
     pub fn moved(&self, axes: &[(usize, i64); 3], shift: &Lattice) -> Option<Self> {
         let n = each_axis(|i| self.n[axes[i].0] * i128::from(axes[i].1));
-        Self::new(n, fitting(self.d - dot_lattice(&n, shift))?)
+        Self::new(n, if_it_fits(self.d - dot_lattice(&n, shift))?)
     }
 }
 
 /// The offset if planes may have one of its width, else `None`.
-fn fitting(d: Int<3>) -> Option<Int<3>> {
+fn if_it_fits(d: Int<3>) -> Option<Int<3>> {
     (d.bit_length() <= bounds::offset(COORDINATE_BITS)).then_some(d)
 }
 
@@ -373,7 +378,7 @@ fn edge_normal(a: &Lattice, b: &Lattice, axis: usize) -> [i128; 3] {
 }
 
 /// The double nearest to an integer; one machine instruction if the integer fits an `i64`.
-fn near(value: i128) -> f64 {
+fn nearest_double(value: i128) -> f64 {
     i64::try_from(value).map_or_else(|_| as_double(value), as_double)
 }
 

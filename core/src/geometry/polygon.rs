@@ -16,7 +16,8 @@ use super::vertex::Vertex;
 use crate::arith::convert::as_double;
 use crate::interrupt::poll;
 
-/// What carries an edge of a polygon: the edge lies on it and in the polygon's plane.
+/// The lattice edge or the plane that carries an edge of a polygon: the edge lies on it and in the polygon's
+/// plane.
 #[derive(Clone, Debug)]
 pub enum Carrier {
     /// A lattice edge of a face, in the face's own direction.
@@ -57,7 +58,7 @@ impl Carrier {
 
     /// Return whether no corner lies strictly on the inner side of this edge of a polygon with the plane
     /// `support`; the corners lie in that plane, too.
-    fn has_beyond(&self, support: &Plane, corners: &[Corner]) -> bool {
+    fn all_outside(&self, support: &Plane, corners: &[Corner]) -> bool {
         let axis = support.main_axis();
         let (turned, side): (bool, &dyn Fn(&Vertex) -> Side) = match self {
             Self::Edge(edge) => (support.normal()[axis] < 0, &|at| {
@@ -69,8 +70,8 @@ impl Carrier {
         corners.iter().all(|corner| side(&corner.at) != inner)
     }
 
-    /// Return whether the carrier is a wall of the cell of all lattice points, which cuts only surfaces of
-    /// half-spaces.
+    /// Return whether the carrier of a polygon's edge is a wall of the cell of all lattice points, which cuts
+    /// only surfaces of half-spaces.
     pub fn is_border(&self) -> bool {
         match self {
             Self::Edge(..) => false,
@@ -84,7 +85,7 @@ impl Carrier {
         }
     }
 
-    /// The line in which this carrier and the polygon's plane `support` meet.
+    /// The line in which the carrier of a polygon's edge and the polygon's plane `support` meet.
     pub fn line(&self, support: &PlaneResidues) -> Line {
         match self {
             Self::Edge(edge) => {
@@ -118,12 +119,12 @@ fn edge_plane(edge: &LatticeEdge, support: &Plane) -> Plane {
     }
 }
 
-/// A corner of a polygon and the carrier of the edge that leaves it.
+/// A corner of a polygon, and the lattice edge or plane that carries the edge which leaves it.
 #[derive(Clone, Debug)]
 pub struct Corner {
     /// The exact position of the corner.
     pub at: Arc<Vertex>,
-    /// The carrier of the edge to the next corner.
+    /// The lattice edge or plane that carries the edge to the next corner.
     pub edge: Carrier,
 }
 
@@ -227,8 +228,8 @@ impl Polygon {
             .collect::<Option<Corners>>()?;
         let support = Arc::clone(plane);
         Self { support, corners }
-            .inside(&walls[2 * axis])?
-            .inside(&walls[2 * axis + 1])
+            .minus_part(&walls[2 * axis])?
+            .minus_part(&walls[2 * axis + 1])
     }
 
     /// The plane in which the polygon lies.
@@ -241,7 +242,7 @@ impl Polygon {
         &self.corners
     }
 
-    /// The directed edges, counterclockwise: start, end and carrier of each.
+    /// The directed edges, counterclockwise: start, end, and the lattice edge or plane that carries each.
     pub fn edges(&self) -> impl Iterator<Item = (&Arc<Vertex>, &Arc<Vertex>, &Carrier)> {
         let n = self.corners.len();
         (0..n).map(move |i| {
@@ -338,7 +339,7 @@ impl Polygon {
 
     /// The part of the polygon on the minus side of a plane, or `None` if it has no area.
     #[must_use]
-    pub fn inside(self, cut: &Arc<Plane>) -> Option<Self> {
+    pub fn minus_part(self, cut: &Arc<Plane>) -> Option<Self> {
         let sides = self.sides(cut);
         match straddle(&sides) {
             (true, true) => Some(self.half(cut, &sides, &self.chord(cut, &sides), Side::Minus)),
@@ -353,13 +354,14 @@ impl Polygon {
         let (low, high) = (cell.low(), cell.high());
         let mut polygon = self;
         for axis in 0..3 {
-            let (below, above) = polygon.reach(axis, low[axis], high[axis]);
+            let (below, above) = polygon.may_extend_beyond(axis, low[axis], high[axis]);
             if below {
                 let wall = Arc::new(Plane::axis_cut(axis, 2 * low[axis] - 1).flipped());
-                polygon = polygon.inside(&wall)?;
+                polygon = polygon.minus_part(&wall)?;
             }
             if above {
-                polygon = polygon.inside(&Arc::new(Plane::axis_cut(axis, 2 * high[axis] + 1)))?;
+                polygon =
+                    polygon.minus_part(&Arc::new(Plane::axis_cut(axis, 2 * high[axis] + 1)))?;
             }
         }
         Some(polygon)
@@ -367,7 +369,7 @@ impl Polygon {
 
     /// Return whether the polygon may reach half a step below `low` along an axis, and whether it may reach
     /// half a step above `high`; may return false positives.
-    fn reach(&self, axis: usize, low: i64, high: i64) -> (bool, bool) {
+    fn may_extend_beyond(&self, axis: usize, low: i64, high: i64) -> (bool, bool) {
         let (mut below, mut above) = (false, false);
         for corner in &self.corners {
             if let Some(p) = corner.at.as_lattice() {
@@ -400,14 +402,14 @@ impl Polygon {
 
     /// Return whether, of two polygons in one plane, one lies entirely on the outer side of an edge of the
     /// other.
-    pub fn lies_beside(&self, other: &Self) -> bool {
+    pub fn is_separated_from(&self, other: &Self) -> bool {
         poll();
-        self.has_beyond_an_edge(other) || other.has_beyond_an_edge(self)
+        self.is_outside_an_edge_of(other) || other.is_outside_an_edge_of(self)
     }
 
-    fn has_beyond_an_edge(&self, other: &Self) -> bool {
+    fn is_outside_an_edge_of(&self, other: &Self) -> bool {
         let mut edges = self.corners.iter().map(|corner| &corner.edge);
-        edges.any(|edge| edge.has_beyond(&self.support, &other.corners))
+        edges.any(|edge| edge.all_outside(&self.support, &other.corners))
     }
 
     /// The low and high corner of a box of doubles around the polygon, widened by the rounding of its

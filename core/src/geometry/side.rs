@@ -158,22 +158,22 @@ impl Orientation {
     }
 }
 
-/// Where a convex piece lies relative to a hyperplane; touching it does not count as crossing.
+/// The position of a convex set relative to a hyperplane; touching it does not count as crossing.
 ///
 /// Only a piece that is crossed is divided: the other cases mean the whole piece.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Split<T> {
-    /// The piece's relative interior is on the minus side.
+    /// The relative interior of the convex set is on the minus side.
     Minus,
-    /// The piece's relative interior is on the plus side.
+    /// The relative interior of the convex set is on the plus side.
     Plus,
-    /// Points of the piece lie strictly on both sides.
+    /// Points of the convex set lie strictly on both sides.
     Both {
         /// The part on the minus side.
         minus: T,
         /// The part on the plus side.
         plus: T,
     },
-    /// The piece lies in the hyperplane, with this orientation relative to it.
+    /// The convex set lies in the hyperplane, with this orientation relative to it.
     Coplanar(Orientation),
 }

@@ -47,16 +47,16 @@ pub const MAX_COORDINATE_ERROR: f64 = 8.0 * f64::EPSILON;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Vertex {
-    place: Place,
+    definition: Definition,
     approx: [f64; 4],
 }
 
 #[derive(Clone, Debug)]
-enum Place {
+enum Definition {
     Lattice(Lattice),
     OnEdge(LatticeEdge, Arc<Plane>),
     Meet([Arc<Plane>; 3]),
-    Given(Box<Homogeneous>),
+    Homogeneous(Box<Homogeneous>),
 }
 
 /// A fingerprint of a point: its coordinates modulo a prime. Equal points share it; two unequal points do so
@@ -69,7 +69,7 @@ impl Vertex {
     pub fn lattice(p: Lattice) -> Self {
         Self {
             approx: [as_double(p[0]), as_double(p[1]), as_double(p[2]), 1.0],
-            place: Place::Lattice(p),
+            definition: Definition::Lattice(p),
         }
     }
 
@@ -79,8 +79,8 @@ impl Vertex {
             return Some(Self::lattice(point));
         }
         let approx = Coordinates::of_planes(a, b, c)?.approx();
-        let place = Place::Meet([a, b, c].map(Arc::clone));
-        Some(Self { place, approx })
+        let definition = Definition::Meet([a, b, c].map(Arc::clone));
+        Some(Self { definition, approx })
     }
 
     /// The vertex where the line through a lattice edge meets a plane; `None` if the two are parallel.
@@ -89,22 +89,22 @@ impl Vertex {
             return Some(Self::lattice(point));
         }
         let approx = Coordinates::on_edge(edge, cut)?.approx();
-        let place = Place::OnEdge(edge.clone(), Arc::clone(cut));
-        Some(Self { place, approx })
+        let definition = Definition::OnEdge(edge.clone(), Arc::clone(cut));
+        Some(Self { definition, approx })
     }
 
     /// The vertex with these homogeneous coordinates; w must be positive.
     pub fn homogeneous(x: [Int<6>; 3], w: Int<6>) -> Self {
         let given = Homogeneous { x, w };
         let approx = given.approx();
-        let place = Place::Given(Box::new(given));
-        Self { place, approx }
+        let definition = Definition::Homogeneous(Box::new(given));
+        Self { definition, approx }
     }
 
     /// The lattice point, if the vertex is stored as one; `None` for a constructed vertex.
     pub fn as_lattice(&self) -> Option<&Lattice> {
-        match &self.place {
-            Place::Lattice(p) => Some(p),
+        match &self.definition {
+            Definition::Lattice(p) => Some(p),
             _ => None,
         }
     }
@@ -119,11 +119,11 @@ impl Vertex {
 
     /// The exact homogeneous coordinates, computed from the construction.
     fn exact(&self) -> Coordinates {
-        let known = match &self.place {
-            Place::Lattice(p) => return Coordinates::of_lattice(p),
-            Place::Given(h) => return Coordinates::Long((**h).clone()),
-            Place::OnEdge(edge, cut) => Coordinates::on_edge(edge, cut),
-            Place::Meet([a, b, c]) => Coordinates::of_planes(a, b, c),
+        let known = match &self.definition {
+            Definition::Lattice(p) => return Coordinates::of_lattice(p),
+            Definition::Homogeneous(h) => return Coordinates::Long((**h).clone()),
+            Definition::OnEdge(edge, cut) => Coordinates::on_edge(edge, cut),
+            Definition::Meet([a, b, c]) => Coordinates::of_planes(a, b, c),
         };
         known.expect("what met when the point was made still meets")
     }
@@ -143,18 +143,18 @@ impl Vertex {
     }
 
     /// Return whether this may be the given lattice point, by doubles; may return false positives.
-    pub fn may_be(&self, place: &Lattice) -> bool {
+    pub fn may_lie_at(&self, point: &Lattice) -> bool {
         let (low, high) = self.bounds();
-        (0..3).all(|i| low[i] <= as_double(place[i]) && as_double(place[i]) <= high[i])
+        (0..3).all(|i| low[i] <= as_double(point[i]) && as_double(point[i]) <= high[i])
     }
 
     /// The side of a plane on which the point lies, exactly.
     pub fn side_of(&self, plane: &Plane) -> Side {
-        match &self.place {
-            Place::Lattice(p) => plane.side_of_lattice(p),
+        match &self.definition {
+            Definition::Lattice(p) => plane.side_of_lattice(p),
             _ => match self.filtered_side(plane) {
                 Filtered::Certain(side) => side,
-                Filtered::Doubtful if self.is_known_in(plane) => Side::On,
+                Filtered::Doubtful if self.is_defined_by(plane) => Side::On,
                 Filtered::Doubtful => self.exact().side_of(plane),
             },
         }
@@ -164,8 +164,8 @@ impl Vertex {
     /// axis.
     pub fn side_of_edge(&self, edge: &LatticeEdge, axis: usize) -> Side {
         let (a, b) = edge.ends();
-        match &self.place {
-            Place::Lattice(p) => Side::from_sign(edge.sign_beside(p, axis)),
+        match &self.definition {
+            Definition::Lattice(p) => Side::from_sign(edge.sign_beside(p, axis)),
             _ => match self.near_side_of_edge(edge, axis) {
                 Filtered::Certain(side) => side,
                 Filtered::Doubtful => self.side_of(&Plane::beside_edge(a, b, axis)),
@@ -215,26 +215,31 @@ impl Vertex {
     }
 
     /// Return whether the point lies in a plane because its construction says so; may return false negatives.
-    fn is_known_in(&self, plane: &Plane) -> bool {
+    fn is_defined_by(&self, plane: &Plane) -> bool {
         let is_it = |own: &Arc<Plane>| {
             std::ptr::eq(Arc::as_ptr(own), plane) || own.coincides(plane).is_some()
         };
-        match &self.place {
-            Place::OnEdge(edge, cut) => is_it(cut) || edge.lies_in(plane),
-            Place::Meet(planes) => planes.iter().any(is_it),
+        match &self.definition {
+            Definition::OnEdge(edge, cut) => is_it(cut) || edge.lies_in(plane),
+            Definition::Meet(planes) => planes.iter().any(is_it),
             _ => false,
         }
     }
 
     /// The exact order of two points by their coordinate along an axis.
     pub fn compare(&self, other: &Self, axis: usize) -> Ordering {
-        if let (Place::Lattice(p), Place::Lattice(q)) = (&self.place, &other.place) {
+        if let (Definition::Lattice(p), Definition::Lattice(q)) =
+            (&self.definition, &other.definition)
+        {
             return p[axis].cmp(&q[axis]);
         }
         if let Filtered::Certain(order) = self.near_order(other, axis) {
             return order;
         }
-        if let (Some(p), Some(q)) = (self.doubled(axis), other.doubled(axis)) {
+        if let (Some(p), Some(q)) = (
+            self.doubled_coordinate(axis),
+            other.doubled_coordinate(axis),
+        ) {
             return p.cmp(&q);
         }
         self.exact().compare(&other.exact(), axis)
@@ -242,13 +247,15 @@ impl Vertex {
 
     /// The exact order of two points of one line by a coordinate that changes along the line.
     pub fn compare_along(&self, other: &Self, axis: usize) -> Ordering {
-        if let (Place::Lattice(p), Place::Lattice(q)) = (&self.place, &other.place) {
+        if let (Definition::Lattice(p), Definition::Lattice(q)) =
+            (&self.definition, &other.definition)
+        {
             return p[axis].cmp(&q[axis]);
         }
         if let Filtered::Certain(order) = self.near_order(other, axis) {
             return order;
         }
-        if self.same(other) {
+        if self.equals(other) {
             return Ordering::Equal;
         }
         self.compare(other, axis)
@@ -278,27 +285,38 @@ impl Vertex {
     ///
     /// The planes and edges of a construction have one common point, so a point that lies in all of them is
     /// the same point.
-    pub fn same(&self, other: &Self) -> bool {
-        if let (Place::Lattice(p), Place::Lattice(q)) = (&self.place, &other.place) {
+    pub fn equals(&self, other: &Self) -> bool {
+        if let (Definition::Lattice(p), Definition::Lattice(q)) =
+            (&self.definition, &other.definition)
+        {
             return p == q;
         }
         if (0..3).any(|axis| self.near_order(other, axis).is_certain()) {
             return false;
         }
-        match (&self.place, &other.place) {
-            (Place::Lattice(p), _) => other.is_at(p),
-            (_, Place::Lattice(p)) => self.is_at(p),
-            (Place::OnEdge(edge, cut), Place::OnEdge(same, _)) if edge.shares_ends(same) => {
+        match (&self.definition, &other.definition) {
+            (Definition::Lattice(p), _) => other.is_at(p),
+            (_, Definition::Lattice(p)) => self.is_at(p),
+            (Definition::OnEdge(edge, cut), Definition::OnEdge(same, _))
+                if edge.shares_ends(same) =>
+            {
                 other.side_of(cut) == Side::On
             }
-            (Place::Meet(planes), _) => planes.iter().all(|plane| other.side_of(plane) == Side::On),
-            (_, Place::Meet(planes)) => planes.iter().all(|plane| self.side_of(plane) == Side::On),
+            (Definition::Meet(planes), _) => {
+                planes.iter().all(|plane| other.side_of(plane) == Side::On)
+            }
+            (_, Definition::Meet(planes)) => {
+                planes.iter().all(|plane| self.side_of(plane) == Side::On)
+            }
             _ => self.has_coordinates_of(other),
         }
     }
 
     fn has_coordinates_of(&self, other: &Self) -> bool {
-        let doubled = |axis: usize| self.doubled(axis).zip(other.doubled(axis));
+        let doubled = |axis: usize| {
+            self.doubled_coordinate(axis)
+                .zip(other.doubled_coordinate(axis))
+        };
         if let [Some(x), Some(y), Some(z)] = each_axis(doubled) {
             return [x, y, z].iter().all(|(p, q)| p == q);
         }
@@ -307,36 +325,36 @@ impl Vertex {
     }
 
     /// Return whether this vertex is the given lattice point, exactly.
-    pub fn is_at(&self, place: &Lattice) -> bool {
-        match &self.place {
-            Place::Lattice(p) => p == place,
-            Place::OnEdge(edge, cut) => {
-                edge.line_holds(place) && cut.side_of_lattice(place) == Side::On
+    pub fn is_at(&self, point: &Lattice) -> bool {
+        match &self.definition {
+            Definition::Lattice(p) => p == point,
+            Definition::OnEdge(edge, cut) => {
+                edge.line_contains(point) && cut.side_of_lattice(point) == Side::On
             }
-            Place::Meet(planes) => planes.iter().all(|p| p.side_of_lattice(place) == Side::On),
-            Place::Given(_) => self.has_coordinates_of(&Self::lattice(*place)),
+            Definition::Meet(planes) => planes.iter().all(|p| p.side_of_lattice(point) == Side::On),
+            Definition::Homogeneous(_) => self.has_coordinates_of(&Self::lattice(*point)),
         }
     }
 
     /// Twice the coordinate along an axis, if the construction fixes it at a multiple of half a lattice step;
     /// else `None`.
-    pub fn doubled(&self, axis: usize) -> Option<i64> {
-        match &self.place {
-            Place::Lattice(p) => Some(2 * p[axis]),
-            Place::OnEdge(edge, cut) => {
+    pub fn doubled_coordinate(&self, axis: usize) -> Option<i64> {
+        match &self.definition {
+            Definition::Lattice(p) => Some(2 * p[axis]),
+            Definition::OnEdge(edge, cut) => {
                 let (a, b) = edge.ends();
                 let along = (a[axis] == b[axis]).then(|| 2 * a[axis]);
-                along.or_else(|| cut.doubled_place(axis))
+                along.or_else(|| cut.doubled_coordinate(axis))
             }
-            Place::Meet(planes) => planes.iter().find_map(|p| p.doubled_place(axis)),
-            Place::Given(_) => None,
+            Definition::Meet(planes) => planes.iter().find_map(|p| p.doubled_coordinate(axis)),
+            Definition::Homogeneous(_) => None,
         }
     }
 
     /// The fingerprint of the point, which does not depend on the construction.
     pub fn key(&self) -> VertexKey {
-        match &self.place {
-            Place::Lattice(p) => VertexKey(p.map(|c| residue::<P1>(c.into()))),
+        match &self.definition {
+            Definition::Lattice(p) => VertexKey(p.map(|c| residue::<P1>(c.into()))),
             _ => VertexKey(self.exact().residues()),
         }
     }
@@ -379,11 +397,11 @@ mod tests {
     proptest! {
         #[test]
         fn points_lie_beside_edges_as_beside_the_planes_through_them(
-            [a, b, p, q] in [point(), point(), point(), point()], axis in 0..3usize, place in -4i64..=4,
+            [a, b, p, q] in [point(), point(), point(), point()], axis in 0..3usize, at in -4i64..=4,
         ) {
             let edge = LatticeEdge::new(a, b);
             let plane = Plane::beside_edge(&a, &b, axis);
-            let cut = Arc::new(Plane::axis_cut(axis, place));
+            let cut = Arc::new(Plane::axis_cut(axis, at));
             let crossing = Vertex::on_edge(&LatticeEdge::new(p, q), &cut);
             // Doubles cannot decide the side of a point of the edge itself.
             let own = Vertex::on_edge(&edge, &cut);

@@ -15,8 +15,8 @@ use crate::geometry::vertex::{Vertex, MAX_COORDINATE_ERROR};
 pub struct VertexTable {
     points: Vec<Arc<Vertex>>,
     /// The points in doubles, each coordinate within three units in the last place.
-    places: Vec<[f64; 3]>,
-    /// The number of the last point with each fingerprint of a [`Blur`].
+    positions: Vec<[f64; 3]>,
+    /// The number of the last point with each fingerprint of a [`RoundedPoint`].
     last: HashMap<u64, u32>,
     /// For each point, the number of the previous point with the same fingerprint, or [`NONE`].
     previous: Vec<u32>,
@@ -26,20 +26,20 @@ const NONE: u32 = u32::MAX;
 
 impl VertexTable {
     /// The number of a point, added if it is new: found by its rounded doubles and confirmed exactly.
-    pub fn number(&mut self, vertex: &Arc<Vertex>) -> u32 {
-        let place = vertex.approx();
-        self.find_at(vertex, &place).unwrap_or_else(|| {
-            let lattice = lattice_place(vertex, &place);
+    pub fn number_of(&mut self, vertex: &Arc<Vertex>) -> u32 {
+        let position = vertex.approx();
+        self.find_at(vertex, &position).unwrap_or_else(|| {
+            let lattice = nearest_lattice_point(vertex, &position);
             let lattice = lattice.map(|p| Arc::new(Vertex::lattice(p)));
             self.add(lattice.unwrap_or_else(|| Arc::clone(vertex)))
         })
     }
 
     /// The number of a lattice point, which is added if it is new.
-    pub fn number_at(&mut self, place: Lattice) -> u32 {
-        let vertex = Vertex::lattice(place);
-        let place = vertex.approx();
-        let known = self.find_at(&vertex, &place);
+    pub fn number_at(&mut self, position: Lattice) -> u32 {
+        let vertex = Vertex::lattice(position);
+        let position = vertex.approx();
+        let known = self.find_at(&vertex, &position);
         known.unwrap_or_else(|| self.add(Arc::new(vertex)))
     }
 
@@ -48,31 +48,36 @@ impl VertexTable {
         self.find_at(vertex, &vertex.approx())
     }
 
-    fn find_at(&self, vertex: &Vertex, place: &[f64; 3]) -> Option<u32> {
-        let [low, high] = [Blur::lowest(place), Blur::highest(place)];
+    fn find_at(&self, vertex: &Vertex, position: &[f64; 3]) -> Option<u32> {
+        let [low, high] = [
+            RoundedPoint::lower_end(position),
+            RoundedPoint::upper_end(position),
+        ];
         if low == high {
-            return self.among(low.fingerprint(), vertex);
+            return self.find_among(low.fingerprint(), vertex);
         }
-        let corner = |i: usize| Blur::mixed(&low, &high, i);
-        (0..8).find_map(|i| self.among(corner(i).fingerprint(), vertex))
+        let corner = |i: usize| RoundedPoint::combined(&low, &high, i);
+        (0..8).find_map(|i| self.find_among(corner(i).fingerprint(), vertex))
     }
 
     fn add(&mut self, vertex: Arc<Vertex>) -> u32 {
-        let place = vertex.approx();
+        let position = vertex.approx();
         let next = as_number(self.points.len());
-        let before = self.last.insert(Blur::of(&place).fingerprint(), next);
+        let before = self
+            .last
+            .insert(RoundedPoint::of(&position).fingerprint(), next);
         self.previous.push(before.unwrap_or(NONE));
         self.points.push(vertex);
-        self.places.push(place);
+        self.positions.push(position);
         next
     }
 
     /// The number of the point that equals a vertex, among the points with one fingerprint; `None` if none
     /// does.
-    fn among(&self, fingerprint: u64, vertex: &Vertex) -> Option<u32> {
+    fn find_among(&self, fingerprint: u64, vertex: &Vertex) -> Option<u32> {
         let before = |id: &u32| Some(self.previous[*id as usize]).filter(|p| *p != NONE);
         let last = self.last.get(&fingerprint).copied();
-        std::iter::successors(last, before).find(|id| self.point(*id).same(vertex))
+        std::iter::successors(last, before).find(|id| self.point(*id).equals(vertex))
     }
 
     /// The exact point with this number.
@@ -81,8 +86,8 @@ impl VertexTable {
     }
 
     /// The coordinates of the point with this number, in doubles.
-    pub fn place(&self, id: u32) -> &[f64; 3] {
-        &self.places[id as usize]
+    pub fn position(&self, id: u32) -> &[f64; 3] {
+        &self.positions[id as usize]
     }
 
     /// Return whether the table has no points.
@@ -98,13 +103,13 @@ impl VertexTable {
 
 /// The lattice point that a constructed vertex equals; `None` if it equals none or is stored as a lattice
 /// point.
-fn lattice_place(vertex: &Vertex, place: &[f64; 3]) -> Option<Lattice> {
+fn nearest_lattice_point(vertex: &Vertex, position: &[f64; 3]) -> Option<Lattice> {
     if vertex.as_lattice().is_some() {
         return None;
     }
-    let nearest = place.map(|c| as_whole(c.round()));
+    let nearest = position.map(|c| as_whole(c.round()));
     let near = |i: usize| {
-        (place[i] - as_double(nearest[i])).abs() <= place[i].abs() * MAX_COORDINATE_ERROR
+        (position[i] - as_double(nearest[i])).abs() <= position[i].abs() * MAX_COORDINATE_ERROR
     };
     ((0..3).all(near) && vertex.is_at(&nearest)).then_some(nearest)
 }
@@ -112,11 +117,11 @@ fn lattice_place(vertex: &Vertex, place: &[f64; 3]) -> Option<Lattice> {
 /// A point in doubles, each coordinate rounded to about forty leading bits.
 ///
 /// The bits of positive doubles have the order of their values. So the bits of two doubles that approximate
-/// one coordinate differ by less than [`Blur::DOUBT`], and nearly always round to the same ones.
+/// one coordinate differ by less than [`RoundedPoint::DOUBT`], and nearly always round to the same ones.
 #[derive(Clone, Copy, PartialEq, Eq)]
-struct Blur([u64; 3]);
+struct RoundedPoint([u64; 3]);
 
-impl Blur {
+impl RoundedPoint {
     /// The number of low bits of each double that are rounded away.
     const BITS: u32 = 12;
 
@@ -126,22 +131,22 @@ impl Blur {
 
     const HALF: u64 = 1 << (Self::BITS - 1);
 
-    fn of(place: &[f64; 3]) -> Self {
-        Self(place.map(|c| (digits(c) + Self::HALF) >> Self::BITS))
+    fn of(position: &[f64; 3]) -> Self {
+        Self(position.map(|c| (bits_of(c) + Self::HALF) >> Self::BITS))
     }
 
-    /// The blur of the doubles of least magnitude that may approximate the same point.
-    fn lowest(place: &[f64; 3]) -> Self {
-        Self(place.map(|c| (digits(c) + Self::HALF - Self::DOUBT) >> Self::BITS))
+    /// The rounded point of the doubles of least magnitude that may approximate the same point.
+    fn lower_end(position: &[f64; 3]) -> Self {
+        Self(position.map(|c| (bits_of(c) + Self::HALF - Self::DOUBT) >> Self::BITS))
     }
 
-    /// The blur of the doubles of greatest magnitude that may approximate the same point.
-    fn highest(place: &[f64; 3]) -> Self {
-        Self(place.map(|c| (digits(c) + Self::HALF + Self::DOUBT) >> Self::BITS))
+    /// The rounded point of the doubles of greatest magnitude that may approximate the same point.
+    fn upper_end(position: &[f64; 3]) -> Self {
+        Self(position.map(|c| (bits_of(c) + Self::HALF + Self::DOUBT) >> Self::BITS))
     }
 
-    /// The blur that takes coordinate i from `high` if bit i of `bits` is set, else from `low`.
-    fn mixed(low: &Self, high: &Self, bits: usize) -> Self {
+    /// The rounded point that takes coordinate i from `high` if bit i of `bits` is set, else from `low`.
+    fn combined(low: &Self, high: &Self, bits: usize) -> Self {
         let pick = |i: usize| {
             if bits >> i & 1 == 0 {
                 low.0[i]
@@ -158,7 +163,7 @@ impl Blur {
 }
 
 /// The bits of a finite double, with −0 as +0.
-fn digits(c: f64) -> u64 {
+fn bits_of(c: f64) -> u64 {
     (c + 0.0).to_bits()
 }
 
@@ -173,7 +178,7 @@ mod tests {
         let wall = |axis: usize, at: i64| Arc::new(Plane::axis_cut(axis, at));
         // A meet of three planes, and the same point as a lattice point.
         let met = Vertex::meet(&wall(0, 6), &wall(1, 4), &wall(2, 2)).expect("a corner");
-        let first = table.number(&Arc::new(met));
+        let first = table.number_of(&Arc::new(met));
         assert_eq!(table.number_at([3, 2, 1]), first);
         assert_ne!(table.number_at([3, 2, 2]), first);
         assert_eq!(

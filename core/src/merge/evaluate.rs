@@ -7,7 +7,7 @@ use super::descent::counters::Counters;
 use super::descent::descend::Descent;
 use super::expression::{Expression, Term};
 use super::lists::list::Sources;
-use super::places::overlaps_at;
+use super::overlaps::overlaps_itself_at;
 use super::profile::{Declined, Profile};
 use super::rule::Rule;
 use super::twins::without_twins;
@@ -19,7 +19,7 @@ use crate::mesh::grid::Pitch;
 use crate::mesh::source::Source;
 use crate::tree::node::Branch;
 use crate::tree::solid::Solid;
-use crate::tree::table::Table;
+use crate::tree::table::SourceTable;
 
 /// If kernels solved this many elements (faces or parts of faces) to make an operand, the next operation on
 /// it probably takes as long, a millisecond or more, and runs in the thread pool; waking the pool takes about
@@ -68,7 +68,7 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
     let expression = merged.as_ref().unwrap_or(expression);
     let mut operands: Vec<Solid> = solids.iter().map(bounding).collect();
     let mut profile = Profile::default();
-    let reason = match fresh_pair(expression, &operands, pitch, &mut profile) {
+    let reason = match evaluate_imported_pair(expression, &operands, pitch, &mut profile) {
         Ok((solid, counters)) => return Ok((solid, counters.with(profile))),
         Err(reason) => reason,
     };
@@ -76,14 +76,14 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
     let mut overlaps: Vec<usize> = reason.overlapping().into_iter().collect();
     let mut is_first = overlaps.is_empty();
     loop {
-        unite_those(&mut operands, &overlaps, &mut profile)?;
+        unite_operands(&mut operands, &overlaps, &mut profile)?;
         let sources = Sources::new(joint_table(&operands));
         let is_open = |k: &usize| !operands[*k].is_reduced();
         let doubted = (0..operands.len()).filter(is_open).collect();
         let descent = Descent::new(&sources, Rule::Positive, true, operands.len());
         // Usually only one operand overlaps itself, so the first descent ends at the first one found. If
         // later descents ended as early, each of many such operands would cost a descent.
-        let descent = descent.doubting(doubted, std::mem::take(&mut is_first));
+        let descent = descent.with_doubted(doubted, std::mem::take(&mut is_first));
         let roots = operands.iter().map(|s| s.root().clone()).collect();
         let run = |roots| descent.run(expression.clone(), roots);
         let visit = || {
@@ -93,14 +93,16 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
                 run(roots)
             }
         };
-        let cells = |_: &Result<Branch>| descent.counters.visited();
+        let cells = |_: &Result<Branch>| descent.counters.cells_visited();
         let root = profile.timed("descent", visit, cells)?;
         overlaps = descent.overlapping();
         if overlaps.is_empty() {
             let table = sources.table().clone();
-            let named = operands.iter().map(Solid::named).max().unwrap_or(0);
-            let solid = Solid::new(root, pitch, table, false).outgrowing(named);
-            let solid = solid.made_of(&operands).by_effort(descent.counters.taken());
+            let named = operands.iter().map(Solid::used_sources).max().unwrap_or(0);
+            let solid = Solid::new(root, pitch, table, false).without_unused_sources(named);
+            let solid = solid
+                .resulting_from(&operands)
+                .with_effort(descent.counters.elements_solved());
             return Ok((solid, descent.counters.with(profile)));
         }
         if !overlaps.iter().any(is_open) {
@@ -111,7 +113,7 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
 
 /// Replaces each operand with an index in `numbers` by its union with itself, unless it is known not to
 /// overlap itself.
-fn unite_those(operands: &mut [Solid], numbers: &[usize], profile: &mut Profile) -> Result<()> {
+fn unite_operands(operands: &mut [Solid], numbers: &[usize], profile: &mut Profile) -> Result<()> {
     for k in numbers {
         let operand = &operands[*k];
         if !operand.is_reduced() {
@@ -125,7 +127,7 @@ fn unite_those(operands: &mut [Solid], numbers: &[usize], profile: &mut Profile)
 
 /// Evaluates an expression over two meshes as they were imported, by comparing all their faces at once; the
 /// error is the reason why this is not possible.
-fn fresh_pair(
+fn evaluate_imported_pair(
     expression: &Expression,
     operands: &[Solid],
     pitch: Pitch,
@@ -145,12 +147,12 @@ fn fresh_pair(
     }?;
     let counters = Counters::default();
     counters.count_leaf(found.compared);
-    let named = operands.iter().map(Solid::named).max().unwrap_or(0);
+    let named = operands.iter().map(Solid::used_sources).max().unwrap_or(0);
     let solid = Solid::new(found.root, pitch, sources.table().clone(), false);
     let solid = solid
-        .outgrowing(named)
-        .made_of(operands)
-        .by_effort(counters.taken());
+        .without_unused_sources(named)
+        .resulting_from(operands)
+        .with_effort(counters.elements_solved());
     Ok((solid, counters))
 }
 
@@ -165,8 +167,8 @@ fn bounding(solid: &Solid) -> Solid {
 
 /// Returns `error`, or `BadSnapshot` if the error is internal and the solid overlaps itself although the
 /// stored data it was read from claim the contrary.
-pub fn explained(solid: &Solid, error: Error) -> Error {
-    if error.kind() != ErrorKind::Internal || !solid.is_claimed() {
+pub fn blamed_on_snapshot(solid: &Solid, error: Error) -> Error {
+    if error.kind() != ErrorKind::Internal || !solid.is_reduced_by_claim() {
         return error;
     }
     let doubted = solid.clone().with_reduced(false);
@@ -185,7 +187,7 @@ fn false_claim() -> Error {
 /// Returns the error for operands (`suspects` are their indices) that overlap themselves though they were
 /// marked as reduced: a snapshot or the caller's claim about a mesh was wrong, or there is a defect.
 fn wrongly_reduced(operands: &[Solid], suspects: &[usize]) -> Error {
-    if suspects.iter().any(|k| operands[*k].is_claimed()) {
+    if suspects.iter().any(|k| operands[*k].is_reduced_by_claim()) {
         return false_claim();
     }
     let errors = suspects.iter().map(|k| wrong_source(&operands[*k], *k));
@@ -205,7 +207,7 @@ fn wrong_source(operand: &Solid, number: usize) -> Option<Error> {
             Ok(true) => {
                 let text = format!(
                     "operand {number} overlaps itself: its input mesh {slot} (source {}) was \
-                     declared trusted, but has overlapping faces",
+                     declared trusted, but has overlapping faces; do not declare this mesh trusted",
                     source.id()
                 );
                 return Some(Error::new(ErrorKind::NotReduced, text));
@@ -239,7 +241,7 @@ pub fn is_simple(solid: &Solid, suspects: &[Lattice]) -> Result<bool> {
     if let Some(found) = is_simple_mesh(solid) {
         return Ok(*solid.simple().get_or_make(|| found));
     }
-    if overlaps_at(solid, suspects) {
+    if overlaps_itself_at(solid, suspects) {
         return Ok(*solid.simple().get_or_make(|| false));
     }
     normalize(solid, Rule::Positive)?;
@@ -258,7 +260,7 @@ pub fn normalize(solid: &Solid, rule: Rule) -> Result<Solid> {
     if rule != Rule::Positive {
         return unite(solid, rule);
     }
-    if let Some(known) = settled(solid)? {
+    if let Some(known) = union_with_itself(solid)? {
         return Ok(known);
     }
     let united = unite(solid, rule)?;
@@ -270,7 +272,7 @@ pub fn normalize(solid: &Solid, rule: Rule) -> Result<Solid> {
 ///
 /// # Errors
 /// `Internal`.
-pub fn settled(solid: &Solid) -> Result<Option<Solid>> {
+pub fn union_with_itself(solid: &Solid) -> Result<Option<Solid>> {
     if let Some(known) = solid.united().get() {
         return Ok(Some(known.clone()));
     }
@@ -286,7 +288,7 @@ fn simple_by_meshes(solid: &Solid) -> Result<Option<bool>> {
     if solid.is_reduced() {
         return Ok(Some(true));
     }
-    let Some(meshes) = solid.doubts() else {
+    let Some(meshes) = solid.unchecked_meshes() else {
         return Ok(None);
     };
     for mesh in meshes {
@@ -359,9 +361,9 @@ fn common_pitch(expression: &Expression, solids: &[Solid]) -> Result<Pitch> {
 }
 
 /// Returns all sources of the operands, in the order in which operands first name them.
-fn joint_table(solids: &[Solid]) -> Table {
+fn joint_table(solids: &[Solid]) -> SourceTable {
     let tables = solids.iter().map(Solid::sources);
-    tables.fold(Table::default(), |all, one| {
+    tables.fold(SourceTable::default(), |all, one| {
         if all.is_empty() {
             one.clone()
         } else {
@@ -397,9 +399,9 @@ mod tests {
             (counters.named(), SHARES.load(Ordering::Relaxed) - before)
         };
         let step = made_of(&[cuboid([1; 3], [9; 3]), cuboid([2; 3], [12; 3])], Term::Or);
-        let [first, second] = [step.by_effort(0), cuboid([5; 3], [13; 3])];
+        let [first, second] = [step.with_effort(0), cuboid([5; 3], [13; 3])];
         let (short, none) = shared(&[first.clone(), second.clone()]);
-        let (long, one) = shared(&[first.by_effort(POOL_AFTER), second]);
+        let (long, one) = shared(&[first.with_effort(POOL_AFTER), second]);
         assert_eq!((none, one), (0, 1));
         assert_eq!(short, long);
     }
@@ -409,7 +411,7 @@ mod tests {
         let solids = [cuboid([1; 3], [9; 3]), cuboid([5; 3], [13; 3])];
         let (union, counters) = evaluate(&both(Term::Or), &solids).expect("not stopped");
         assert_eq!(solids[0].effort(), 0);
-        assert_eq!(union.effort(), counters.taken());
+        assert_eq!(union.effort(), counters.elements_solved());
         assert_eq!(union.effort(), 12);
     }
 }

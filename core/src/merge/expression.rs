@@ -64,7 +64,7 @@ pub struct Expression {
 /// An expression split into two smaller ones of which it is the union, intersection or symmetric difference,
 /// or the complement of that.
 #[derive(Debug)]
-pub struct Parted {
+pub struct SplitExpression {
     /// The two smaller expressions; they have no operand in common.
     pub halves: [Expression; 2],
     /// The expression that combines the two smaller ones: `halves[0]` is operand 0 and `halves[1]` is operand
@@ -72,7 +72,7 @@ pub struct Parted {
     pub whole: Expression,
 }
 
-impl Parted {
+impl SplitExpression {
     /// Returns the ascending operand indices of each of the two smaller expressions.
     pub fn operands(&self) -> [Vec<u32>; 2] {
         self.halves.each_ref().map(Expression::operands)
@@ -132,7 +132,7 @@ impl Expression {
     /// Splits the arguments of the last operation into two expressions with about half of the operands each;
     /// of a symmetric difference, the last argument becomes an expression alone. `None` if the last operation
     /// has fewer than two arguments, or if an operand would occur in both expressions.
-    pub fn parted(&self) -> Option<Parted> {
+    pub fn split(&self) -> Option<SplitExpression> {
         let mut top = self.terms.len() - 1;
         let mut negate = false;
         while let Term::Not(line) = &self.terms[top] {
@@ -168,7 +168,7 @@ impl Expression {
             terms.push(Term::Not(2));
         }
         let whole = Self { terms };
-        Some(Parted { halves, whole })
+        Some(SplitExpression { halves, whole })
     }
 
     /// Returns for each line how often operands occur in it once earlier lines are substituted; at least 1.
@@ -255,27 +255,32 @@ impl Expression {
         self.words_of_lines(behind, &mut changes);
         self.words_of_lines(in_front, &mut others);
         changes.iter_mut().zip(&others).for_each(|(c, o)| *c ^= o);
-        let mut asked = vec![0; changes.len()];
-        asked[changes.len() - 1] = changes[changes.len() - 1];
+        let mut owned = vec![0; changes.len()];
+        owned[changes.len() - 1] = changes[changes.len() - 1];
         let mut owners = Vec::new();
         for (i, term) in self.terms.iter().enumerate().rev() {
-            let found = asked[i];
+            let found = owned[i];
             match term {
                 Term::Operand(k) if found != 0 => owners.push((*k, found)),
-                Term::Xor(list) => ask(found, list.iter().rev(), &changes, &mut asked),
-                _ => ask(found, term.arguments().iter(), &changes, &mut asked),
+                Term::Xor(list) => assign_owners(found, list.iter().rev(), &changes, &mut owned),
+                _ => assign_owners(found, term.arguments().iter(), &changes, &mut owned),
             }
         }
         owners
     }
 }
 
-/// Marks for each point (a bit of `places`) the first of `lines` whose value changes there, as the line that
+/// Marks for each point (a bit of `points`) the first of `lines` whose value changes there, as the line that
 /// owns the face.
-fn ask<'a>(places: u64, lines: impl Iterator<Item = &'a u32>, changes: &[u64], asked: &mut [u64]) {
-    let mut open = places;
+fn assign_owners<'a>(
+    points: u64,
+    lines: impl Iterator<Item = &'a u32>,
+    changes: &[u64],
+    owned: &mut [u64],
+) {
+    let mut open = points;
     for line in lines.map(|line| *line as usize) {
-        asked[line] |= open & changes[line];
+        owned[line] |= open & changes[line];
         open &= !changes[line];
     }
 }

@@ -14,8 +14,8 @@ pub struct Stage {
     pub count: usize,
 }
 
-/// A reason why the arrangement (which compares all faces at once) leaves the work to the descent through
-/// cells.
+/// A reason why a Boolean expression over two meshes cannot be evaluated by comparing all their faces at
+/// once, so that the descent through cells evaluates it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Declined {
     /// The expression is not over two different meshes as they were imported.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::evaluate::evaluate;
 use super::expression::{Expression, Term};
-use super::kernels::problem::{CellProblem, Listed};
+use super::kernels::problem::{CellProblem, ListedOperand};
 use super::lists::list::{List, Sources};
 use super::rule::Rule;
 use crate::arith::convert::{as_double, as_number};
@@ -128,7 +128,7 @@ impl Shared {
         let cells = solids.iter().map(|s| s.root().cell);
         let cell = cells.reduce(|a, b| a.join(&b)).expect("at least one solid");
         let sources = Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect());
-        let list = |s: &Solid| List::lifted(s.root(), &cell, &sources).expect("a leaf");
+        let list = |s: &Solid| List::of_larger_cell(s.root(), &cell, &sources).expect("a leaf");
         let lists = solids.iter().map(list).collect();
         Self {
             cell,
@@ -137,8 +137,8 @@ impl Shared {
         }
     }
 
-    pub fn operands(&self) -> Vec<Listed<'_>> {
-        let listed = |(number, list)| Listed {
+    pub fn operands(&self) -> Vec<ListedOperand<'_>> {
+        let listed = |(number, list)| ListedOperand {
             number,
             list: Cow::Borrowed(list),
         };

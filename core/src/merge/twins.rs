@@ -21,12 +21,12 @@ const MAX_MESHES_PER_SAMPLE: usize = 4;
 /// Returns an expression for the same set whose unions and intersections name only the first of operands with
 /// equal meshes; `None` if no two operands are equal.
 pub(super) fn without_twins(expression: &Expression, solids: &[Solid]) -> Option<Expression> {
-    let firsts = firsts(solids)?;
+    let firsts = first_equal_solids(solids)?;
     Some(expression.merged(|operand| firsts[operand as usize]))
 }
 
 /// Returns for each operand the index of the first operand with an equal mesh; `None` if all meshes differ.
-fn firsts(solids: &[Solid]) -> Option<Vec<u32>> {
+fn first_equal_solids(solids: &[Solid]) -> Option<Vec<u32>> {
     let mut known: HashMap<u64, Vec<(u32, &Solid)>> = HashMap::default();
     let mut found = false;
     let first = |(number, solid): (u32, _)| {
@@ -94,8 +94,8 @@ mod tests {
     fn a_mesh_is_its_own_first_and_its_copies_follow() {
         let places = [0.0, 2.0, 0.0, 1e-12, 2.0];
         let solids = places.map(tetrahedron);
-        assert_eq!(firsts(&solids), Some(vec![0, 1, 0, 0, 1]));
-        assert_eq!(firsts(&solids[..2]), None);
+        assert_eq!(first_equal_solids(&solids), Some(vec![0, 1, 0, 0, 1]));
+        assert_eq!(first_equal_solids(&solids[..2]), None);
     }
 
     #[test]
@@ -104,7 +104,7 @@ mod tests {
         let root = solid.root().complemented();
         let turned = Solid::new(root, solid.pitch(), solid.sources().clone(), false);
         let solids = [turned, tetrahedron(0.0)];
-        assert_eq!(firsts(&solids), None);
+        assert_eq!(first_equal_solids(&solids), None);
     }
 
     #[test]

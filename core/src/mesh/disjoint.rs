@@ -49,33 +49,33 @@ impl DisjointSets {
         let mut sets = Self::of_one(count);
         spend(triangles.len());
         for corners in triangles {
-            let least = sets.lowest(corners);
+            let least = sets.least_of_corners(corners);
             for v in corners {
-                sets.lower[v.place()] = least;
+                sets.lower[v.index()] = least;
             }
         }
-        sets.shorten();
+        sets.flatten();
         spend(triangles.len());
         for corners @ [a, b, c] in triangles {
-            let least = sets.lowest(corners);
-            if corners.iter().any(|v| sets.lower[v.place()] != least) {
+            let least = sets.least_of_corners(corners);
+            if corners.iter().any(|v| sets.lower[v.index()] != least) {
                 sets.join(a.0, b.0);
                 sets.join(a.0, c.0);
             }
         }
-        sets.shorten();
+        sets.flatten();
         sets
     }
 
     /// The least number to which the three vertices of a triangle point.
     #[inline]
-    fn lowest(&self, [a, b, c]: &[VertexId; 3]) -> u32 {
-        let lower = |v: &VertexId| self.lower[v.place()];
+    fn least_of_corners(&self, [a, b, c]: &[VertexId; 3]) -> u32 {
+        let lower = |v: &VertexId| self.lower[v.index()];
         lower(a).min(lower(b)).min(lower(c))
     }
 
     /// Points each number to the name of its set. Numbers point to lower ones, which this pass handles first.
-    fn shorten(&mut self) {
+    fn flatten(&mut self) {
         for at in 0..self.lower.len() {
             self.lower[at] = self.lower[self.lower[at] as usize];
         }

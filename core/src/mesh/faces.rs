@@ -18,7 +18,7 @@ impl Faces<'_> {
     #[inline]
     pub fn corners(&self, triangle: u32) -> Triangle {
         let [a, b, c] = self.triangles[triangle as usize];
-        let at = |vertex: VertexId| self.vertices[vertex.place()];
+        let at = |vertex: VertexId| self.vertices[vertex.index()];
         [at(a), at(b), at(c)]
     }
 }

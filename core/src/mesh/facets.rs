@@ -85,11 +85,11 @@ pub fn check_reach(rows: &[Lattice]) -> Result<()> {
     }
 }
 
-/// The flaws of facets that are mended instead of refused.
+/// Which flaws of facets are mended instead of refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lenience {
     /// Divide polygons that are not planar into triangles.
-    pub triangulate_bent: bool,
+    pub triangulate_nonplanar: bool,
     /// Leave out segments without length and polygons without area.
     pub drop_flat: bool,
 }
@@ -123,7 +123,7 @@ pub fn facets(
             )
         })?;
         let pieces = match dimension {
-            3 => polygon(own, source, lenience.triangulate_bent),
+            3 => polygon(own, source, lenience.triangulate_nonplanar),
             _ => point_or_segment(dimension, own, source).map(|facet| vec![facet]),
         };
         match pieces {
@@ -144,7 +144,7 @@ fn check_offsets(offsets: &[i64], count: usize) -> Result<()> {
     Err(Error::new(ErrorKind::Shape, text))
 }
 
-fn fault(kind: ErrorKind, source: u32, text: &str) -> Error {
+fn facet_error(kind: ErrorKind, source: u32, text: &str) -> Error {
     Error::at(kind, vec![source.into()], format!("facet {source} {text}"))
 }
 
@@ -154,10 +154,10 @@ fn point_or_segment(dimension: usize, corners: &[Lattice], source: u32) -> Resul
         [a, b] if dimension == 2 && a != b => {}
         [_, _] if dimension == 2 => {
             let text = "is a segment of zero length on the lattice";
-            return Err(fault(ErrorKind::Degenerate, source, text));
+            return Err(facet_error(ErrorKind::Degenerate, source, text));
         }
         _ => {
-            return Err(fault(
+            return Err(facet_error(
                 ErrorKind::Shape,
                 source,
                 "has a wrong number of corners for its dimension",
@@ -174,14 +174,14 @@ fn point_or_segment(dimension: usize, corners: &[Lattice], source: u32) -> Resul
 fn polygon(given: &[Lattice], source: u32, lenient: bool) -> Result<Vec<Facet>> {
     if given.len() < 3 || given.len() > MAX_CORNERS_PER_FACET {
         let text = "must have from 3 to 16384 corners";
-        return Err(fault(ErrorKind::Shape, source, text));
+        return Err(facet_error(ErrorKind::Shape, source, text));
     }
     let corners = without_flat_corners(given);
     let plane = newell_plane(&corners).ok_or_else(|| without_normal(&corners, source))?;
     let planar = corners.iter().all(|p| plane.side_of_lattice(p) == Side::On);
     if !planar && !lenient {
         let text = "is not planar on the lattice";
-        return Err(fault(ErrorKind::NonPlanar, source, text));
+        return Err(facet_error(ErrorKind::NonPlanar, source, text));
     }
     let axes = projection(&plane);
     if planar && is_convex(&corners, axes) {
@@ -192,9 +192,12 @@ fn polygon(given: &[Lattice], source: u32, lenient: bool) -> Result<Vec<Facet>> 
             source,
         }]);
     }
-    let crossed = || fault(ErrorKind::NotSimple, source, "crosses or touches itself");
+    let crossed = || facet_error(ErrorKind::NotSimple, source, "crosses or touches itself");
     let parts = triangles(&corners, axes).ok_or_else(crossed)?;
-    Ok(parts.iter().map(|t| part(&corners, t, source)).collect())
+    Ok(parts
+        .iter()
+        .map(|t| part_of_facet(&corners, t, source))
+        .collect())
 }
 
 /// Returns the error that says why a polygon has no normal: it is flat, or its areas of opposite orientation
@@ -211,10 +214,10 @@ fn without_normal(corners: &[Lattice], source: u32) -> Error {
         },
         _ => (ErrorKind::Degenerate, "has no area on the lattice"),
     };
-    fault(kind, source, text)
+    facet_error(kind, source, text)
 }
 
-fn part(corners: &[Lattice], triangle: &[usize; 3], source: u32) -> Facet {
+fn part_of_facet(corners: &[Lattice], triangle: &[usize; 3], source: u32) -> Facet {
     let is_seam = |i: usize| triangle[(i + 1) % 3] != (triangle[i] + 1) % corners.len();
     Facet {
         corners: triangle.map(|k| corners[k]).to_vec(),
@@ -335,7 +338,7 @@ mod tests {
         assert_eq!(kind(&there_and_back), Some(ErrorKind::Degenerate));
         assert_eq!(kind(&[[0, 0, 0], [1, 0, 0]]), Some(ErrorKind::Shape));
         let lenience = Lenience {
-            triangulate_bent: true,
+            triangulate_nonplanar: true,
             drop_flat: true,
         };
         assert_eq!(facets(3, &bent, &[0, 4], lenience).unwrap().len(), 2);

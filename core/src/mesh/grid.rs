@@ -60,7 +60,7 @@ impl Pitch {
     /// across, as long as the largest coordinate fits.
     pub fn suited(largest: f64, extent: f64) -> Result<Self> {
         let mut pitch = Self::DEFAULT;
-        while !pitch.fits(largest) {
+        while !pitch.is_in_reach(largest) {
             pitch = Self::new(pitch.exponent() + 3).map_err(|_| {
                 let text = format!(
                     "the coordinate {largest:e} is too large for any lattice; scale the mesh down"
@@ -70,7 +70,7 @@ impl Pitch {
         }
         while extent > 0.0 && pitch.steps(extent) < 1e6 && pitch.0 > -EXACT_POWERS + 3 {
             let finer = Self(pitch.0 - 3);
-            if !finer.fits(largest) {
+            if !finer.is_in_reach(largest) {
                 break;
             }
             pitch = finer;
@@ -89,14 +89,14 @@ impl Pitch {
         }
     }
 
-    /// The difference from the lattice coordinate `place` to `x`, which is in model units, in steps; only the
-    /// result is rounded.
-    pub fn steps_beyond(self, x: f64, place: f64) -> f64 {
+    /// The difference from the lattice coordinate `origin` to `x`, which is in model units, in steps; only
+    /// the result is rounded.
+    pub fn steps_from(self, x: f64, origin: f64) -> f64 {
         let power = power_of_ten(self.0.abs());
         if self.0 <= 0 {
-            x.mul_add(power, -place)
+            x.mul_add(power, -origin)
         } else {
-            place.mul_add(-power, x) / power
+            origin.mul_add(-power, x) / power
         }
     }
 
@@ -106,7 +106,7 @@ impl Pitch {
     }
 
     #[inline]
-    fn fits(self, x: f64) -> bool {
+    fn is_in_reach(self, x: f64) -> bool {
         self.steps(x).abs() < LIMIT
     }
 
@@ -115,8 +115,8 @@ impl Pitch {
     #[inline]
     pub fn snap(self, x: f64) -> Result<i64> {
         // The test is also false for infinities and NaN.
-        if !self.fits(x) {
-            return Err(self.refused(x));
+        if !self.is_in_reach(x) {
+            return Err(self.too_large_error(x));
         }
         let rounded = if self.0 <= 0 {
             snap_product(x, power_of_ten(-self.0))
@@ -127,13 +127,14 @@ impl Pitch {
     }
 
     #[cold]
-    fn refused(self, x: f64) -> Error {
+    fn too_large_error(self, x: f64) -> Error {
         if !x.is_finite() {
             let text = format!("a coordinate is {x}; coordinates must be finite");
             return Error::new(ErrorKind::NonFinite, text);
         }
         let text = format!(
-            "the coordinate {x:e} is more than 2^53 lattice steps of 10^{} from the origin",
+            "the coordinate {x:e} is more than 2^53 lattice steps of 10^{} from the origin; scale the \
+             coordinates down, or choose a coarser pitch",
             self.0
         );
         Error::new(ErrorKind::TooLarge, text)

@@ -59,6 +59,7 @@ pub fn bounding_plane(normal: [i128; 3], offset: &Int<3>) -> Result<Plane> {
 
 /// The error for a hyperplane that lies outside the lattice.
 pub fn out_of_reach() -> Error {
-    let text = "the hyperplane is more than 2^53 lattice steps from the origin";
+    let text = "the hyperplane is more than 2^53 lattice steps from the origin; choose a hyperplane nearer \
+                to the origin";
     Error::new(ErrorKind::TooLarge, text)
 }

@@ -23,12 +23,12 @@ impl Slot {
     ///
     /// # Panics
     /// Never for tables: none has 2³² sources.
-    pub fn of(place: usize) -> Self {
-        Self(u32::try_from(place).expect("a table of less than 2^32 sources"))
+    pub fn of(index: usize) -> Self {
+        Self(u32::try_from(index).expect("a table of less than 2^32 sources"))
     }
 
     /// The index in a table of sources.
-    pub fn place(self) -> usize {
+    pub fn index(self) -> usize {
         self.0 as usize
     }
 }
@@ -49,7 +49,7 @@ impl FaceId {
     }
 
     /// The index in a list of all faces.
-    pub fn place(self) -> usize {
+    pub fn index(self) -> usize {
         self.0 as usize
     }
 
@@ -59,7 +59,7 @@ impl FaceId {
     }
 
     /// The triangle that a half-edge bounds.
-    pub fn beside(half_edge: u32) -> Self {
+    pub fn of_half_edge(half_edge: u32) -> Self {
         Self(half_edge / 3)
     }
 }
@@ -79,8 +79,8 @@ impl VertexId {
 
     /// The vertex at this index of a list.
     #[inline]
-    pub fn of(place: usize) -> Self {
-        Self(as_number(place))
+    pub fn of(index: usize) -> Self {
+        Self(as_number(index))
     }
 
     /// Triangles or other rows of plain integers, as rows of vertex numbers.
@@ -90,7 +90,7 @@ impl VertexId {
 
     /// The index in a list of all vertices.
     #[inline]
-    pub fn place(self) -> usize {
+    pub fn index(self) -> usize {
         self.0 as usize
     }
 }
@@ -134,13 +134,13 @@ impl NodeId {
     /// # Panics
     /// Never for lists of nodes: 2³² nodes would fill a hundred gigabytes.
     #[inline]
-    pub fn of(place: usize) -> Self {
-        Self(u32::try_from(place).expect("a tree of less than 2^32 nodes"))
+    pub fn of(index: usize) -> Self {
+        Self(u32::try_from(index).expect("a tree of less than 2^32 nodes"))
     }
 
     /// The index in the list of nodes.
     #[inline]
-    pub fn place(self) -> usize {
+    pub fn index(self) -> usize {
         self.0 as usize
     }
 }
@@ -206,7 +206,7 @@ mod tests {
         assert_eq!(faces[2].half_edges().collect::<Vec<_>>(), [6, 7, 8]);
         assert!(faces
             .iter()
-            .all(|f| f.half_edges().all(|h| FaceId::beside(h) == *f)));
+            .all(|f| f.half_edges().all(|h| FaceId::of_half_edge(h) == *f)));
     }
 
     #[test]

@@ -10,7 +10,7 @@ use super::handle::VertexId;
 use super::snap::snap_all;
 use crate::arith::convert::as_double;
 use crate::error::Result;
-use crate::geometry::doubles::hull::{corners_of, hull, hull_beyond};
+use crate::geometry::doubles::hull::{corners_of, hull, hull_of_inexact};
 use crate::geometry::doubles::vector::{cross, dot, normal};
 use crate::geometry::doubles::{Facing, Point, Triangle};
 use crate::geometry::side::Side;
@@ -58,7 +58,7 @@ pub fn hull_of(points: &[Point], pitch: Pitch) -> Result<Hull> {
     // Below 2^53 in magnitude: exact in doubles.
     let steps: Vec<Point> = lattice.iter().map(|p| p.map(as_double)).collect();
     let radius = moved_by(points, &steps, pitch);
-    let faces = hull_beyond(&steps, radius);
+    let faces = hull_of_inexact(&steps, radius);
     let used = corners_of(&faces);
     let triangles = numbered(&faces, &used);
     let given: Vec<Point> = used.iter().map(|p| points[*p]).collect();
@@ -96,7 +96,7 @@ fn hull_as_given(points: &[Point]) -> Hull {
 /// points are on the lattice, when its coordinates were computed.
 fn moved_by(points: &[Point], steps: &[Point], pitch: Pitch) -> f64 {
     let squares = points.iter().zip(steps).map(|(point, place)| {
-        let off = |i: usize| pitch.steps_beyond(point[i], place[i]);
+        let off = |i: usize| pitch.steps_from(point[i], place[i]);
         off(0).powi(2) + off(1).powi(2) + off(2).powi(2)
     });
     let moved = squares.fold(0.0, f64::max).sqrt();
@@ -133,7 +133,7 @@ fn looks_outwards(vertices: &[Point], triangles: &[[VertexId; 3]]) -> bool {
         let sum: f64 = vertices.iter().map(|p| p[i]).sum();
         sum / as_double(vertices.len())
     });
-    let corners = |t: &[VertexId; 3]| t.map(|v| vertices[v.place()]);
+    let corners = |t: &[VertexId; 3]| t.map(|v| vertices[v.index()]);
     let mut first: HashMap<[VertexId; 2], &[VertexId; 3]> = HashMap::default();
     first.reserve(triangles.len() * 3 / 2);
     triangles.iter().all(|t| {
@@ -166,7 +166,7 @@ fn turns_inwards(facing: &Facing, other: &Triangle) -> bool {
 #[cfg(test)]
 mod tests {
     use super::{hull_of, looks_outwards, Pitch, Point};
-    use crate::geometry::doubles::vector::{dot, less, normal};
+    use crate::geometry::doubles::vector::{difference, dot, normal};
 
     /// Two layers of grid points, rotated about two axes.
     fn turned_layers(width: u32, turn: f64) -> Vec<Point> {
@@ -231,12 +231,12 @@ mod tests {
             );
             assert!(looks_outwards(&hull.vertices, &hull.triangles));
             for t in &hull.triangles {
-                let triangle = t.map(|v| hull.vertices[v.place()]);
+                let triangle = t.map(|v| hull.vertices[v.index()]);
                 let normal = normal(&triangle);
                 let size = dot(&normal, &normal).sqrt();
                 for point in &points {
                     assert!(
-                        dot(&normal, &less(point, &triangle[0])) <= 1e-6 * size,
+                        dot(&normal, &difference(point, &triangle[0])) <= 1e-6 * size,
                         "{step}"
                     );
                 }

@@ -35,12 +35,12 @@ impl<T> Default for Images<T> {
 impl<T> Images<T> {
     /// The image under a motion, if it is in use; else `None`.
     pub fn get(&self, motion: &Motion) -> Option<Arc<T>> {
-        self.free()?.images.get(motion)?.upgrade()
+        self.if_unlocked()?.images.get(motion)?.upgrade()
     }
 
     /// The image under a motion that is already in use, else the given one, which is stored.
     pub fn keep(&self, motion: &Motion, image: Arc<T>) -> Arc<T> {
-        let Some(mut known) = self.free() else {
+        let Some(mut known) = self.if_unlocked() else {
             return image;
         };
         if let Some(found) = known.images.get(motion).and_then(Weak::upgrade) {
@@ -54,7 +54,7 @@ impl<T> Images<T> {
         image
     }
 
-    fn free(&self) -> Option<MutexGuard<'_, ImageTable<T>>> {
+    fn if_unlocked(&self) -> Option<MutexGuard<'_, ImageTable<T>>> {
         for _ in 0..MAX_YIELDS {
             match self.0.try_lock() {
                 Ok(known) => return Some(known),
@@ -81,7 +81,7 @@ mod tests {
         let found = images.get(&up(0)).expect("somebody has it");
         assert!(Arc::ptr_eq(&found, &image));
         assert!(images.get(&up(999)).is_none());
-        assert!(images.free().expect("nobody holds it").images.len() < 10);
+        assert!(images.if_unlocked().expect("nobody holds it").images.len() < 10);
     }
 
     // Formerly, threads that moved one solid at the same time could make two images of its source, which

@@ -8,7 +8,7 @@ use super::source::{Source, WELDED};
 use super::tasks::{each_chunk, fill_chunks};
 use super::topology::{open_edges, Topology};
 use super::triangles::TriangleMesh;
-use crate::arith::convert::{as_double, as_number, as_place};
+use crate::arith::convert::{as_double, as_index, as_number};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
@@ -35,7 +35,7 @@ const WITHOUT_EXPONENT: std::ops::Range<f64> = 1e-4..1e6;
 /// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 /// let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 /// let source = import(&vertices, &faces, None)?;
-/// assert!(source.closes());
+/// assert!(source.is_closed());
 /// let open = import(&vertices, &faces[1..], None).expect_err("a face is missing");
 /// assert_eq!(open.kind().code(), "not_closed");
 /// # Ok::<(), bspcsg::error::Error>(())
@@ -52,7 +52,7 @@ pub fn import(vertices: &[[f64; 3]], faces: &[[i64; 3]], pitch: Option<Pitch>) -
         faces,
         numbers: None,
     };
-    let (volume, flat) = weigh(&mesh);
+    let (volume, flat) = volume_and_flat_faces(&mesh);
     drop_faces(&mut mesh, flat, &mut findings);
     if mesh.faces.is_empty() {
         let exponent = pitch.exponent();
@@ -61,7 +61,7 @@ pub fn import(vertices: &[[f64; 3]], faces: &[[i64; 3]], pitch: Option<Pitch>) -
         );
         return Err(Error::new(ErrorKind::EmptyMesh, text));
     }
-    let open = close(&mut mesh, &mut findings)?;
+    let open = closed_or_welded(&mut mesh, &mut findings)?;
     if volume < 0.0 {
         findings.push(Finding::about(
             "inside_out",
@@ -146,7 +146,7 @@ impl Bounds {
         found.ok_or_else(|| {
             let bad = |p: &[f64; 3]| p.iter().any(|c| !c.is_finite());
             let row = points.iter().position(bad).unwrap_or(0);
-            let point = place(&points[row]);
+            let point = point_text(&points[row]);
             let text = format!("vertex {row} is {point}; all coordinates must be finite numbers");
             Error::at(ErrorKind::NonFinite, vec![row as u64], text)
         })
@@ -214,10 +214,11 @@ fn choose_pitch(
 /// Six times the enclosed volume in cubic steps, and the numbers of the faces without area.
 ///
 /// The volume is summed in doubles, relative to the first vertex, in the order of the faces.
-fn weigh(mesh: &TriangleMesh) -> (f64, Vec<u32>) {
+fn volume_and_flat_faces(mesh: &TriangleMesh) -> (f64, Vec<u32>) {
     let origin = mesh.vertices.first().copied().unwrap_or_default();
-    let weigh =
-        |first: usize, faces: &[[VertexId; 3]]| weigh_chunk(faces, &mesh.vertices, &origin, first);
+    let weigh = |first: usize, faces: &[[VertexId; 3]]| {
+        volume_and_flat_faces_of_chunk(faces, &mesh.vertices, &origin, first)
+    };
     let (volumes, flat): (Vec<f64>, Vec<Vec<u32>>) =
         each_chunk(&mesh.faces, weigh).into_iter().unzip();
     (volumes.iter().sum(), flat.concat())
@@ -240,7 +241,7 @@ fn drop_faces(mesh: &mut TriangleMesh, faces: Vec<u32>, findings: &mut Vec<Findi
 
 /// Six times the volume of a chunk of faces, and the numbers of its faces without area; the chunk begins with
 /// face `first`.
-fn weigh_chunk(
+fn volume_and_flat_faces_of_chunk(
     faces: &[[VertexId; 3]],
     vertices: &[Lattice],
     origin: &Lattice,
@@ -250,13 +251,13 @@ fn weigh_chunk(
     let mut flat = Vec::new();
     for (number, face) in (as_number(first)..).zip(faces) {
         poll();
-        let corners = face.map(|v| &vertices[v.place()]);
-        let [u, v] = spokes(corners);
+        let corners = face.map(|v| &vertices[v.index()]);
+        let [u, v] = edge_vectors(corners);
         let arm = each_axis(|i| as_double(corners[0][i] - origin[i]));
         volume += arm[0] * (u[1] * v[2] - u[2] * v[1])
             + arm[1] * (u[2] * v[0] - u[0] * v[2])
             + arm[2] * (u[0] * v[1] - u[1] * v[0]);
-        if !surely_wide(&u, &v) && is_flat(&corners.map(|c| *c)) {
+        if !are_surely_not_parallel(&u, &v) && is_flat(&corners.map(|c| *c)) {
             flat.push(number);
         }
     }
@@ -266,17 +267,17 @@ fn weigh_chunk(
 /// Return whether a triangle has no area, exactly.
 pub fn is_flat(corners: &[Lattice; 3]) -> bool {
     let [a, b, c] = corners;
-    let [u, v] = spokes([a, b, c]);
-    !surely_wide(&u, &v) && normal(a, b, c) == [0; 3]
+    let [u, v] = edge_vectors([a, b, c]);
+    !are_surely_not_parallel(&u, &v) && normal(a, b, c) == [0; 3]
 }
 
 /// The vectors from the first corner of a triangle to the two others, in doubles.
-fn spokes([a, b, c]: [&Lattice; 3]) -> [[f64; 3]; 2] {
+fn edge_vectors([a, b, c]: [&Lattice; 3]) -> [[f64; 3]; 2] {
     [b, c].map(|end| each_axis(|i| as_double(end[i] - a[i])))
 }
 
 /// Return whether doubles prove that two vectors are not parallel; may return false negatives.
-fn surely_wide(u: &[f64; 3], v: &[f64; 3]) -> bool {
+fn are_surely_not_parallel(u: &[f64; 3], v: &[f64; 3]) -> bool {
     let certain = |i: usize, j: usize| {
         let (p, q) = (u[i] * v[j], u[j] * v[i]);
         (p - q).abs() > 4.0 * f64::EPSILON * (p.abs() + q.abs())
@@ -286,11 +287,11 @@ fn surely_wide(u: &[f64; 3], v: &[f64; 3]) -> bool {
 
 /// The vertices at edges without an opposite by index. If the faces do not close by index, welds vertices at
 /// one lattice point and then cancels edges along lines; an error if edges remain.
-fn close(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) -> Result<Vec<VertexId>> {
+fn closed_or_welded(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) -> Result<Vec<VertexId>> {
     if is_closed(&mesh.faces) {
         return Ok(Vec::new());
     }
-    if let Some(welded) = weld(mesh) {
+    if let Some(welded) = welded_faces(mesh) {
         mesh.faces = welded;
         findings.push(Finding::about(
             WELDED,
@@ -312,27 +313,27 @@ fn close(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) -> Result<Vec<Ver
 
 fn not_closed(mesh: &TriangleMesh, open: &[u64]) -> Error {
     let number = |half: &u64| {
-        let face = as_number(as_place(*half / 3));
+        let face = as_number(as_index(*half / 3));
         u64::from(mesh.numbers.as_ref().map_or(face, |n| n[face as usize]))
     };
     let mut faces: Vec<u64> = open.iter().map(number).collect();
     faces.dedup();
-    let half = as_place(open[0]);
+    let half = as_index(open[0]);
     let face = mesh.faces[half / 3];
-    let (a, b) = (face[half % 3].place(), face[(half % 3 + 1) % 3].place());
+    let (a, b) = (face[half % 3].index(), face[(half % 3 + 1) % 3].index());
     let text = format!(
         "the mesh is not closed: {} edges have no matching opposite; the first belongs to face {} \
          and runs from {} to {}",
         open.len(),
         faces[0],
-        place(&mesh.doubles[a]),
-        place(&mesh.doubles[b]),
+        point_text(&mesh.doubles[a]),
+        point_text(&mesh.doubles[b]),
     );
     Error::at(ErrorKind::NotClosed, faces, text)
 }
 
 /// A point as messages write it.
-fn place([x, y, z]: &[f64; 3]) -> String {
+fn point_text([x, y, z]: &[f64; 3]) -> String {
     format!("({}, {}, {})", rounded(*x), rounded(*y), rounded(*z))
 }
 
@@ -348,9 +349,9 @@ fn rounded(number: f64) -> String {
 }
 
 /// The faces after vertices at one lattice point are merged; `None` if no two vertices are at one point.
-fn weld(mesh: &TriangleMesh) -> Option<Vec<[VertexId; 3]>> {
-    let image = mesh.firsts();
+fn welded_faces(mesh: &TriangleMesh) -> Option<Vec<[VertexId; 3]>> {
+    let image = mesh.first_equal_vertices();
     let changed = VertexId::all().zip(&image).any(|(i, v)| i != *v);
-    let weld = |face: &[VertexId; 3]| face.map(|v| image[v.place()]);
+    let weld = |face: &[VertexId; 3]| face.map(|v| image[v.index()]);
     changed.then(|| mesh.faces.iter().map(weld).collect())
 }

@@ -18,7 +18,7 @@ type ShortLink = [u16; 2 * MAX_SHORT_LINK_EDGES];
 
 /// The vertices of a closed surface whose link is not one cycle, in ascending order.
 pub fn irregular(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<VertexId> {
-    let doubtful = doubtful(faces, vertex_count, |vertex| Some(vertex.place()));
+    let doubtful = vertices_with_doubtful_links(faces, vertex_count, |vertex| Some(vertex.index()));
     let vertices = doubtful.into_iter().map(VertexId).collect();
     without_cycle(&VertexSubset::new(vertices, vertex_count), faces)
 }
@@ -35,7 +35,9 @@ pub fn irregular_among(
         return Vec::new();
     }
     let subset = VertexSubset::new(vertices, vertex_count);
-    let doubtful = doubtful(faces, subset.vertices.len(), |vertex| subset.place(vertex));
+    let doubtful = vertices_with_doubtful_links(faces, subset.vertices.len(), |vertex| {
+        subset.index_of(vertex)
+    });
     let vertices = doubtful.into_iter().map(|at| subset.vertices[at as usize]);
     without_cycle(&VertexSubset::new(vertices.collect(), vertex_count), faces)
 }
@@ -54,7 +56,7 @@ impl VertexSubset {
     fn new(vertices: Vec<VertexId>, vertex_count: usize) -> Self {
         let mut words = vec![0u64; vertex_count.div_ceil(64)];
         for vertex in &vertices {
-            words[vertex.place() / 64] |= 1 << (vertex.place() % 64);
+            words[vertex.index() / 64] |= 1 << (vertex.index() % 64);
         }
         let sum = |sum: &mut u32, word: &u64| {
             let before = *sum;
@@ -71,15 +73,15 @@ impl VertexSubset {
 
     #[inline]
     fn has(&self, vertex: VertexId) -> bool {
-        self.words[vertex.place() / 64] >> (vertex.place() % 64) & 1 == 1
+        self.words[vertex.index() / 64] >> (vertex.index() % 64) & 1 == 1
     }
 
     #[inline]
-    fn place(&self, vertex: VertexId) -> Option<usize> {
-        let word = vertex.place() / 64;
-        let lower = self.words[word] & ((1 << (vertex.place() % 64)) - 1);
-        let place = || self.before[word] as usize + lower.count_ones() as usize;
-        self.has(vertex).then(place)
+    fn index_of(&self, vertex: VertexId) -> Option<usize> {
+        let word = vertex.index() / 64;
+        let lower = self.words[word] & ((1 << (vertex.index() % 64)) - 1);
+        let index = || self.before[word] as usize + lower.count_ones() as usize;
+        self.has(vertex).then(index)
     }
 }
 
@@ -105,24 +107,24 @@ fn without_cycle(subset: &VertexSubset, faces: &[[VertexId; 3]]) -> Vec<VertexId
 
 /// The indices of vertices whose short link does not prove that it is one cycle.
 ///
-/// `place` maps the vertices to examine to `0..count`, and all others to `None`.
-fn doubtful(
+/// `index` maps the vertices to examine to `0..count`, and all others to `None`.
+fn vertices_with_doubtful_links(
     faces: &[[VertexId; 3]],
     count: usize,
-    place: impl Fn(VertexId) -> Option<usize>,
+    index: impl Fn(VertexId) -> Option<usize>,
 ) -> Vec<u32> {
     let mut links: Vec<ShortLink> = vec![[0; 2 * MAX_SHORT_LINK_EDGES]; count];
     let mut counts = vec![0u8; count];
     for &[a, b, c] in faces {
         poll();
         for (vertex, from, to) in [(a, b, c), (b, c, a), (c, a, b)] {
-            let Some(place) = place(vertex) else {
+            let Some(index) = index(vertex) else {
                 continue;
             };
-            let count = &mut counts[place];
+            let count = &mut counts[index];
             let at = usize::from(*count);
             if at < MAX_SHORT_LINK_EDGES {
-                let link = &mut links[place];
+                let link = &mut links[index];
                 link[at] = label(from);
                 link[MAX_SHORT_LINK_EDGES + at] = label(to);
             }
@@ -131,8 +133,8 @@ fn doubtful(
     }
     let doubtful = |first: usize, links: &[ShortLink]| {
         let rows = (as_number(first)..).zip(links.iter().zip(&counts[first..]));
-        let doubt = |(place, (link, count)): (u32, (&ShortLink, &u8))| {
-            (*count > 0 && !is_short_cycle(link, usize::from(*count))).then_some(place)
+        let doubt = |(index, (link, count)): (u32, (&ShortLink, &u8))| {
+            (*count > 0 && !is_short_cycle(link, usize::from(*count))).then_some(index)
         };
         rows.filter_map(doubt).collect::<Vec<u32>>()
     };
@@ -159,14 +161,14 @@ fn is_short_cycle(link: &ShortLink, count: usize) -> bool {
         if label == link[0] {
             return false;
         }
-        label = after(link, label);
+        label = label_after(link, label);
     }
     label == link[0]
 }
 
 /// The label of the end of the edge that starts at `label`; if several edges start there, the bitwise or of
 /// the labels of their ends.
-fn after(link: &ShortLink, label: u16) -> u16 {
+fn label_after(link: &ShortLink, label: u16) -> u16 {
     (0..MAX_SHORT_LINK_EDGES).fold(0, |found, i| {
         let mask = if link[i] == label { u16::MAX } else { 0 };
         found | (link[MAX_SHORT_LINK_EDGES + i] & mask)

@@ -3,7 +3,7 @@
 use super::handle::VertexId;
 use crate::arith::{DoubleDouble, Sum};
 use crate::geometry::axes::each_axis;
-use crate::geometry::doubles::vector::{dot, less, normal};
+use crate::geometry::doubles::vector::{difference, dot, normal};
 use crate::geometry::doubles::Point;
 use crate::interrupt::poll;
 
@@ -33,14 +33,14 @@ pub fn measures(vertices: &[[f64; 3]], faces: &[[VertexId; 3]], middle: [f64; 3]
     let mut size = 0.0;
     for face in faces {
         poll();
-        let [a, b, c] = face.map(|vertex| vertices[vertex.place()]);
+        let [a, b, c] = face.map(|vertex| vertices[vertex.index()]);
         let normal = normal(&[a, b, c]);
-        let from_middle = less(&a, &middle);
+        let from_middle = difference(&a, &middle);
         // The normal comes from edges, so that a small face far from the middle loses no digits to
         // cancellation.
         volume.add(dot(&normal, &from_middle) / 6.0);
         area.add(dot(&normal, &normal).sqrt() / 2.0);
-        size += length(less(&b, &a)) * length(less(&c, &a)) * length(from_middle);
+        size += sum_norm(difference(&b, &a)) * sum_norm(difference(&c, &a)) * sum_norm(from_middle);
     }
     let volume = volume.rounded();
     let drowns = size.is_finite() && VOLUME_ROUNDING * size > MAX_ROUNDING_SHARE * volume.abs();
@@ -55,8 +55,8 @@ pub fn measures(vertices: &[[f64; 3]], faces: &[[VertexId; 3]], middle: [f64; 3]
 }
 
 /// The sum norm of a vector: the sum of its components' magnitudes.
-fn length(way: [f64; 3]) -> f64 {
-    way.iter().map(|x| x.abs()).sum()
+fn sum_norm(vector: [f64; 3]) -> f64 {
+    vector.iter().map(|x| x.abs()).sum()
 }
 
 /// The volume, centroid and second moments of a mesh of density 1.
@@ -80,11 +80,11 @@ pub fn moments(vertices: &[[f64; 3]], faces: &[[VertexId; 3]], middle: [f64; 3])
     let (mut six, mut first, mut second) = (zero, [zero; 3], [[zero; 3]; 3]);
     for face in faces {
         poll();
-        let [a, b, c] = face.map(|vertex| &vertices[vertex.place()]);
-        let way =
+        let [a, b, c] = face.map(|vertex| &vertices[vertex.index()]);
+        let vector =
             |from: &Point, to: &Point| each_axis(|i| DoubleDouble::difference(to[i], from[i]));
-        let [p, q, r] = [a, b, c].map(|corner| way(&middle, corner));
-        let weight = determinant(&p, &way(a, b), &way(a, c));
+        let [p, q, r] = [a, b, c].map(|corner| vector(&middle, corner));
+        let weight = determinant(&p, &vector(a, b), &vector(a, c));
         let sum = each_axis(|i| p[i] + q[i] + r[i]);
         six += weight;
         for i in 0..3 {

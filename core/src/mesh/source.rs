@@ -89,7 +89,7 @@ impl Source {
 
     /// The same source with further findings.
     #[must_use]
-    pub fn noting(mut self, findings: Vec<Finding>) -> Self {
+    pub fn with_findings(mut self, findings: Vec<Finding>) -> Self {
         self.findings.extend(findings);
         self
     }
@@ -223,7 +223,7 @@ impl Source {
 
     /// Return whether each edge cancels with opposite ones, by index or along lines; true for all imported
     /// meshes.
-    pub fn closes(&self) -> bool {
+    pub fn is_closed(&self) -> bool {
         let Some(mesh) = self.mesh() else {
             return true;
         };
@@ -345,7 +345,7 @@ impl Source {
     pub fn number(&self, face: FaceId) -> u32 {
         self.mesh()
             .and_then(|m| m.numbers.as_ref())
-            .map_or(face.0, |n| n[face.place()])
+            .map_or(face.0, |n| n[face.index()])
     }
 
     /// The smallest cell around all vertices, or the cell of the whole lattice for a half-space; `None` if
@@ -367,21 +367,21 @@ mod tests {
     fn only_what_closes_by_its_own_corners_closes_when_moved() {
         let corners = [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]];
         let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-        let closes = |more: [f64; 3], faces: &[[i64; 3]]| {
+        let is_closed = |more: [f64; 3], faces: &[[i64; 3]]| {
             let vertices = [&corners[..], &[more]].concat();
             let source = import(&vertices, faces, Pitch::new(0).ok());
             source.expect("it is closed").closes_when_moved()
         };
-        assert!(closes([1.0; 3], &faces));
+        assert!(is_closed([1.0; 3], &faces));
         // One face has a corner of its own, which is welded.
         let loose = [[4, 2, 1], faces[1], faces[2], faces[3]];
-        assert!(closes([0.0; 3], &loose));
-        assert!(!closes([0.1, 0.0, 0.0], &loose));
+        assert!(is_closed([0.0; 3], &loose));
+        assert!(!is_closed([0.1, 0.0, 0.0], &loose));
         // One face has an edge that a vertex divides, first without and then with a further face that has no
         // area.
         let divided = [[0, 2, 4], [4, 2, 1], faces[1], faces[2], faces[3]];
-        assert!(!closes([1.0, 0.0, 0.0], &divided));
+        assert!(!is_closed([1.0, 0.0, 0.0], &divided));
         let flat = [&divided[..], &[[0, 4, 1]]].concat();
-        assert!(!closes([1.0, 0.0, 0.0], &flat));
+        assert!(!is_closed([1.0, 0.0, 0.0], &flat));
     }
 }

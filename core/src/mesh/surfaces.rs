@@ -30,12 +30,12 @@ pub fn counts(faces: &[[VertexId; 3]], vertex_count: usize) -> Counts {
         around.sort_unstable();
         for uses in around.chunk_by(|a, b| a.0 == b.0) {
             edges += 1;
-            open_edges += open(uses, uses[0].0.place() == vertex);
+            open_edges += open_directions(uses, uses[0].0.index() == vertex);
         }
     }
     let owner = surfaces(faces, vertex_count);
     Counts {
-        vertices: used(faces, vertex_count),
+        vertices: count_used_vertices(faces, vertex_count),
         edges,
         open_edges,
         surfaces: owner.iter().max().map_or(0, |&last| last as usize + 1),
@@ -43,7 +43,7 @@ pub fn counts(faces: &[[VertexId; 3]], vertex_count: usize) -> Counts {
 }
 
 /// Returns the number of open directions of an edge; a loop from a vertex to itself counts as one.
-fn open(uses: &[(VertexId, bool)], is_loop: bool) -> usize {
+fn open_directions(uses: &[(VertexId, bool)], is_loop: bool) -> usize {
     let forth = uses.iter().filter(|(_, forth)| *forth).count();
     match (forth, uses.len() - forth) {
         _ if is_loop => 1,
@@ -53,10 +53,10 @@ fn open(uses: &[(VertexId, bool)], is_loop: bool) -> usize {
     }
 }
 
-fn used(faces: &[[VertexId; 3]], vertex_count: usize) -> usize {
+fn count_used_vertices(faces: &[[VertexId; 3]], vertex_count: usize) -> usize {
     let mut is_used = vec![false; vertex_count];
     for &vertex in faces.iter().flatten() {
-        is_used[vertex.place()] = true;
+        is_used[vertex.index()] = true;
     }
     is_used.into_iter().filter(|&used| used).count()
 }
@@ -89,7 +89,7 @@ impl Fans {
         let directed = || faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
         let mut starts = vec![0u32; vertex_count + 1];
         for (a, b) in directed() {
-            starts[a.min(b).place() + 1] += 1;
+            starts[a.min(b).index() + 1] += 1;
         }
         for i in 0..vertex_count {
             starts[i + 1] += starts[i];
@@ -98,7 +98,7 @@ impl Fans {
         let mut edges = vec![(VertexId::default(), false); 3 * faces.len()];
         for (a, b) in directed() {
             poll();
-            let slot = &mut next[a.min(b).place()];
+            let slot = &mut next[a.min(b).index()];
             edges[*slot as usize] = (a.max(b), a < b);
             *slot += 1;
         }

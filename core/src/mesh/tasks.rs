@@ -61,26 +61,26 @@ pub fn fill_chunks<T: Sync, U: Send, R: Send>(
     chunks.enumerate().map(value).collect()
 }
 
-/// The results of `value` for each item, in order; `worth` says whether items are shared among threads.
+/// The results of `value` for each item, in order; `work_size` says whether items are shared among threads.
 pub fn each<T: Send, R: Send>(
-    worth: Worth,
+    work_size: WorkSize,
     items: Vec<T>,
     value: impl Fn(T) -> R + Sync + Send,
 ) -> Vec<R> {
     let value = carried(value);
     let at_once = |items: Vec<T>| items.into_par_iter().map(&value).collect();
     let in_turn = |items: Vec<T>| items.into_iter().map(&value).collect();
-    match worth {
-        Worth::Nothing => in_turn(items),
+    match work_size {
+        WorkSize::Nothing => in_turn(items),
         _ if in_pool() => at_once(items),
-        Worth::Pool if items.len() > 1 => handed_over(items, at_once).unwrap_or_else(in_turn),
-        Worth::Task | Worth::Pool => in_turn(items),
+        WorkSize::Pool if items.len() > 1 => handed_over(items, at_once).unwrap_or_else(in_turn),
+        WorkSize::Task | WorkSize::Pool => in_turn(items),
     }
 }
 
 /// How much work there is: whether it pays to share it among threads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Worth {
+pub enum WorkSize {
     /// Less work than the cost of scheduling a task.
     Nothing,
     /// Enough work for a task if the caller runs in a pool.
@@ -89,7 +89,7 @@ pub enum Worth {
     Pool,
 }
 
-impl Worth {
+impl WorkSize {
     /// `Pool` if `pays`, else `Nothing`.
     #[must_use]
     pub const fn pool_if(pays: bool) -> Self {
@@ -101,18 +101,18 @@ impl Worth {
     }
 }
 
-/// The results of both functions, computed at the same time if `worth` says that it pays.
+/// The results of both functions, computed at the same time if `work_size` says that it pays.
 pub fn both<A: Send, B: Send>(
-    worth: Worth,
+    work_size: WorkSize,
     a: impl FnOnce() -> A + Send,
     b: impl FnOnce() -> B + Send,
 ) -> (A, B) {
     let task = Task::current();
     let at_once = |(a, b)| rayon::join(|| task.run(a), || task.run(b));
-    match worth {
-        Worth::Task | Worth::Pool if in_pool() => at_once((a, b)),
-        Worth::Nothing | Worth::Task => (a(), b()),
-        Worth::Pool => handed_over((a, b), at_once).unwrap_or_else(|(a, b)| (a(), b())),
+    match work_size {
+        WorkSize::Task | WorkSize::Pool if in_pool() => at_once((a, b)),
+        WorkSize::Nothing | WorkSize::Task => (a(), b()),
+        WorkSize::Pool => handed_over((a, b), at_once).unwrap_or_else(|(a, b)| (a(), b())),
     }
 }
 
@@ -153,8 +153,8 @@ mod tests {
     fn values_are_in_order_of_their_items_whoever_makes_them() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
         let pool = pool.expect("two threads");
-        for worth in [Worth::Nothing, Worth::Task, Worth::Pool] {
-            let squares = || each(worth, (0..9).collect(), |n: usize| n * n);
+        for work_size in [WorkSize::Nothing, WorkSize::Task, WorkSize::Pool] {
+            let squares = || each(work_size, (0..9).collect(), |n: usize| n * n);
             let handed = Call::new().run_here(ALONE, || Ok(squares()));
             assert_eq!(squares(), [0, 1, 4, 9, 16, 25, 36, 49, 64]);
             assert_eq!(squares(), pool.install(squares));

@@ -16,7 +16,7 @@ use crate::arith::Sign;
 use crate::geometry::doubles::meeting::has_no_area;
 use crate::geometry::doubles::vector::{cross, dot, normal};
 use crate::geometry::doubles::{seen_along, turn, Facing, Point, Triangle};
-use crate::geometry::winding::covering::{winds_at_most_once, Place};
+use crate::geometry::winding::covering::{winds_at_most_once, PlanarPoint};
 use crate::interrupt::poll;
 use crate::mesh::faces::{edges, Faces};
 use crate::mesh::handle::VertexId;
@@ -29,22 +29,22 @@ const MIN_NEEDLE_RATIO: f64 = 16.0;
 /// The largest number of needles that are compared pairwise, without looking for terrains.
 const MAX_NEEDLES_COMPARED: usize = 256;
 
-/// The least number of triangles of a piece for which a sweep pays.
+/// The least number of triangles in a piece (a smooth connected part of the surface) for which a sweep pays.
 const MIN_TRIANGLES_SWEPT: usize = 4;
 
 /// The tangent of the largest angle between normals of adjoining triangles in one piece: more than in any
 /// round body, less than at an intended corner.
-const MAX_BEND_TANGENT: f64 = 0.5;
+const MAX_FOLD_TANGENT: f64 = 0.5;
 
 /// For each of the given triangles, the number of its terrain; `NONE` if none is proved, and for all
 /// triangles but needles.
 ///
 /// # Cost
 /// One test of each triangle, a sort of the needles, and a sweep over the outline of each piece.
-pub fn terrains(faces: &Faces, some: &[u32]) -> Vec<u32> {
+pub fn terrains(faces: &Faces, subset: &[u32]) -> Vec<u32> {
     let is_thin = |t: &u32| is_needle(&faces.corners(*t));
-    let needles: Vec<u32> = some.iter().copied().filter(is_thin).collect();
-    let mut terrains = vec![NONE; some.len()];
+    let needles: Vec<u32> = subset.iter().copied().filter(is_thin).collect();
+    let mut terrains = vec![NONE; subset.len()];
     if needles.len() <= MAX_NEEDLES_COMPARED {
         return terrains;
     }
@@ -52,7 +52,7 @@ pub fn terrains(faces: &Faces, some: &[u32]) -> Vec<u32> {
         .into_iter()
         .zip(&needles)
         .peekable();
-    for (terrain, t) in terrains.iter_mut().zip(some) {
+    for (terrain, t) in terrains.iter_mut().zip(subset) {
         if let Some((number, _)) = found.next_if(|(_, needle)| *needle == t) {
             *terrain = number;
         }
@@ -66,10 +66,10 @@ fn needles_terrains(faces: &Faces, needles: &[u32]) -> Vec<u32> {
     for first in search.largest_first() {
         if search.pieces[first as usize] == NONE {
             let number = as_number(numbers.len());
-            let view = View::of(&search.corners(first));
-            let piece = search.piece_around(first, view, number);
+            let projection = Projection::of(&search.corners(first));
+            let piece = search.piece_around(first, projection, number);
             let is_terrain = piece.len() >= MIN_TRIANGLES_SWEPT && {
-                let outline = search.outline(&piece, view);
+                let outline = search.outline(&piece, projection);
                 winds_at_most_once(&outline)
             };
             numbers.push(if is_terrain { number } else { NONE });
@@ -94,27 +94,28 @@ struct Search<'a> {
     needles: &'a [u32],
     /// The needle of each directed edge.
     owners: HashMap<[VertexId; 2], u32>,
-    /// The number of each needle's piece, or `NONE`.
+    /// The number of the piece (smooth connected part of the surface) to which each needle belongs, or
+    /// `NONE`.
     pieces: Vec<u32>,
 }
 
 /// The axis along which a piece is projected, and the way its triangles turn in the projection.
 #[derive(Clone, Copy)]
-struct View {
+struct Projection {
     axis: usize,
-    way: Sign,
+    turn_sign: Sign,
 }
 
-impl View {
+impl Projection {
     /// The axis along which a triangle's projection is largest.
     fn of(triangle: &Triangle) -> Self {
         let axis = Facing::of(triangle).main_axis();
-        let way = turn(seen_along(triangle, axis));
-        Self { axis, way }
+        let turn_sign = turn(seen_along(triangle, axis));
+        Self { axis, turn_sign }
     }
 
-    fn shows(self, triangle: &Triangle) -> bool {
-        turn(seen_along(triangle, self.axis)) == self.way
+    fn faces_viewer(self, triangle: &Triangle) -> bool {
+        turn(seen_along(triangle, self.axis)) == self.turn_sign
     }
 }
 
@@ -153,53 +154,53 @@ impl<'a> Search<'a> {
         sorted.into_iter().map(|(_, at)| at).collect()
     }
 
-    /// Numbers and lists the needles of the piece around a first one; needles without area may belong to any
-    /// piece.
-    fn piece_around(&mut self, first: u32, view: View, number: u32) -> Vec<u32> {
+    /// Numbers and lists the needles in the piece (smooth connected part of the surface) around a first
+    /// needle; needles without area may belong to any piece.
+    fn piece_around(&mut self, first: u32, projection: Projection, number: u32) -> Vec<u32> {
         self.pieces[first as usize] = number;
         let mut piece = vec![first];
-        let mut open = match view.way {
+        let mut open = match projection.turn_sign {
             Sign::Zero => Vec::new(),
             _ => vec![(first, normal(&self.corners(first)))],
         };
         while let Some((at, bearing)) = open.pop() {
             poll();
-            for mate in self.mates_of(at).into_iter().flatten() {
-                if self.pieces[mate as usize] != NONE {
+            for neighbour in self.neighbours_of(at).into_iter().flatten() {
+                if self.pieces[neighbour as usize] != NONE {
                     continue;
                 }
-                let corners = self.corners(mate);
+                let corners = self.corners(neighbour);
                 let own = normal(&corners);
-                let next = if is_smooth(&bearing, &own) && view.shows(&corners) {
+                let next = if is_smooth(&bearing, &own) && projection.faces_viewer(&corners) {
                     own
                 } else if has_no_area(&corners) {
                     bearing
                 } else {
                     continue;
                 };
-                self.pieces[mate as usize] = number;
-                piece.push(mate);
-                open.push((mate, next));
+                self.pieces[neighbour as usize] = number;
+                piece.push(neighbour);
+                open.push((neighbour, next));
             }
         }
         piece
     }
 
-    fn mates_of(&self, at: u32) -> [Option<u32>; 3] {
+    fn neighbours_of(&self, at: u32) -> [Option<u32>; 3] {
         edges(self.triangle(at)).map(|[from, to]| self.owners.get(&[to, from]).copied())
     }
 
-    /// The edges that only one needle of a piece has, in the projection and directed so that all needles turn
-    /// left.
-    fn outline(&self, piece: &[u32], view: View) -> Vec<[Place; 2]> {
+    /// The edges that only one needle of a piece (a smooth connected part of the surface) has, in the
+    /// projection and directed so that all needles turn left.
+    fn outline(&self, piece: &[u32], projection: Projection) -> Vec<[PlanarPoint; 2]> {
         let number = self.pieces[piece[0] as usize];
         let mut outline = Vec::new();
         for at in piece {
-            let seen = seen_along(&self.corners(*at), view.axis);
-            for (i, mate) in self.mates_of(*at).into_iter().enumerate() {
-                if mate.is_none_or(|m| self.pieces[m as usize] != number) {
+            let seen = seen_along(&self.corners(*at), projection.axis);
+            for (i, neighbour) in self.neighbours_of(*at).into_iter().enumerate() {
+                if neighbour.is_none_or(|m| self.pieces[m as usize] != number) {
                     let [from, to] = [seen[i], seen[(i + 1) % 3]];
-                    let is_left = view.way == Sign::Positive;
+                    let is_left = projection.turn_sign == Sign::Positive;
                     outline.push(if is_left { [from, to] } else { [to, from] });
                 }
             }
@@ -208,10 +209,10 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Return whether the angle between two normals is small: its tangent is at most [`MAX_BEND_TANGENT`].
+/// Return whether the angle between two normals is small: its tangent is at most [`MAX_FOLD_TANGENT`].
 fn is_smooth(a: &Point, b: &Point) -> bool {
     let (along, across) = (dot(a, b), cross(a, b));
-    along > 0.0 && dot(&across, &across) <= MAX_BEND_TANGENT * MAX_BEND_TANGENT * along * along
+    along > 0.0 && dot(&across, &across) <= MAX_FOLD_TANGENT * MAX_FOLD_TANGENT * along * along
 }
 
 #[cfg(test)]
@@ -266,7 +267,7 @@ mod tests {
         assert!(found(&vertices, &triangles).iter().all(|piece| *piece == 0));
         let (vertices, triangles) = ring(400, |x, _| x.abs());
         let pieces = found(&vertices, &triangles);
-        let side = |t: usize| vertices[triangles[t][1].place()][0] > 0.0;
+        let side = |t: usize| vertices[triangles[t][1].index()][0] > 0.0;
         let right = (0..800).find(|t| side(*t)).expect("a triangle");
         let left = (0..800).find(|t| !side(*t)).expect("a triangle");
         let of_side = |t: usize| pieces[if side(t) { right } else { left }];

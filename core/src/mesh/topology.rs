@@ -45,7 +45,7 @@ impl Topology {
         let has_several_fans = |vertex: &VertexId| {
             let row = outgoing.of(*vertex);
             let first = row.iter().map(|half| half.number).min();
-            row.len() > 3 && first.is_some_and(|first| turns(first, mates_of) < row.len())
+            row.len() > 3 && first.is_some_and(|first| fan_size(first, mates_of) < row.len())
         };
         let all = VertexId::all().take(vertex_count);
         irregular.extend(all.filter(has_several_fans));
@@ -81,7 +81,7 @@ impl Topology {
 
 /// Returns the number of half-edges that leave a vertex in the fan of one of them; `usize::MAX` if the fan is
 /// open.
-fn turns(start: u32, mate: impl Fn(u32) -> u32) -> usize {
+fn fan_size(start: u32, mate: impl Fn(u32) -> u32) -> usize {
     let mut half = start;
     let mut count = 0;
     loop {
@@ -121,7 +121,7 @@ impl Outgoing {
     fn new(faces: &[[VertexId; 3]], vertex_count: usize) -> Self {
         let mut starts = vec![0u32; vertex_count + 1];
         for vertex in faces.iter().flatten() {
-            starts[vertex.place() + 1] += 1;
+            starts[vertex.index() + 1] += 1;
         }
         for i in 0..vertex_count {
             starts[i + 1] += starts[i];
@@ -130,7 +130,7 @@ impl Outgoing {
         let mut halves = vec![OutgoingHalfEdge::default(); 3 * faces.len()];
         for (number, vertex) in (0u32..).zip(faces.iter().flatten()) {
             poll();
-            let slot = &mut next[vertex.place()];
+            let slot = &mut next[vertex.index()];
             let head = ends(faces, number).1;
             halves[*slot as usize] = OutgoingHalfEdge { head, number };
             *slot += 1;
@@ -143,7 +143,7 @@ impl Outgoing {
     }
 
     fn of(&self, vertex: VertexId) -> &[OutgoingHalfEdge] {
-        let row = &self.starts[vertex.place()..vertex.place() + 2];
+        let row = &self.starts[vertex.index()..vertex.index() + 2];
         &self.halves[row[0] as usize..row[1] as usize]
     }
 
@@ -190,8 +190,8 @@ struct LineEdge {
 impl LineEdge {
     fn new(vertices: &[Lattice], faces: &[[VertexId; 3]], half: usize) -> Option<Self> {
         let face = &faces[half / 3];
-        let a = vertices[face[half % 3].place()];
-        let b = vertices[face[(half % 3 + 1) % 3].place()];
+        let a = vertices[face[half % 3].index()];
+        let b = vertices[face[(half % 3 + 1) % 3].index()];
         let (direction, axis, sign) = primitive_direction(&a, &b)?;
         let (low, high) = (a[axis].min(b[axis]), a[axis].max(b[axis]));
         let line = (direction, moment(&a, &direction));

@@ -33,14 +33,14 @@ impl TriangleMesh {
     #[inline]
     pub fn corners(&self, face: FaceId) -> [Lattice; 3] {
         let [a, b, c] = self.vertices_of(face);
-        let at = |vertex: VertexId| self.vertices[vertex.place()];
+        let at = |vertex: VertexId| self.vertices[vertex.index()];
         [at(a), at(b), at(c)]
     }
 
     /// The vertex numbers of a face's corners.
     #[inline]
     pub fn vertices_of(&self, face: FaceId) -> [VertexId; 3] {
-        self.faces[face.place()]
+        self.faces[face.index()]
     }
 
     /// The lowest and highest corner of the lattice box around a face.
@@ -67,16 +67,19 @@ impl TriangleMesh {
     }
 
     /// For each vertex, the first vertex at the same lattice point.
-    pub fn firsts(&self) -> Vec<VertexId> {
-        firsts(&self.vertices)
+    pub fn first_equal_vertices(&self) -> Vec<VertexId> {
+        first_equal_vertices(&self.vertices)
     }
 
     /// The first vertex at each lattice point where another vertex has other doubles, ascending.
     pub fn blurred(&self) -> Vec<VertexId> {
-        let firsts = VertexId::all().zip(self.firsts());
-        let bits = |v: VertexId| self.doubles[v.place()].map(f64::to_bits);
+        let first_equal_vertices = VertexId::all().zip(self.first_equal_vertices());
+        let bits = |v: VertexId| self.doubles[v.index()].map(f64::to_bits);
         let differ = |(v, first): &(VertexId, VertexId)| bits(*v) != bits(*first);
-        let mut blurred: Vec<VertexId> = firsts.filter(differ).map(|(_, first)| first).collect();
+        let mut blurred: Vec<VertexId> = first_equal_vertices
+            .filter(differ)
+            .map(|(_, first)| first)
+            .collect();
         blurred.sort_unstable();
         blurred.dedup();
         blurred
@@ -106,12 +109,12 @@ impl TriangleMesh {
 }
 
 /// For each lattice point of a list, the index of the first point equal to it.
-pub fn firsts(points: &[Lattice]) -> Vec<VertexId> {
+pub fn first_equal_vertices(points: &[Lattice]) -> Vec<VertexId> {
     let mut first: HashMap<Lattice, VertexId> =
         HashMap::with_capacity_and_hasher(points.len(), FxBuildHasher);
-    let places = VertexId::all().zip(points);
-    places
-        .map(|(vertex, place)| *first.entry(*place).or_insert(vertex))
+    let points = VertexId::all().zip(points);
+    points
+        .map(|(vertex, point)| *first.entry(*point).or_insert(vertex))
         .collect()
 }
 
@@ -121,14 +124,14 @@ mod tests {
 
     #[test]
     fn the_first_of_a_place_is_blurred_where_others_have_other_doubles() {
-        let places = [0, 7, 0, 7, 9];
+        let points = [0, 7, 0, 7, 9];
         let doubles = [0.0, 7.0, 0.1, 7.0, 9.2];
         let mesh = TriangleMesh {
-            vertices: places.map(|x| [x, 0, 0]).to_vec(),
+            vertices: points.map(|x| [x, 0, 0]).to_vec(),
             doubles: doubles.map(|x| [x, 0.0, 0.0]).to_vec(),
             ..TriangleMesh::default()
         };
-        assert_eq!(mesh.firsts(), [0, 1, 0, 1, 4].map(VertexId));
+        assert_eq!(mesh.first_equal_vertices(), [0, 1, 0, 1, 4].map(VertexId));
         assert_eq!(mesh.blurred(), [VertexId(0)]);
     }
 }

@@ -67,17 +67,17 @@ impl PointTable {
             self.grow();
         }
         let hash = hash_of(&point);
-        let mut place = self.home_slot(hash);
-        while self.slots[place].next != 0 {
-            let number = VertexId(self.slots[place].next - 1);
-            if self.slots[place].hash == hash && are_same(&self.points[number.place()], &point) {
+        let mut index = self.home_slot(hash);
+        while self.slots[index].next != 0 {
+            let number = VertexId(self.slots[index].next - 1);
+            if self.slots[index].hash == hash && are_same(&self.points[number.index()], &point) {
                 return number;
             }
-            place = self.after(place);
+            index = self.next_slot(index);
         }
         self.points.push(point);
         let next = as_number(self.points.len());
-        self.slots[place] = Slot { next, hash };
+        self.slots[index] = Slot { next, hash };
         VertexId(next - 1)
     }
 
@@ -86,11 +86,11 @@ impl PointTable {
         let larger = (2 * self.slots.len()).max(INITIAL_SLOTS);
         let slots = std::mem::replace(&mut self.slots, vec![Slot::default(); larger]);
         for slot in slots.into_iter().filter(|slot| slot.next != 0) {
-            let mut place = self.home_slot(slot.hash);
-            while self.slots[place].next != 0 {
-                place = self.after(place);
+            let mut index = self.home_slot(slot.hash);
+            while self.slots[index].next != 0 {
+                index = self.next_slot(index);
             }
-            self.slots[place] = slot;
+            self.slots[index] = slot;
         }
     }
 
@@ -99,8 +99,8 @@ impl PointTable {
         hash as usize & (self.slots.len() - 1)
     }
 
-    fn after(&self, place: usize) -> usize {
-        (place + 1) & (self.slots.len() - 1)
+    fn next_slot(&self, index: usize) -> usize {
+        (index + 1) & (self.slots.len() - 1)
     }
 }
 
@@ -165,13 +165,13 @@ mod tests {
             table.number_of(point);
         }
         let slots = &table.slots;
-        let away = |place: usize| {
-            let home_slot = table.home_slot(slots[place].hash);
-            (place + slots.len() - home_slot) % slots.len()
+        let away = |index: usize| {
+            let home_slot = table.home_slot(slots[index].hash);
+            (index + slots.len() - home_slot) % slots.len()
         };
         let taken: Vec<_> = (0..slots.len()).filter(|&k| slots[k].next != 0).collect();
         // With half of the slots occupied, a random hash ends half a slot from its home slot on average.
-        assert!(taken.iter().map(|&place| away(place)).sum::<usize>() < taken.len());
+        assert!(taken.iter().map(|&index| away(index)).sum::<usize>() < taken.len());
     }
 
     #[test]

@@ -48,7 +48,7 @@ pub fn triangles_of(
         u32::try_from(v)
             .ok()
             .map(VertexId)
-            .filter(|v| v.place() < vertex_count)
+            .filter(|v| v.index() < vertex_count)
     };
     let row = |(t, corners): (usize, &[i64; 3])| {
         if let [Some(a), Some(b), Some(c)] = corners.map(index) {

@@ -24,7 +24,7 @@ use crate::geometry::spaces::dim3::Dim3;
 use crate::geometry::spaces::motion::Motion;
 use crate::interrupt::poll;
 use crate::merge::descent::counters::Counters;
-use crate::merge::evaluate::{evaluate, explained, normalize, settled};
+use crate::merge::evaluate::{blamed_on_snapshot, evaluate, normalize, union_with_itself};
 use crate::merge::expression::{Expression, Term};
 use crate::merge::profile::Declined;
 use crate::merge::rule::Rule;
@@ -99,8 +99,8 @@ impl Tree {
         size: usize,
         work: impl FnOnce() -> Result<T> + Send,
     ) -> PyResult<T> {
-        let explained = || caught(work).map_err(|e| explained(&self.solid, e));
-        run(py, threads, size, explained).map_err(|e| {
+        let blamed_on_snapshot = || caught(work).map_err(|e| blamed_on_snapshot(&self.solid, e));
+        run(py, threads, size, blamed_on_snapshot).map_err(|e| {
             with_report(py, e, &format!("Tree.{method}"), || {
                 let inputs = PyDict::new(py);
                 let operand = Bound::new(py, Self::of(self.solid.clone()))?;
@@ -177,7 +177,7 @@ impl Tree {
                 Ok(inputs)
             })
         })?;
-        let source = source.noting(rounded.map(operand_rounded).into_iter().collect());
+        let source = source.with_findings(rounded.map(operand_rounded).into_iter().collect());
         Ok(Self::of(Solid::of_source(Arc::new(source), trusted)))
     }
 
@@ -263,8 +263,8 @@ impl Tree {
         };
         if rule == Rule::Positive {
             let size = work_to_settle(&self.solid);
-            let settled = || settled(&self.solid);
-            if let Some(solid) = self.run(py, "normalized", threads, size, settled)? {
+            let union_with_itself = || union_with_itself(&self.solid);
+            if let Some(solid) = self.run(py, "normalized", threads, size, union_with_itself)? {
                 return Ok(Self::of(solid));
             }
         }
@@ -367,7 +367,7 @@ impl Tree {
     /// Return the arrays of the input mesh that the solid is.
     fn given_arrays<'py>(&self, py: Python<'py>) -> PyResult<MeshArrays<'py>> {
         let mesh = self.run(py, "given_arrays", 0, 0, || {
-            let text = "the solid is not one unchanged input mesh, so it has no given arrays";
+            let text = "the solid is not one unchanged input mesh, so no given arrays exist";
             self.given().ok_or_else(|| Error::internal(text))
         })?;
         Ok((
@@ -384,7 +384,7 @@ impl Tree {
     /// Return for each source whether its faces may bound the solid.
     #[getter]
     fn named(&self) -> Vec<bool> {
-        let names = self.solid.names();
+        let names = self.solid.source_ids();
         let sources = self.solid.sources().iter();
         sources.map(|s| names.contains(&s.id())).collect()
     }
@@ -645,7 +645,8 @@ fn term(name: &str, arguments: Vec<u32>) -> Result<Term> {
         ("xor", _) => Ok(Term::Xor(arguments)),
         _ => {
             let text = format!(
-                "'{name}' with {} arguments is not a valid line",
+                "'{name}' with {} arguments is not a line of an expression; use leaf or not with one \
+                 argument, or or, and, xor with any number",
                 arguments.len()
             );
             Err(Error::new(ErrorKind::Shape, text))
@@ -655,7 +656,7 @@ fn term(name: &str, arguments: Vec<u32>) -> Result<Term> {
 
 fn motion(axes: [i64; 3], shift: [i64; 3]) -> Result<Motion> {
     Motion::of_axes(&axes, &shift).ok_or_else(|| {
-        let text = format!("{axes:?} is not a signed permutation of [1, 2, 3]");
+        let text = format!("the axes {axes:?} must contain 1, 2 and 3 once each, with either sign");
         Error::new(ErrorKind::Shape, text)
     })
 }

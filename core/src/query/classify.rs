@@ -98,7 +98,7 @@ impl Search<'_> {
         let mut open = vec![(root.clone(), points)];
         while let Some((branch, points)) = open.pop() {
             poll();
-            let (points, around) = self.split(points, |p| branch.cell.holds_box(p, p));
+            let (points, around) = self.split(points, |p| branch.cell.contains_box(p, p));
             self.label(&around, branch.outside);
             if points.is_empty() {
                 continue;
@@ -133,7 +133,7 @@ impl Search<'_> {
                 continue;
             }
             let small = list.len() <= MAX_ELEMENTS_SEARCHED
-                || list.reaching_out(&cell) * 8 > list.len() * 7;
+                || list.count_reaching_out(&cell) * 8 > list.len() * 7;
             match cell.cut().filter(|_| !small) {
                 Some(cut) => {
                     let (below, above) = self.split(points, |p| p[cut.axis] < cut.at);

@@ -11,9 +11,9 @@ use crate::tree::solid::Solid;
 
 /// The lattice point of a vertex; `None` if the vertex is not known to be one.
 pub(super) fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: VertexId) -> Option<Lattice> {
-    match mesh.vertices[vertex.place()] {
+    match mesh.vertices[vertex.index()] {
         Corner::Source(slot, index) => {
-            Some(solid.sources().get(slot).mesh()?.vertices[index.place()])
+            Some(solid.sources().get(slot).mesh()?.vertices[index.index()])
         }
         Corner::Point(point) => mesh.table.point(point).as_lattice().copied(),
     }
@@ -21,7 +21,7 @@ pub(super) fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: VertexId) -> Opti
 
 /// The exact position of a vertex.
 pub(super) fn vertex(solid: &Solid, mesh: &ExactMesh, vertex: VertexId) -> Vertex {
-    match mesh.vertices[vertex.place()] {
+    match mesh.vertices[vertex.index()] {
         Corner::Point(point) => Vertex::clone(mesh.table.point(point)),
         Corner::Source(..) => Vertex::lattice(lattice(solid, mesh, vertex).unwrap_or_default()),
     }

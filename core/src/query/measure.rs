@@ -7,7 +7,7 @@ use super::shares::Shares;
 use crate::arith::{ratio_to_f64, Int, P1, P2};
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::assemble::assemble;
-use crate::geometry::flux::fixed::FLUX_PLACES;
+use crate::geometry::flux::fixed::FLUX_FRACTION_BITS;
 use crate::tree::flux::share;
 use crate::tree::solid::Solid;
 
@@ -82,7 +82,7 @@ fn flux_in_units(flux: &Int<6>, exponent: i64) -> Option<f64> {
     const MAX_EXPONENT: u64 = 25;
     let size = exponent.unsigned_abs();
     let power = (0..3 * size.min(MAX_EXPONENT)).fold(Int::<4>::ONE, |p, _| p.mul_i64(10));
-    let units = Int::<3>::from_limbs([0, 0, 6 << (FLUX_PLACES - 128)]);
+    let units = Int::<3>::from_limbs([0, 0, 6 << (FLUX_FRACTION_BITS - 128)]);
     let ratio = if exponent < 0 {
         ratio_to_f64(flux, &units.mul::<4, 7>(&power))
     } else {

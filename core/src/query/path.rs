@@ -39,7 +39,7 @@ pub fn locate<S: Affine>(tree: &FragmentTree<S>, point: &Viewpoint) -> Vec<Point
     let mut next = (!tree.nodes().is_empty()).then_some(NodeId::ROOT);
     while let Some(number) = next {
         poll();
-        let node = &tree.nodes()[number.place()];
+        let node = &tree.nodes()[number.index()];
         let side = point.side::<S>(&node.hyperplane);
         steps.push(PointStep { node: number, side });
         next = match side {
@@ -67,13 +67,13 @@ pub enum RayEvent {
         /// The parameter at which the ray's line crosses the hyperplane; `None` if it is parallel.
         at: Option<f64>,
     },
-    /// A piece in the hyperplane of a node is tested.
+    /// The ray is tested against a piece of a facet in the hyperplane of a node.
     Test {
         /// The number of the node.
         node: NodeId,
-        /// The number of the piece.
+        /// The number of the piece of a facet.
         piece: u32,
-        /// The parameter at which the ray meets the piece; `None` if it does not.
+        /// The parameter at which the ray meets the piece of a facet; `None` if it does not.
         at: Option<f64>,
     },
     /// The ray enters a leaf, which is an empty region.
@@ -90,13 +90,14 @@ pub enum RayEvent {
 /// The first facet that a ray meets in a tree, and the cost of finding it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RayPath {
-    /// The number of the piece and the parameter, correctly rounded; `None` if the ray meets no piece.
+    /// The number of the piece of a facet and the parameter, correctly rounded; `None` if the ray meets no
+    /// piece.
     pub hit: Option<(u32, f64)>,
     /// The number of inner nodes visited.
     pub nodes: u64,
     /// The number of leaves visited.
     pub leaves: u64,
-    /// The number of pieces tested.
+    /// The number of pieces of facets tested.
     pub tests: u64,
 }
 
@@ -225,7 +226,7 @@ impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D
 
     fn visit(&mut self, number: NodeId, stretch: Stretch, open: &mut Vec<StackEntry>) {
         self.path.nodes += 1;
-        let node = &self.tree.nodes()[number.place()];
+        let node = &self.tree.nodes()[number.index()];
         let crossing = Crossing::of::<S, D>(&node.hyperplane, self.ray);
         let (pitch, exponent) = (self.pitch, self.ray.exponent());
         let units = |at: Ratio| parameter(pitch, &at, exponent);
@@ -263,7 +264,7 @@ impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D
     }
 
     fn test(&mut self, number: NodeId) {
-        let node = &self.tree.nodes()[number.place()];
+        let node = &self.tree.nodes()[number.index()];
         let range = node.coplanar.start as usize..node.coplanar.end as usize;
         for fragment in &self.tree.fragments()[range] {
             let piece = fragment.piece.number;

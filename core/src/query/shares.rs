@@ -17,7 +17,7 @@ use crate::geometry::plane::Lattice;
 use crate::geometry::unbounded::big;
 use crate::interrupt::{poll, spend};
 use crate::mesh::handle::VertexId;
-use crate::mesh::tasks::{both, Worth};
+use crate::mesh::tasks::{both, WorkSize};
 use crate::tree::solid::Solid;
 
 /// A sum is reduced if its denominator has at most this many bits: for longer ones finding the common
@@ -27,7 +27,7 @@ const MAX_BITS_REDUCED: u64 = 1024;
 /// Groups of at least this many triangles are summed as two tasks, of more than 100 µs each.
 const MIN_TRIANGLES_DIVIDED: usize = 64;
 
-/// The shares of all triangles of a mesh in six times its volume, in cubic steps.
+/// The contributions (shares) of all triangles of a mesh to six times its volume, in cubic steps.
 pub struct Shares {
     /// The sum of the shares of all triangles between lattice points.
     pub whole: BigInt,
@@ -38,7 +38,7 @@ pub struct Shares {
     uses: Vec<u32>,
 }
 
-/// The share of one triangle with constructed corners in six times the volume.
+/// The contribution (share) of one triangle with constructed corners to six times the volume.
 struct Share {
     /// The numerator; the denominator is the product of the weights of `points`.
     value: BigInt,
@@ -48,7 +48,8 @@ struct Share {
     at: [f64; 3],
 }
 
-/// A sum of shares, whose denominator is the product of `closed` and of the weights of the `open` points.
+/// A sum of contributions of triangles to the volume, whose denominator is the product of `closed` and of the
+/// weights of the `open` points.
 struct Partial {
     numerator: BigInt,
     /// The product of the weights of points that only this sum uses.
@@ -86,7 +87,7 @@ impl Shares {
                 continue;
             }
             let numbers = [0, 1, 2].map(|i| {
-                let number = &mut known[triangle[i].place()];
+                let number = &mut known[triangle[i].index()];
                 *number.get_or_insert_with(|| {
                     points.push(Point::of(solid, mesh, triangle[i]));
                     points.len() as u32 - 1
@@ -109,7 +110,8 @@ impl Shares {
         used.map(|(weight, _)| weight.bits()).sum()
     }
 
-    /// Yields the shares of triangles with constructed corners, rounded down to multiples of 2^-`places`.
+    /// Yields the contributions to the volume of triangles with constructed corners, rounded down to
+    /// multiples of 2^-`places`.
     pub fn near(&self, places: usize) -> impl Iterator<Item = BigInt> + '_ {
         self.cut.iter().map(move |share| {
             poll();
@@ -118,7 +120,8 @@ impl Shares {
         })
     }
 
-    /// Returns the sum of all shares modulo a prime; `None` if a weight is a multiple of it.
+    /// Returns the sum of all triangles' contributions to the volume modulo a prime; `None` if a weight is a
+    /// multiple of it.
     pub fn modulo(&self, prime: u64) -> Option<u64> {
         let residue = |n: &BigInt| {
             let rest = n.mod_floor(&BigInt::from(prime));
@@ -139,7 +142,8 @@ impl Shares {
         Some(self.cut.iter().map(share).fold(residue(&self.whole), add))
     }
 
-    /// Returns the sum of all shares as a numerator and a positive denominator.
+    /// Returns the sum of all triangles' contributions to the volume, as a numerator and a positive
+    /// denominator.
     pub fn sum(mut self) -> (BigInt, BigInt) {
         let mut cut = std::mem::take(&mut self.cut);
         let sum = self.partial(&mut cut);
@@ -165,15 +169,15 @@ impl Shares {
                 open: share.points.iter().map(|p| (*p, 1)).collect(),
             }),
             _ => {
-                let worth = Worth::pool_if(shares.len() >= MIN_TRIANGLES_DIVIDED);
+                let work_size = WorkSize::pool_if(shares.len() >= MIN_TRIANGLES_DIVIDED);
                 let (low, high) = halves(shares);
-                let (low, high) = both(worth, || self.partial(low), || self.partial(high));
+                let (low, high) = both(work_size, || self.partial(low), || self.partial(high));
                 self.joined(low, high)
             }
         }
     }
 
-    /// Adds two sums of shares.
+    /// Adds two sums of triangles' contributions to the volume.
     fn joined(&self, a: Partial, b: Partial) -> Partial {
         let missing = |here: &[(u32, u32)], there: &[(u32, u32)]| {
             let lacks = |p: &&(u32, u32)| here.binary_search_by_key(&p.0, |q| q.0).is_err();
@@ -261,7 +265,8 @@ impl Point {
     }
 }
 
-/// Halves a list of shares by the centres of their triangles, along the axis on which these extend farthest.
+/// Halves a list of triangles' contributions to the volume by the centres of the triangles, along the axis on
+/// which these extend farthest.
 fn halves(shares: &mut [Share]) -> (&mut [Share], &mut [Share]) {
     let extent = |axis: usize| {
         let ends = shares

@@ -17,7 +17,7 @@ use crate::extract::rounding::snapping::{
 use crate::geometry::cell::Cell;
 use crate::geometry::edge::LatticeEdge;
 use crate::geometry::line::{LineKey, PlaneResidues};
-use crate::geometry::outline::{settled, BareEdge, OutlineEdge};
+use crate::geometry::outline::{cancelled_if_needed, BareEdge, OutlineEdge};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Carrier;
 use crate::geometry::side::{Half, Orientation, Side};
@@ -32,7 +32,7 @@ use crate::mesh::handle::{FaceId, Slot, VertexId};
 use crate::mesh::import::is_flat;
 use crate::mesh::source::{Shape, Source};
 use crate::mesh::triangles::TriangleMesh;
-use crate::tree::node::{Branch, Deferred, Group, Node, Part, PartElement};
+use crate::tree::node::{Branch, DeferredLeaf, FaceGroup, Node, Part, PartElement};
 use crate::tree::solid::Solid;
 
 /// The exact boundary of a solid as plain data, without its tree.
@@ -105,7 +105,8 @@ enum VertexData {
 struct PlaneData([i128; 3], [u64; 3]);
 
 fn too_large() -> Error {
-    let text = "the moved or refined solid does not fit the lattice of 2^53 steps";
+    let text = "the moved or refined solid does not fit the lattice of 2^53 steps; move the solid less, or \
+                choose a coarser pitch";
     Error::new(ErrorKind::TooLarge, text)
 }
 
@@ -157,19 +158,19 @@ impl Snapshot {
         let Some(cell) = cell.filter(|_| !(self.wholes.is_empty() && self.parts.is_empty())) else {
             return Ok(Solid::uniform(pitch, self.outside > 0));
         };
-        let mut leaf = Deferred {
+        let mut leaf = DeferredLeaf {
             corner: self.outside,
-            ..Deferred::default()
+            ..DeferredLeaf::default()
         };
         for w in &self.wholes {
             poll();
-            let source = sources.get(w.slot.place()).ok_or_else(bad_snapshot)?;
-            let known = w.faces.iter().all(|f| f.place() < source.face_count());
+            let source = sources.get(w.slot.index()).ok_or_else(bad_snapshot)?;
+            let known = w.faces.iter().all(|f| f.index() < source.face_count());
             if !known || !w.faces.is_sorted_by(|a, b| a < b) {
                 return Err(bad_snapshot());
             }
             let source = Arc::clone(source);
-            leaf.groups.push(Group {
+            leaf.groups.push(FaceGroup {
                 source,
                 orientation: w.manner.orientation(),
                 touching: w.manner.is_touching(),
@@ -227,7 +228,9 @@ impl Snapshot {
     /// `TooLarge` if a point or plane leaves the lattice.
     pub fn moved(&self, motion: &Motion, pitch: Pitch) -> Result<Self> {
         if self.reaches_infinity() {
-            let text = "an unbounded solid other than a half-space cannot be moved";
+            let text =
+                "an unbounded solid other than a half-space cannot be moved; intersect the solid \
+                        with a box first";
             return Err(Error::new(ErrorKind::Unbounded, text));
         }
         let mut image = self.clone();
@@ -277,7 +280,7 @@ impl Snapshot {
     fn reaches_infinity(&self) -> bool {
         let unbounded = |slot: Slot| {
             matches!(
-                self.sources.get(slot.place()),
+                self.sources.get(slot.index()),
                 Some(SourceData::HalfSpace(_))
             )
         };
@@ -297,7 +300,7 @@ impl Snapshot {
     /// decides it.
     fn label_at_infinity(&self) -> Result<i32> {
         if let [only] = self.wholes.as_slice()
-            && let Some(SourceData::HalfSpace(plane)) = self.sources.get(only.slot.place())
+            && let Some(SourceData::HalfSpace(plane)) = self.sources.get(only.slot.index())
         {
             let side = plane.plane()?.side_of_corner(&Cell::UNIVERSE.corner());
             let turned = only.manner.orientation().is_opposite();
@@ -321,8 +324,8 @@ impl Snapshot {
 
     /// Decodes a solid from bytes, which are checked in full.
     ///
-    /// One claim is trusted ([`Solid::claimed`]): that the faces are the reduced boundary. Checking it would
-    /// cost ten times as much as all other checks together.
+    /// One claim is trusted ([`Solid::marked_as_claimed`]): that the faces are the reduced boundary. Checking
+    /// it would cost ten times as much as all other checks together.
     ///
     /// # Errors
     /// `BadSnapshot`.
@@ -332,7 +335,7 @@ impl Snapshot {
         if !matches!(snapshot.outside, 0 | 1) || !is_sound(&solid) {
             return Err(bad_snapshot());
         }
-        Ok(solid.claimed())
+        Ok(solid.marked_as_claimed())
     }
 }
 
@@ -348,7 +351,7 @@ impl SourceData {
         let mut is_named = vec![false; solid.sources().len()];
         let slots = wholes.iter().map(|w| w.slot);
         for slot in slots.chain(parts.iter().map(|p| p.slot)) {
-            is_named[slot.place()] = true;
+            is_named[slot.index()] = true;
         }
         let all = solid.sources().iter().zip(is_named);
         all.map(|(source, is_named)| {
@@ -463,17 +466,17 @@ fn is_sound_mesh(mesh: &TriangleMesh) -> bool {
         numbers,
     } = mesh;
     let count = vertices.len();
-    let named = faces.iter().flatten().all(|v| v.place() < count);
+    let named = faces.iter().flatten().all(|v| v.index() < count);
     let fits = vertices.iter().flatten().all(|k| is_coordinate(*k));
     let numbered = numbers.as_ref().is_none_or(|n| n.len() == faces.len());
-    let flat = |f: &[VertexId; 3]| is_flat(&f.map(|v| vertices[v.place()]));
+    let flat = |f: &[VertexId; 3]| is_flat(&f.map(|v| vertices[v.index()]));
     named && fits && numbered && doubles.len() == count && !faces.iter().any(flat)
 }
 
 impl PartData {
     fn element(&self, sources: &[Arc<Source>], home: Cell) -> Result<PartElement> {
-        let source = sources.get(self.slot.place()).ok_or_else(bad_snapshot)?;
-        if self.face.place() >= source.face_count() {
+        let source = sources.get(self.slot.index()).ok_or_else(bad_snapshot)?;
+        if self.face.index() >= source.face_count() {
             return Err(bad_snapshot());
         }
         let support = source.plane(self.face);
@@ -485,7 +488,12 @@ impl PartData {
         if !is_balanced(&edges) {
             return Err(bad_snapshot());
         }
-        let part = Part::new(Arc::clone(source), self.face, home, settled(edges));
+        let part = Part::new(
+            Arc::clone(source),
+            self.face,
+            home,
+            cancelled_if_needed(edges),
+        );
         Ok(PartElement {
             part: Arc::new(part),
             orientation: Orientation::turned_around(self.flip),
@@ -570,7 +578,7 @@ fn carries(carrier: &Carrier, support: &Plane, from: &Vertex, to: &Vertex) -> bo
         }
         Carrier::Cut(plane, _) => crosses(plane) && on(plane),
     };
-    carried && on(support) && !from.same(to)
+    carried && on(support) && !from.equals(to)
 }
 
 /// Returns true if, at each point, as many edges of an outline start as end.

@@ -19,7 +19,7 @@ use crate::mesh::grid::Pitch;
 use crate::mesh::handle::{OrientedFace, SourceFace};
 use crate::mesh::source::Source;
 use crate::mesh::triangles::TriangleMesh;
-use crate::tree::node::{Deferred, Node, Part, PartElement};
+use crate::tree::node::{DeferredLeaf, Node, Part, PartElement};
 use crate::tree::solid::Solid;
 
 /// Returns true if the leaf of a one-leaf solid, whose indices and ranges are checked already, is the
@@ -42,7 +42,7 @@ fn is_proper(source: &Source) -> bool {
     };
     let numbers = mesh.numbers.iter();
     let ascending = |n: &Vec<u32>| n.is_sorted_by(|a, b| a < b);
-    numbers.into_iter().all(ascending) && doubles_fit(mesh, source.pitch()) && source.closes()
+    numbers.into_iter().all(ascending) && doubles_fit(mesh, source.pitch()) && source.is_closed()
 }
 
 /// Returns true if the doubles of each vertex snap to it, on this lattice or on a coarser one that contains
@@ -82,7 +82,7 @@ fn lies_on_face(part: &Part) -> bool {
         return false;
     }
     let pieces = part.pieces();
-    let bounds = pieces.iter().flat_map(OutlineEdge::all_of);
+    let bounds = pieces.iter().flat_map(OutlineEdge::edges_of);
     let outline = part.outline();
     let reversed = outline.iter().map(OutlineEdge::reversed);
     !pieces.is_empty() && cancel(bounds.chain(reversed).collect()).is_empty()
@@ -107,7 +107,7 @@ fn is_within(part: &Part, face: &Polygon) -> bool {
 }
 
 /// Returns the fate of each listed face; `None` if a face or part is listed twice.
-fn fates(leaf: &Deferred, sources: &Sources) -> Option<Fates> {
+fn fates(leaf: &DeferredLeaf, sources: &Sources) -> Option<Fates> {
     let gone = |s: &Arc<Source>| vec![Fate::Gone; s.face_count()];
     let mut fates = Fates::new(sources.table().iter().map(gone).collect());
     for group in &leaf.groups {
@@ -139,7 +139,7 @@ fn fates(leaf: &Deferred, sources: &Sources) -> Option<Fates> {
 }
 
 /// Returns true if all edges of whole faces and parts cancel, except at the border of the universe.
-fn is_closed(leaf: &Deferred, fates: &Fates, sources: &Sources) -> bool {
+fn is_closed(leaf: &DeferredLeaf, fates: &Fates, sources: &Sources) -> bool {
     let rims = Rims::of(fates, sources);
     let frontier = rims.frontier(fates, sources).into_iter();
     let rim = frontier.filter_map(|edge| rim_edge(edge, fates, sources));
@@ -157,7 +157,7 @@ fn is_closed(leaf: &Deferred, fates: &Fates, sources: &Sources) -> bool {
 /// Returns an edge of a whole face as an outline edge, in the direction of the face's orientation.
 fn rim_edge(edge: FrontierEdge, fates: &Fates, sources: &Sources) -> Option<OutlineEdge> {
     let mesh = sources.get(edge.slot).mesh()?;
-    let [from, to] = half_edge_ends(mesh, edge.half).map(|v| mesh.vertices[v.place()]);
+    let [from, to] = half_edge_ends(mesh, edge.half).map(|v| mesh.vertices[v.index()]);
     let forward = OutlineEdge {
         from: Arc::new(Vertex::lattice(from)),
         to: Arc::new(Vertex::lattice(to)),

@@ -45,7 +45,7 @@ impl Manner {
 }
 
 impl WholeFaces {
-    /// Groups the whole faces of a boundary by source and manner.
+    /// Groups the whole faces of a boundary by source, orientation and whether they may touch other faces.
     pub(super) fn of(boundary: &Boundary) -> Vec<Self> {
         let mut wholes = Vec::new();
         for (slot, fates) in boundary.fates.by_slot() {

@@ -8,15 +8,15 @@ use std::sync::Arc;
 
 use smallvec::SmallVec;
 
-use super::node::{Branch, Deferred, Node, Part};
-use super::share::Share;
+use super::node::{Branch, DeferredLeaf, Node, Part};
+use super::share::VolumeShare;
 use crate::arith::Int;
 use crate::geometry::cell::Cell;
 use crate::geometry::flux::fixed::{
-    minor, of_cubic_steps, of_vertex, sixfold_flux, through, through_ring, Fixed, Flux, Reach,
-    Ring, Triangle, Walls,
+    flux_through_ring, from_cubic_steps, minor, of_vertex, sixfold_flux, through, CoordinateExtent,
+    Fixed, FixedPolygon, Flux, Triangle, Walls,
 };
-use crate::geometry::flux::trim::{trimmed, Rest};
+use crate::geometry::flux::trim::{trimmed, TrimmedFlux};
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Orientation;
 use crate::geometry::vertex::Vertex;
@@ -25,8 +25,8 @@ use crate::mesh::handle::FaceId;
 use crate::mesh::source::{Shape, Source};
 
 /// Return the flux through a branch's boundary, computing only the nodes without a cached share.
-pub fn share(root: &Branch) -> Share {
-    for branch in unknown(root).into_iter().rev() {
+pub fn share(root: &Branch) -> VolumeShare {
+    for branch in branches_without_share(root).into_iter().rev() {
         match &*branch.node {
             Node::Leaf(_) => {}
             Node::Deferred(leaf) => {
@@ -34,36 +34,42 @@ pub fn share(root: &Branch) -> Share {
             }
             Node::Cut(halves) => {
                 halves.share.get_or_make(|| {
-                    let mut sum = Share::NONE;
+                    let mut sum = VolumeShare::NONE;
                     for child in &halves.children {
-                        sum.add(&known(child).unwrap_or(Share::NONE), child.complement);
+                        sum.add(
+                            &cached_share(child).unwrap_or(VolumeShare::NONE),
+                            child.complement,
+                        );
                     }
                     sum
                 });
             }
         }
     }
-    let mut sum = Share::NONE;
-    sum.add(&known(root).unwrap_or(Share::NONE), root.complement);
+    let mut sum = VolumeShare::NONE;
+    sum.add(
+        &cached_share(root).unwrap_or(VolumeShare::NONE),
+        root.complement,
+    );
     sum
 }
 
 /// The cached share of a branch's node, disregarding whether the branch is complemented; `None` if not yet
 /// computed.
-fn known(branch: &Branch) -> Option<Share> {
+fn cached_share(branch: &Branch) -> Option<VolumeShare> {
     match &*branch.node {
-        Node::Leaf(_) => Some(Share::NONE),
+        Node::Leaf(_) => Some(VolumeShare::NONE),
         Node::Deferred(leaf) => leaf.share.get().copied(),
         Node::Cut(halves) => halves.share.get().copied(),
     }
 }
 
 /// The branches under a root without a cached share, each before its children.
-fn unknown(root: &Branch) -> Vec<&Branch> {
+fn branches_without_share(root: &Branch) -> Vec<&Branch> {
     let mut found = Vec::new();
     let mut open = vec![root];
     while let Some(branch) = open.pop() {
-        if known(branch).is_some() {
+        if cached_share(branch).is_some() {
             continue;
         }
         found.push(branch);
@@ -81,15 +87,15 @@ struct Sum {
     /// Six times the flux through the whole faces inside the cell, in cubic steps.
     inside: Int<4>,
     /// The share of all other faces and parts.
-    rest: Share,
+    rest: VolumeShare,
 }
 
-fn leaf_share(leaf: &Deferred, cell: &Cell) -> Share {
+fn leaf_share(leaf: &DeferredLeaf, cell: &Cell) -> VolumeShare {
     let mut sum = Sum {
         walls: Walls::of(cell),
         cell: *cell,
         inside: Int::ZERO,
-        rest: Share::NONE,
+        rest: VolumeShare::NONE,
     };
     for group in &leaf.groups {
         match group.source.shape() {
@@ -106,7 +112,7 @@ fn leaf_share(leaf: &Deferred, cell: &Cell) -> Share {
         poll();
         sum.add_part(&element.part, element.orientation);
     }
-    sum.rest.flux.value += of_cubic_steps(&sum.inside);
+    sum.rest.flux.value += from_cubic_steps(&sum.inside);
     sum.rest
 }
 
@@ -118,13 +124,13 @@ impl Sum {
             return;
         }
         match trimmed(corners, area, &self.walls) {
-            Rest::All => {
+            TrimmedFlux::All => {
                 let flux = sixfold_flux(corners);
                 self.inside += orientation.signed(flux);
             }
-            Rest::Some(flux) => self.rest.flux.add(&flux, orientation),
-            Rest::Nothing => {}
-            Rest::Open => self.add_clipped(corners, area, orientation),
+            TrimmedFlux::Part(flux) => self.rest.flux.add(&flux, orientation),
+            TrimmedFlux::Nothing => {}
+            TrimmedFlux::Undecided => self.add_clipped(corners, area, orientation),
         }
     }
 
@@ -133,8 +139,8 @@ impl Sum {
     fn add_clipped(&mut self, corners: &[Lattice; 3], area: i128, orientation: Orientation) {
         let normal = [minor(corners, 1, 2), minor(corners, 2, 0), area];
         if let Some(ring) = Triangle::new(corners, normal).clipped(&self.walls) {
-            let error = Reach::of_triangle(corners).error(ring.len(), 1, slope(&normal));
-            let value = through_ring(&ring);
+            let error = CoordinateExtent::of_triangle(corners).error(ring.len(), 1, slope(&normal));
+            let value = flux_through_ring(&ring);
             self.rest.flux.add(&Flux { value, error }, orientation);
         }
     }
@@ -145,9 +151,9 @@ impl Sum {
             return;
         };
         self.rest.open |= polygon.edges().any(|(_, _, carrier)| carrier.is_border());
-        let ring: Ring = polygon.corners().iter().map(|c| of_vertex(&c.at)).collect();
-        let error = Reach::of(&ring).error(ring.len(), 1, 0.0);
-        let value = through_ring(&ring);
+        let ring: FixedPolygon = polygon.corners().iter().map(|c| of_vertex(&c.at)).collect();
+        let error = CoordinateExtent::of(&ring).error(ring.len(), 1, 0.0);
+        let value = flux_through_ring(&ring);
         self.rest.flux.add(&Flux { value, error }, orientation);
     }
 
@@ -155,7 +161,7 @@ impl Sum {
     fn add_part(&mut self, part: &Part, orientation: Orientation) {
         let bounded = part.source.mesh().is_some();
         self.rest.open |= !bounded && part.edges.iter().any(|e| e.carrier.is_border());
-        if self.surely_holds(part) {
+        if self.surely_contains(part) {
             let flux = part.flux.get_or_make(|| part_flux(part));
             self.rest.flux.add(flux, orientation);
         } else if let Some(slope) = part_slope(part) {
@@ -165,10 +171,10 @@ impl Sum {
     }
 
     /// Return whether a part of a face lies entirely in the cell; may return false negatives.
-    fn surely_holds(&self, part: &Part) -> bool {
-        self.cell.holds(&part.home) || {
+    fn surely_contains(&self, part: &Part) -> bool {
+        self.cell.contains(&part.home) || {
             let mut corners = part.edges.iter().map(|e| e.from.approx());
-            corners.all(|p| self.walls.surely_hold(&p))
+            corners.all(|p| self.walls.surely_contain(&p))
         }
     }
 }
@@ -184,20 +190,20 @@ fn fan_flux(ends: &[[Fixed; 2]], walls: Option<&Walls>, slope: f64) -> Flux {
     let Some([apex, _]) = ends.first() else {
         return Flux::ZERO;
     };
-    let walls = walls.filter(|w| !w.hold(ends.iter().flatten()));
+    let walls = walls.filter(|w| !w.contain(ends.iter().flatten()));
     let mut rounds = 1;
     let mut value = Int::ZERO;
     for [from, to] in ends.iter().filter(|e| !e.contains(apex)) {
         poll();
         if let Some(walls) = walls {
-            let mut ring: Ring = [*apex, *from, *to].into_iter().collect();
+            let mut ring: FixedPolygon = [*apex, *from, *to].into_iter().collect();
             rounds = rounds.max(1 + walls.clip(&mut ring));
-            value += through_ring(&ring);
+            value += flux_through_ring(&ring);
         } else {
             value += through(apex, from, to);
         }
     }
-    let error = Reach::of(ends.as_flattened()).error(9 * ends.len(), rounds, slope);
+    let error = CoordinateExtent::of(ends.as_flattened()).error(9 * ends.len(), rounds, slope);
     Flux { value, error }
 }
 

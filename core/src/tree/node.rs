@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::share::Share;
+use super::share::VolumeShare;
 use crate::arith::convert::as_whole;
 use crate::geometry::cell::Cell;
 use crate::geometry::flux::fixed::Flux;
@@ -20,11 +20,11 @@ use crate::mesh::source::Source;
 /// Labels are winding numbers: a region is inside the solid where its number is positive.
 #[derive(Debug)]
 pub enum Node {
-    /// A cell without boundary: it has one winding number everywhere.
+    /// A cell of space without boundary: it has one winding number everywhere.
     Leaf(i32),
-    /// A cell whose boundary is listed but not yet partitioned.
-    Deferred(Deferred),
-    /// A cell that is cut into two halves.
+    /// A cell of space whose boundary is listed but not yet partitioned.
+    Deferred(DeferredLeaf),
+    /// A cell of space that is cut into two halves.
     Cut(Halves),
 }
 
@@ -44,7 +44,7 @@ pub struct Halves {
     /// The branches of the minus and of the plus half.
     pub children: [Branch; 2],
     /// The node's share of the solid's volume, once it is computed.
-    pub share: Cached<Share>,
+    pub share: Cached<VolumeShare>,
 }
 
 /// A subtree, with the cell that it describes.
@@ -135,24 +135,24 @@ impl Branch {
 ///
 /// All faces and parts that meet the closed cell are listed; others may be.
 #[derive(Debug, Default)]
-pub struct Deferred {
+pub struct DeferredLeaf {
     /// The whole faces, grouped by source and orientation, with sources in the order of the expression.
-    pub groups: Vec<Group>,
+    pub groups: Vec<FaceGroup>,
     /// The parts of faces.
     pub parts: Vec<PartElement>,
     /// The winding number at the cell's corner of least coordinates.
     pub corner: i32,
     /// True if a kernel made the list; false if it is an operand's boundary, unchanged.
-    pub worked: bool,
+    pub by_kernel: bool,
     /// The leaf's share of the solid's volume, once it is computed.
-    pub share: Cached<Share>,
+    pub share: Cached<VolumeShare>,
 }
 
 /// A list of whole faces of one source with one orientation.
 #[derive(Clone, Debug)]
-pub struct Group {
+pub struct FaceGroup {
     /// True if the faces may touch other faces or parts anywhere, as in results of local trees or a grid;
-    /// false if they touch others only where one of them was cut.
+    /// false if they touch others only where a face was cut.
     pub touching: bool,
     /// The source of the faces.
     pub source: Arc<Source>,
@@ -257,7 +257,7 @@ impl Part {
     }
 }
 
-impl Deferred {
+impl DeferredLeaf {
     /// The number of listed faces and parts.
     pub fn len(&self) -> usize {
         self.parts.len() + self.groups.iter().map(|g| g.faces.len()).sum::<usize>()
@@ -265,7 +265,7 @@ impl Deferred {
 
     /// Return whether all listed faces and parts are perpendicular to coordinate axes.
     pub fn is_orthogonal(&self) -> bool {
-        let faces = |g: &Group| g.faces.iter().all(|f| g.source.is_orthogonal(*f));
+        let faces = |g: &FaceGroup| g.faces.iter().all(|f| g.source.is_orthogonal(*f));
         let part = |p: &PartElement| p.part.source.is_orthogonal(p.part.face);
         self.groups.iter().all(faces) && self.parts.iter().all(part)
     }

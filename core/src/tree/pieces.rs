@@ -59,7 +59,7 @@ mod tests {
         let source = Arc::new(import(&corners, &faces, None).expect("a closed mesh"));
         let home = Cell::UNIVERSE;
         let polygon = source.clip(FaceId(0), &home).expect("it has an area");
-        let edges = BareEdge::all_of(&polygon).collect();
+        let edges = BareEdge::edges_of(&polygon).collect();
         Arc::new(Part::new(source, FaceId(0), home, edges))
     }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::node::{Branch, Deferred, Group, Node, Part, PartElement};
+use super::node::{Branch, DeferredLeaf, FaceGroup, Node, Part, PartElement};
 use super::solid::Solid;
 use crate::interrupt::poll;
 use crate::mesh::cached::Cached;
@@ -72,8 +72,8 @@ impl Renaming {
         }
     }
 
-    fn leaf(&mut self, leaf: &Deferred) -> Deferred {
-        let group = |g: &Group| Group {
+    fn leaf(&mut self, leaf: &DeferredLeaf) -> DeferredLeaf {
+        let group = |g: &FaceGroup| FaceGroup {
             source: self.source(&g.source),
             ..g.clone()
         };
@@ -82,11 +82,11 @@ impl Renaming {
             part: self.part(&p.part),
             ..p.clone()
         };
-        Deferred {
+        DeferredLeaf {
             groups,
             parts: leaf.parts.iter().map(part).collect(),
             corner: leaf.corner,
-            worked: leaf.worked,
+            by_kernel: leaf.by_kernel,
             share: Cached::new(),
         }
     }

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashSet as HashSet;
 
-use super::node::{Branch, Deferred, Group, Node};
-use super::table::Table;
+use super::node::{Branch, DeferredLeaf, FaceGroup, Node};
+use super::table::SourceTable;
 use crate::geometry::cell::Cell;
 use crate::geometry::side::{Half, Orientation};
 use crate::mesh::cached::Cached;
@@ -40,14 +40,14 @@ const SPARE_SOURCES: usize = 64;
 pub struct Solid {
     root: Branch,
     pitch: Pitch,
-    sources: Table,
+    sources: SourceTable,
     /// The number of sources that the tree used when they were last counted.
-    named: usize,
+    used_sources: usize,
     reduced: bool,
     /// True if stored data, which may be forged, say that the solid or an operand is reduced.
-    claimed: bool,
+    reduced_by_claim: bool,
     /// Solids of unchecked meshes: this solid is reduced if all of them are. `None` if not known.
-    doubts: Option<Arc<[Solid]>>,
+    unchecked_meshes: Option<Arc<[Solid]>>,
     simple: Arc<Cached<bool>>,
     united: Arc<Cached<Solid>>,
     /// The number of faces and parts in all cells that kernels solved to make the solid.
@@ -57,16 +57,16 @@ pub struct Solid {
 impl Solid {
     /// A solid from its tree and its sources; `reduced` is true if the listed faces and parts are its reduced
     /// boundary.
-    pub fn new(root: Branch, pitch: Pitch, sources: Table, reduced: bool) -> Self {
-        let named = sources.len();
+    pub fn new(root: Branch, pitch: Pitch, sources: SourceTable, reduced: bool) -> Self {
+        let used_sources = sources.len();
         Self {
             root,
             pitch,
             sources,
-            named,
+            used_sources,
             reduced,
-            claimed: false,
-            doubts: None,
+            reduced_by_claim: false,
+            unchecked_meshes: None,
             simple: Arc::default(),
             united: Arc::default(),
             effort: 0,
@@ -75,7 +75,7 @@ impl Solid {
 
     /// The same solid, with the number of faces and parts in all cells that kernels solved to make it.
     #[must_use]
-    pub fn by_effort(self, effort: u64) -> Self {
+    pub fn with_effort(self, effort: u64) -> Self {
         Self { effort, ..self }
     }
 
@@ -87,51 +87,54 @@ impl Solid {
 
     /// The same solid, noted as reduced only by the word of stored data, which may be forged.
     #[must_use]
-    pub fn claimed(mut self) -> Self {
-        self.claimed = self.reduced;
+    pub fn marked_as_claimed(mut self) -> Self {
+        self.reduced_by_claim = self.reduced;
         self
     }
 
     /// Return whether the solid is known to be reduced only from stored data.
-    pub fn is_claimed(&self) -> bool {
-        self.claimed
+    pub fn is_reduced_by_claim(&self) -> bool {
+        self.reduced_by_claim
     }
 
     /// The same solid as the result of operations on these operands: reduced if all operands are.
     ///
     /// If that is not known yet, the solid stores the meshes that decide it, unless they are too many.
     #[must_use]
-    pub fn made_of(mut self, operands: &[Self]) -> Self {
+    pub fn resulting_from(mut self, operands: &[Self]) -> Self {
         let open: Vec<&Self> = operands.iter().filter(|o| !o.is_reduced()).collect();
         self.reduced = open.is_empty();
-        self.claimed = self.reduced && operands.iter().any(|o| o.claimed);
+        self.reduced_by_claim = self.reduced && operands.iter().any(|o| o.reduced_by_claim);
         if !self.reduced && open.iter().all(|o| o.is_settled_by_meshes()) {
-            let doubts = open
-                .iter()
-                .flat_map(|o| o.doubts.as_deref().unwrap_or(std::slice::from_ref(*o)));
-            let doubts: Vec<Self> = doubts
+            let unchecked_meshes = open.iter().flat_map(|o| {
+                o.unchecked_meshes
+                    .as_deref()
+                    .unwrap_or(std::slice::from_ref(*o))
+            });
+            let unchecked_meshes: Vec<Self> = unchecked_meshes
                 .filter(|d| !d.is_reduced())
                 .take(SPARE_SOURCES + 1)
                 .cloned()
                 .collect();
-            self.doubts = (doubts.len() <= SPARE_SOURCES).then(|| doubts.into());
+            self.unchecked_meshes =
+                (unchecked_meshes.len() <= SPARE_SOURCES).then(|| unchecked_meshes.into());
         }
         self
     }
 
     /// The meshes that decide whether the solid is reduced: it is if all of them are. `None` if they are not
     /// known.
-    pub fn doubts(&self) -> Option<&[Self]> {
-        self.doubts.as_deref()
+    pub fn unchecked_meshes(&self) -> Option<&[Self]> {
+        self.unchecked_meshes.as_deref()
     }
 
     /// Return whether it is known which meshes decide if the solid is reduced.
     fn is_settled_by_meshes(&self) -> bool {
-        self.doubts.is_some() || self.whole_mesh().is_some()
+        self.unchecked_meshes.is_some() || self.whole_mesh().is_some()
     }
 
     /// The same solid with another tree over other sources that are equal to its own.
-    pub(super) fn of_others(&self, root: Branch, sources: Table) -> Self {
+    pub(super) fn of_others(&self, root: Branch, sources: SourceTable) -> Self {
         Self {
             root,
             sources,
@@ -156,38 +159,38 @@ impl Solid {
         (whole && group.source.mesh().is_some()).then_some(&group.source)
     }
 
-    /// The same solid, given that no operand from which it was made used more than `named` sources.
+    /// The same solid, given that no operand from which it was made used more than `used_sources` sources.
     ///
     /// Once the table has far more sources, drops those that the tree does not use; the others remain in
     /// order. So chains of operations do not collect the sources that they cut away, and counting costs
     /// little per operation.
     #[must_use]
-    pub fn outgrowing(mut self, named: usize) -> Self {
-        self.named = named;
-        if self.sources.len() > 2 * named + SPARE_SOURCES {
-            let names = self.names();
-            let kept = |s: &&Arc<Source>| names.contains(&s.id());
+    pub fn without_unused_sources(mut self, used_sources: usize) -> Self {
+        self.used_sources = used_sources;
+        if self.sources.len() > 2 * used_sources + SPARE_SOURCES {
+            let ids = self.source_ids();
+            let kept = |s: &&Arc<Source>| ids.contains(&s.id());
             self.sources = self.sources.iter().filter(kept).collect();
-            self.named = self.sources.len();
+            self.used_sources = self.sources.len();
         }
         self
     }
 
     /// The ids of the sources whose faces the tree lists; no other source bounds the solid.
-    pub fn names(&self) -> HashSet<u64> {
-        names(&self.root)
+    pub fn source_ids(&self) -> HashSet<u64> {
+        source_ids(&self.root)
     }
 
     /// Return the number of sources that the tree used when they were last counted.
-    pub fn named(&self) -> usize {
-        self.named
+    pub fn used_sources(&self) -> usize {
+        self.used_sources
     }
 
     /// The empty set, or all of space if `inside`.
     pub fn uniform(pitch: Pitch, inside: bool) -> Self {
         let cell = Cell::around(&[0; 3], &[0; 3]);
         let root = Branch::uniform(cell, i32::from(inside));
-        Self::new(root, pitch, Table::default(), true)
+        Self::new(root, pitch, SourceTable::default(), true)
     }
 
     /// The solid that a source bounds, with all its faces in one deferred leaf; `trusted` says that a mesh is
@@ -206,16 +209,16 @@ impl Solid {
         };
         let sources = [&source].into_iter().collect();
         let faces = source.face_ids().collect();
-        let group = Group {
+        let group = FaceGroup {
             touching: false,
             source,
             orientation: Orientation::Same,
             faces,
         };
-        let leaf = Deferred {
+        let leaf = DeferredLeaf {
             groups: vec![group],
             corner,
-            ..Deferred::default()
+            ..DeferredLeaf::default()
         };
         let node = Arc::new(Node::Deferred(leaf));
         let root = Branch {
@@ -238,7 +241,7 @@ impl Solid {
     }
 
     /// The sources of the solid, in the order of the expression.
-    pub fn sources(&self) -> &Table {
+    pub fn sources(&self) -> &SourceTable {
         &self.sources
     }
 
@@ -251,8 +254,8 @@ impl Solid {
     #[must_use]
     pub fn with_reduced(mut self, reduced: bool) -> Self {
         self.reduced = reduced;
-        self.claimed = false;
-        self.doubts = None;
+        self.reduced_by_claim = false;
+        self.unchecked_meshes = None;
         // The caches of the old solid do not apply: this one is unchecked.
         self.simple = Arc::default();
         self.united = Arc::default();
@@ -271,18 +274,18 @@ impl Solid {
     }
 }
 
-fn names(root: &Branch) -> HashSet<u64> {
-    let mut names = HashSet::default();
+fn source_ids(root: &Branch) -> HashSet<u64> {
+    let mut ids = HashSet::default();
     let mut open = vec![root];
     while let Some(branch) = open.pop() {
         match &*branch.node {
             Node::Leaf(_) => {}
             Node::Deferred(leaf) => {
-                names.extend(leaf.groups.iter().map(|g| g.source.id()));
-                names.extend(leaf.parts.iter().map(|p| p.part.source.id()));
+                ids.extend(leaf.groups.iter().map(|g| g.source.id()));
+                ids.extend(leaf.parts.iter().map(|p| p.part.source.id()));
             }
             Node::Cut(halves) => open.extend(&halves.children),
         }
     }
-    names
+    ids
 }

@@ -12,7 +12,7 @@ use crate::mesh::source::Source;
 /// The usual table has a single mesh and allocates nothing else. Longer tables are a prefix of a log that
 /// other tables may share and extend.
 #[derive(Clone, Debug, Default)]
-pub struct Table(Entries);
+pub struct SourceTable(Entries);
 
 #[derive(Clone, Debug, Default)]
 enum Entries {
@@ -43,27 +43,27 @@ struct Log {
 }
 
 impl Log {
-    fn place(slot: usize) -> (usize, usize) {
+    fn chunk_and_index(slot: usize) -> (usize, usize) {
         let chunk = (slot + 1).ilog2() as usize;
         (chunk, slot + 1 - (1 << chunk))
     }
 
     fn get(&self, slot: usize) -> Option<&Arc<Source>> {
-        let (chunk, at) = Self::place(slot);
+        let (chunk, at) = Self::chunk_and_index(slot);
         self.chunks.get(chunk)?.get()?.get(at)?.get()
     }
 
     fn push(&self, slots: &mut HashMap<u64, usize>, source: &Arc<Source>) {
-        let (chunk, at) = Self::place(slots.len());
+        let (chunk, at) = Self::chunk_and_index(slots.len());
         let room = || (0..1usize << chunk).map(|_| OnceLock::new()).collect();
-        let places = self.chunks[chunk].get_or_init(room);
-        places[at].get_or_init(|| Arc::clone(source));
+        let chunk_sources = self.chunks[chunk].get_or_init(room);
+        chunk_sources[at].get_or_init(|| Arc::clone(source));
         slots.insert(source.id(), slots.len());
     }
 
     /// The slot of a source, if it is among the first `len` of the log; else `None`.
     fn slot(&self, source: &Source, len: usize) -> Option<usize> {
-        let found = match free(self.slots.try_read()) {
+        let found = match if_free(self.slots.try_read()) {
             Some(slots) => slots.get(&source.id()).copied(),
             None => (0..len).find(|slot| self.get(*slot).is_some_and(|s| s.id() == source.id())),
         };
@@ -72,7 +72,7 @@ impl Log {
 }
 
 /// Return the guard of a lock, or `None` if another thread owns the lock.
-fn free<T>(lock: Result<T, TryLockError<T>>) -> Option<T> {
+fn if_free<T>(lock: Result<T, TryLockError<T>>) -> Option<T> {
     match lock {
         Ok(guard) => Some(guard),
         Err(TryLockError::Poisoned(guard)) => Some(guard.into_inner()),
@@ -80,14 +80,14 @@ fn free<T>(lock: Result<T, TryLockError<T>>) -> Option<T> {
     }
 }
 
-impl<'a> FromIterator<&'a Arc<Source>> for Table {
+impl<'a> FromIterator<&'a Arc<Source>> for SourceTable {
     /// The table of these sources, in the order of their first occurrences.
     fn from_iter<I: IntoIterator<Item = &'a Arc<Source>>>(sources: I) -> Self {
         Self::default().extended(sources)
     }
 }
 
-impl Table {
+impl SourceTable {
     /// The number of sources in the table.
     pub fn len(&self) -> usize {
         match &self.0 {
@@ -110,7 +110,7 @@ impl Table {
         let found = match &self.0 {
             Entries::One(only) if slot.0 == 0 => Some(only),
             Entries::None | Entries::One(_) => None,
-            Entries::Many(beginning) => beginning.log.get(slot.place()),
+            Entries::Many(beginning) => beginning.log.get(slot.index()),
         };
         found.expect("a slot of the table")
     }
@@ -177,7 +177,7 @@ impl LogPrefix {
     /// Adds a source unless it is among the prefix; returns false if the log continues with another source,
     /// or is locked.
     fn add(&mut self, source: &Arc<Source>) -> bool {
-        let Some(mut slots) = free(self.log.slots.try_write()) else {
+        let Some(mut slots) = if_free(self.log.slots.try_write()) else {
             return false;
         };
         match slots.get(&source.id()) {

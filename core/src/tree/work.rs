@@ -28,9 +28,11 @@ pub fn work(solids: &[Solid], limit: usize) -> usize {
 /// The number of faces to examine to find out whether a solid is reduced; 0 if that is known, or if no known
 /// meshes decide it.
 pub fn work_to_settle(solid: &Solid) -> usize {
-    let open = solid.doubts().filter(|_| !solid.is_reduced());
+    let open = solid.unchecked_meshes().filter(|_| !solid.is_reduced());
     let faces = |mesh: &Solid| mesh.sources().iter().map(|s| s.face_count()).sum::<usize>();
-    open.map_or(0, |doubts| doubts.iter().map(faces).sum())
+    open.map_or(0, |unchecked_meshes| {
+        unchecked_meshes.iter().map(faces).sum()
+    })
 }
 
 /// A lattice box around a solid's boundary: the box of its mesh if it has only one with fewer than `limit`

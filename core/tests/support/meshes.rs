@@ -59,7 +59,7 @@ fn fans(after: &HashMap<(VertexId, VertexId), VertexId>) -> usize {
 
 /// The triangles by the doubles of their corners, the smallest corner first, sorted.
 fn triangle_set(mesh: &Mesh) -> Vec<[[u64; 3]; 3]> {
-    let corner = |v: VertexId| mesh.vertices[v.place()].map(f64::to_bits);
+    let corner = |v: VertexId| mesh.vertices[v.index()].map(f64::to_bits);
     let mut set: Vec<_> = mesh
         .triangles
         .iter()

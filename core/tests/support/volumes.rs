@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use bspcsg::arith::{inv_mod, mantissa_and_exponent, mul_mod, Int, P1, P2};
-use bspcsg::geometry::flux::fixed::FLUX_PLACES;
+use bspcsg::geometry::flux::fixed::FLUX_FRACTION_BITS;
 use bspcsg::geometry::vertex::Homogeneous;
 use bspcsg::query::measure::{self, Fraction};
 use bspcsg::tree::flux::share;
@@ -87,7 +87,7 @@ impl PartialEq for Ratio {
 pub fn volume(solid: &Solid) -> Ratio {
     let exact = Ratio::of(measure::volume(solid).expect("a bounded solid"));
     let exponent = u32::try_from(-3 * solid.pitch().exponent()).expect("steps are not long");
-    let units = (BigInt::from(6) << FLUX_PLACES) * BigInt::from(10).pow(exponent);
+    let units = (BigInt::from(6) << FLUX_FRACTION_BITS) * BigInt::from(10).pow(exponent);
     let ends = share(solid.root()).flux.ends().expect("a moderate error");
     let [low, high] = ends.map(|end| big(&end) * &exact.1);
     let middle = &exact.0 * units;

@@ -15,7 +15,7 @@ use crate::merge::lists::separation::misses;
 use crate::mesh::handle::{FaceId, OrientedFace, SourceFace};
 use crate::mesh::source::{Shape, Source};
 use crate::mesh::tasks::in_pool;
-use crate::tree::node::{Branch, Deferred, Node};
+use crate::tree::node::{Branch, DeferredLeaf, Node};
 use crate::tree::solid::Solid;
 
 /// A source face of which only a part belongs to the boundary of a solid.
@@ -41,7 +41,8 @@ pub struct Boundary {
 /// If more faces than this are to be processed, several threads share the work.
 const PARALLEL_FROM: usize = 256;
 
-/// Listings are sorted, not counted by face, if there are fewer than one for this many faces.
+/// Pairs of a face and a leaf that lists it are sorted, not counted by face, if there are fewer than one pair
+/// for this many faces.
 const COUNTED_IF_ONE_IN: usize = 16;
 
 struct Collector<'a> {
@@ -116,8 +117,8 @@ impl Collector<'_> {
         )
     }
 
-    /// Returns the faces that are boundary in part, with outlines; a face whose pieces add up to all of it
-    /// becomes whole instead.
+    /// Returns the faces that are boundary in part, with outlines; a face whose boundary parts add up to all
+    /// of it becomes whole instead.
     fn outline(&mut self, open: &[&[Spanning]]) -> Vec<CutFace> {
         let spans = open.iter().flat_map(|run| run.iter()).map(Piece::from);
         let mut pieces: Vec<Piece> = spans.collect();
@@ -144,7 +145,7 @@ impl Collector<'_> {
         cut
     }
 
-    /// Joins the pieces of one face to one outline.
+    /// Joins the parts of one face that are boundary to one outline.
     fn joined(&self, run: &mut [Piece]) -> CutFace {
         let cells = &self.listed.cells;
         let face = run[0].face;
@@ -158,7 +159,8 @@ impl Collector<'_> {
     }
 }
 
-/// Sorts listings by face; listings of one face stay in the order of their leaves.
+/// Sorts pairs of a face and a leaf that lists it by face; the pairs of one face stay in the order of their
+/// leaves.
 fn by_face(spanning: &[Spanning], fates: &Fates) -> Vec<Spanning> {
     let faces = fates.faces();
     let mut sorted = spanning.to_vec();
@@ -173,7 +175,7 @@ fn by_face(spanning: &[Spanning], fates: &Fates) -> Vec<Spanning> {
             Some(*sum - fates.len())
         })
         .collect();
-    let place = |s: &Spanning| firsts[s.face.slot().place()] + s.face.id().place();
+    let place = |s: &Spanning| firsts[s.face.slot().index()] + s.face.id().index();
     let mut ends = vec![0u32; faces];
     for s in spanning {
         ends[place(s)] += 1;
@@ -197,7 +199,7 @@ fn is_full_face(cut: &mut CutFace, source: &Source) -> bool {
         return false;
     };
     let c = mesh.corners(cut.face.id());
-    let near = |edge: &BareEdge| c.iter().any(|corner| edge.from.may_be(corner));
+    let near = |edge: &BareEdge| c.iter().any(|corner| edge.from.may_lie_at(corner));
     if cut.outline.edges().len() != 3 || !cut.outline.edges().iter().all(near) {
         return false;
     }
@@ -223,7 +225,7 @@ impl<'a> Place<'a> {
     fn enter(&mut self, child: &'a Branch) -> bool {
         self.branch = child;
         self.complement ^= child.complement;
-        child.cell.holds_box(&self.low, &self.high)
+        child.cell.contains_box(&self.low, &self.high)
     }
 
     /// Returns true if the subtree is a single leaf that lists the face.
@@ -238,7 +240,7 @@ impl<'a> Place<'a> {
 /// Returns true only if every leaf that a face meets lists it; may return false negatives.
 fn covers(root: &Branch, source: &Source, face: OrientedFace) -> bool {
     let (low, high) = source.face_box(face.id());
-    if !root.cell.holds_box(&low, &high) {
+    if !root.cell.contains_box(&low, &high) {
         return false;
     }
     let mut open: SmallVec<[Place; 8]> = smallvec![Place {
@@ -287,7 +289,7 @@ fn enters(source: &Source, face: FaceId, cell: &Cell) -> bool {
 }
 
 /// Returns true if a leaf lists a face in its orientation, or in the opposite one if `complement` is true.
-fn lists(leaf: &Deferred, source: &Source, face: OrientedFace, complement: bool) -> bool {
+fn lists(leaf: &DeferredLeaf, source: &Source, face: OrientedFace, complement: bool) -> bool {
     let orientation = face.orientation.turned_if(complement);
     leaf.groups.iter().any(|g| {
         let alike = g.source.id() == source.id() && g.orientation == orientation;

@@ -19,7 +19,7 @@ use crate::mesh::handle::{FaceId, OrientedFace, Slot, SourceFace};
 use crate::mesh::source::Source;
 use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
-use crate::tree::node::{Branch, Deferred, Group, Node, Part};
+use crate::tree::node::{Branch, DeferredLeaf, FaceGroup, Node, Part};
 
 /// A face that a leaf lists, though it extends beyond the leaf's cell.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -37,11 +37,11 @@ pub struct Piece<'a> {
     extent: Extent<'a>,
 }
 
-/// The part of a face that a piece covers; its outline is computed only on demand.
+/// How a boundary part of a face is given; its outline is computed only on demand.
 enum Extent<'a> {
     /// The part of the face in the cell of the leaf with this number.
     Face(u32),
-    /// A whole part that the tree stores.
+    /// A part of the face that the tree stores, all of it.
     Part(&'a Part),
     /// The region inside these edges.
     Edges(Vec<OutlineEdge>),
@@ -57,7 +57,7 @@ impl From<&Spanning> for Piece<'_> {
 }
 
 impl Piece<'_> {
-    /// Returns the outline of a piece that is the only piece of its face.
+    /// Returns the outline of this boundary part of a face, which is the only one of its face.
     pub fn outline(&mut self, sources: &Sources, cells: &[Cell]) -> Outline {
         match self.extent {
             Extent::Part(part) => Outline::of_bare(&part.edges),
@@ -65,13 +65,14 @@ impl Piece<'_> {
         }
     }
 
-    /// Returns the edges around the piece; if the piece stores them, it has none afterwards.
+    /// Returns the edges around this boundary part of a face; if the part stores them, it has none
+    /// afterwards.
     pub fn take_edges(&mut self, sources: &Sources, cells: &[Cell]) -> Vec<OutlineEdge> {
         match &mut self.extent {
             Extent::Face(leaf) => {
                 let source = sources.get(self.face.slot());
                 let polygon = source.clip(self.face.id(), &cells[*leaf as usize]);
-                polygon.map_or_else(Vec::new, |p| OutlineEdge::all_of(&p).collect())
+                polygon.map_or_else(Vec::new, |p| OutlineEdge::edges_of(&p).collect())
             }
             Extent::Part(part) => part.outline(),
             Extent::Edges(edges) => std::mem::take(edges),
@@ -87,7 +88,7 @@ pub struct Listed<'a> {
     pub fates: Fates,
     /// The faces that extend beyond the cell of a leaf that lists them, once for each such leaf.
     pub spanning: Vec<Spanning>,
-    /// The pieces that the listed parts make up, sorted by face.
+    /// The boundary parts of faces that the leaves list, sorted by face.
     pub parts: Vec<Piece<'a>>,
     /// Faces in cells where several operands met.
     pub near: Vec<SourceFace>,
@@ -95,7 +96,8 @@ pub struct Listed<'a> {
     pub cells: Vec<Cell>,
 }
 
-/// The faces that extend beyond one leaf's cell, its parts, and its faces near other operands.
+/// The faces that extend beyond one leaf's cell, the parts of faces that the leaf lists, and its faces near
+/// other operands.
 #[derive(Default)]
 struct Found<'a> {
     spanning: Vec<Spanning>,
@@ -115,7 +117,7 @@ struct Leaf<'a> {
     number: u32,
     cell: Cell,
     complement: bool,
-    content: &'a Deferred,
+    content: &'a DeferredLeaf,
 }
 
 /// Collects the faces and parts that all leaves of a tree list.
@@ -143,18 +145,18 @@ pub fn listed<'a>(root: &'a Branch, sources: &Sources) -> Listed<'a> {
     parts.sort_by_key(|listing| listing.face);
     all.parts = pieces(&parts, &all.cells);
     for piece in &all.parts {
-        fates.0[piece.face.slot().place()][piece.face.id().place()].store(CUT, Ordering::Relaxed);
+        fates.0[piece.face.slot().index()][piece.face.id().index()].store(CUT, Ordering::Relaxed);
     }
     all.fates = fates.into_plain();
     all
 }
 
-/// The pieces of one face; usually there is only one.
+/// The boundary parts of one face; usually there is only one.
 type Pieces<'a> = SmallVec<[Piece<'a>; 1]>;
 
 type Extents<'a> = SmallVec<[Extent<'a>; 1]>;
 
-/// Turns listed parts, which are sorted by face, into pieces of faces.
+/// Turns the parts of faces that leaves list, sorted by face, into the boundary parts of each face.
 fn pieces<'a>(parts: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
     let runs: Vec<&[Listing]> = parts.chunk_by(|a, b| a.face == b.face).collect();
     let face = carried(|run: &&[Listing<'a>]| pieces_of_face(run, cells));
@@ -166,7 +168,8 @@ fn pieces<'a>(parts: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
     pieces.into_iter().flatten().collect()
 }
 
-/// Returns the pieces of one face: a whole part if its leaves contain all of it, else its clip to each leaf.
+/// Returns the boundary parts of one face: a stored part if the leaves that list it contain all of it, else
+/// the part clipped to each leaf.
 fn pieces_of_face<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Pieces<'a> {
     let extents = match run {
         [single] => extents(single.part, &[single.leaf], cells),
@@ -195,7 +198,8 @@ fn extents_by_part<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Extents<'a> {
         .collect()
 }
 
-/// Returns a part as one extent if the leaves that list it contain all of it, else its clip to each leaf.
+/// Returns a stored part of a face as one extent if the leaves that list it contain all of it, else clipped
+/// to each leaf.
 fn extents<'a>(part: &'a Part, leaves: &[u32], cells: &[Cell]) -> Extents<'a> {
     if is_whole(part, leaves, cells) {
         return smallvec![Extent::Part(part)];
@@ -204,7 +208,8 @@ fn extents<'a>(part: &'a Part, leaves: &[u32], cells: &[Cell]) -> Extents<'a> {
     edges.filter(|e| !e.is_empty()).map(Extent::Edges).collect()
 }
 
-/// Returns whether the leaves that list a part together contain all of it; may return false negatives.
+/// Returns whether the leaves that list a part of a face together contain all of the part; may return false
+/// negatives.
 fn is_whole(part: &Part, leaves: &[u32], cells: &[Cell]) -> bool {
     if let [leaf] = leaves
         && cells[*leaf as usize] == part.home
@@ -215,7 +220,7 @@ fn is_whole(part: &Part, leaves: &[u32], cells: &[Cell]) -> bool {
     once && fill(part_box(part), leaves.iter().copied(), cells)
 }
 
-/// The lattice box of a part, clipped to the part's home cell.
+/// The lattice box of a part of a face, clipped to the cell in which the part was made.
 fn part_box(part: &Part) -> (Lattice, Lattice) {
     let ((low, high), home) = (part.bounds(), (part.home.low(), part.home.high()));
     (
@@ -241,10 +246,10 @@ pub fn fill(
         let (bottom, top) = (cell.low(), cell.high());
         let a = each_axis(|i| low[i].max(bottom[i]));
         let b = each_axis(|i| high[i].min(top[i]));
-        let Some(less) = count(&a, &b).and_then(|part| rest.checked_sub(part)) else {
+        let Some(difference) = count(&a, &b).and_then(|part| rest.checked_sub(part)) else {
             return false;
         };
-        rest = less;
+        rest = difference;
     }
     rest == 0
 }
@@ -304,7 +309,7 @@ impl Fates {
 
     /// The fates of the faces of the source at a slot.
     pub fn of(&self, slot: Slot) -> &[Fate] {
-        &self.0[slot.place()]
+        &self.0[slot.index()]
     }
 
     /// Yields each slot with the fates of its source's faces.
@@ -327,13 +332,13 @@ impl Index<SourceFace> for Fates {
     type Output = Fate;
 
     fn index(&self, face: SourceFace) -> &Fate {
-        &self.0[face.slot.place()][face.id.place()]
+        &self.0[face.slot.index()][face.id.index()]
     }
 }
 
 impl IndexMut<SourceFace> for Fates {
     fn index_mut(&mut self, face: SourceFace) -> &mut Fate {
-        &mut self.0[face.slot.place()][face.id.place()]
+        &mut self.0[face.slot.index()][face.id.index()]
     }
 }
 
@@ -350,7 +355,7 @@ impl AtomicFates {
         let mut fates: Vec<Vec<AtomicU8>> = Vec::new();
         fates.resize_with(sources.table().len(), Vec::new);
         let mut enter = |source: &Source, slot: Slot| {
-            let fates = &mut fates[slot.place()];
+            let fates = &mut fates[slot.index()];
             if fates.is_empty() {
                 fates.resize_with(source.face_count(), || AtomicU8::new(GONE));
             }
@@ -388,7 +393,7 @@ impl<'a> Leaf<'a> {
                 let faces = group.faces.iter();
                 found.near.extend(faces.map(|f| SourceFace::new(slot, *f)));
             }
-            self.visit_group(group, slot, &fates.0[slot.place()], &mut found);
+            self.visit_group(group, slot, &fates.0[slot.index()], &mut found);
         }
         for element in &self.content.parts {
             let part = &*element.part;
@@ -402,18 +407,25 @@ impl<'a> Leaf<'a> {
         found
     }
 
-    fn visit_group(&self, group: &Group, slot: Slot, fates: &[AtomicU8], found: &mut Found<'a>) {
+    fn visit_group(
+        &self,
+        group: &FaceGroup,
+        slot: Slot,
+        fates: &[AtomicU8],
+        found: &mut Found<'a>,
+    ) {
         let orientation = group.orientation.turned_if(self.complement);
         let mark = match orientation {
             Orientation::Same => WHOLE,
             Orientation::Opposite => TURNED,
         };
         let mesh = group.source.mesh();
-        let holds_all = mesh.is_some() && group.source.cell().is_some_and(|c| self.cell.holds(&c));
+        let holds_all =
+            mesh.is_some() && group.source.cell().is_some_and(|c| self.cell.contains(&c));
         let holds = mesh.map(|mesh| holder(mesh, &self.cell));
         for &face in &group.faces {
             if holds_all || holds.as_ref().is_some_and(|holds| holds(face)) {
-                fates[face.place()].store(mark, Ordering::Relaxed);
+                fates[face.index()].store(mark, Ordering::Relaxed);
             } else {
                 found.spanning.push(Spanning {
                     face: SourceFace::new(slot, face).oriented(orientation),
@@ -429,13 +441,13 @@ fn holder<'a>(mesh: &'a TriangleMesh, cell: &Cell) -> impl Fn(FaceId) -> bool + 
     let (low, high) = (*cell.low(), cell.high());
     move |face| {
         mesh.vertices_of(face).iter().all(|v| {
-            let p = &mesh.vertices[v.place()];
+            let p = &mesh.vertices[v.index()];
             (0..3).all(|i| low[i] <= p[i] && p[i] <= high[i])
         })
     }
 }
 
-/// Returns the edges around the part of a face's part that lies in a leaf's cell.
+/// Returns the edges around the intersection of a part of a face with a leaf's cell.
 fn part_edges(part: &Part, cell: &Cell) -> Vec<OutlineEdge> {
     if part.home == *cell {
         return part.outline();
@@ -443,7 +455,7 @@ fn part_edges(part: &Part, cell: &Cell) -> Vec<OutlineEdge> {
     let clipped = part.pieces().into_iter().filter_map(|p| p.clipped(cell));
     cancel(
         clipped
-            .flat_map(|p| OutlineEdge::all_of(&p).collect::<Vec<_>>())
+            .flat_map(|p| OutlineEdge::edges_of(&p).collect::<Vec<_>>())
             .collect(),
     )
 }

@@ -28,7 +28,8 @@ const OTHER: u8 = 4;
 /// Bit of a vertex on an edge that has no opposite by index, but cancels with other edges on its line.
 const OPEN: u8 = 8;
 
-/// For each slot, where the whole faces of its source end.
+/// For each source, by slot, the vertices and edges at which its whole faces (entirely boundary) meet faces
+/// that are cut or gone.
 #[derive(Debug)]
 pub struct Rims {
     by_slot: Vec<Rim>,
@@ -52,20 +53,21 @@ pub struct FrontierEdge {
 impl FrontierEdge {
     /// The face that this edge bounds.
     pub fn face(&self) -> SourceFace {
-        SourceFace::new(self.slot, FaceId::beside(self.half))
+        SourceFace::new(self.slot, FaceId::of_half_edge(self.half))
     }
 
     /// The line that this edge lies on.
     pub fn line(&self, sources: &Sources) -> LineKey {
         let mesh = sources.get(self.slot).mesh();
-        let ends = mesh.map(|m| half_edge_ends(m, self.half).map(|v| m.vertices[v.place()]));
+        let ends = mesh.map(|m| half_edge_ends(m, self.half).map(|v| m.vertices[v.index()]));
         let [a, b] = ends.unwrap_or([[0; 3], [1, 0, 0]]);
         LineKey::of_edge(&a, &b)
     }
 }
 
 impl Rims {
-    /// Finds for each source where its whole faces end.
+    /// Finds for each source the vertices at which its whole faces (entirely boundary) meet faces that are
+    /// cut or gone.
     pub fn of(fates: &Fates, sources: &Sources) -> Self {
         let slots: Vec<Slot> = Slot::all().take(fates.sources()).collect();
         let rim = carried(|slot: &Slot| Rim::of(sources.get(*slot), fates.of(*slot)));
@@ -90,14 +92,14 @@ impl Rims {
     /// Recomputes the rims that were marked as outdated.
     pub fn renew(&mut self, fates: &Fates, sources: &Sources) {
         for slot in std::mem::take(&mut self.outdated) {
-            self.by_slot[slot.place()] = Rim::of(sources.get(slot), fates.of(slot));
-            self.by_ends[slot.place()] = OnceLock::new();
+            self.by_slot[slot.index()] = Rim::of(sources.get(slot), fates.of(slot));
+            self.by_ends[slot.index()] = OnceLock::new();
         }
     }
 
     /// The rim of the source at a slot.
     pub fn get(&self, slot: Slot) -> &Rim {
-        &self.by_slot[slot.place()]
+        &self.by_slot[slot.index()]
     }
 
     /// Returns the half-edges of whole faces that have no opposite in a whole face of the same orientation.
@@ -123,10 +125,10 @@ impl Rims {
             return None;
         }
         if rim.is_mixed(a) || rim.is_mixed(b) {
-            let by_ends = self.by_ends[slot.place()].get_or_init(|| rim.by_ends(mesh));
-            return by_ends.get(&[b, a]).map(|mate| FaceId::beside(*mate));
+            let by_ends = self.by_ends[slot.index()].get_or_init(|| rim.by_ends(mesh));
+            return by_ends.get(&[b, a]).map(|mate| FaceId::of_half_edge(*mate));
         }
-        let around = self.around[slot.place()].get_or_init(|| Around::of(mesh));
+        let around = self.around[slot.index()].get_or_init(|| Around::of(mesh));
         let mut faces = around.faces(a).iter();
         let has_mate = |face: &&FaceId| {
             let mut halves = face.half_edges();
@@ -149,7 +151,7 @@ impl Around {
     fn of(mesh: &TriangleMesh) -> Self {
         let mut starts = vec![0u32; mesh.vertices.len() + 1];
         for vertex in mesh.faces.iter().flatten() {
-            starts[vertex.place()] += 1;
+            starts[vertex.index()] += 1;
         }
         let mut sum = 0;
         for start in &mut starts {
@@ -160,7 +162,7 @@ impl Around {
         for (face, corners) in mesh.faces.iter().enumerate().rev() {
             poll();
             for vertex in corners {
-                let start = &mut starts[vertex.place()];
+                let start = &mut starts[vertex.index()];
                 *start -= 1;
                 faces[*start as usize] = FaceId(as_number(face));
             }
@@ -170,7 +172,7 @@ impl Around {
 
     /// The faces around a vertex, ascending.
     fn faces(&self, vertex: VertexId) -> &[FaceId] {
-        let [start, end] = [0, 1].map(|i| self.starts[vertex.place() + i] as usize);
+        let [start, end] = [0, 1].map(|i| self.starts[vertex.index() + i] as usize);
         &self.faces[start..end]
     }
 }
@@ -185,7 +187,8 @@ pub struct Rim {
 }
 
 impl Rim {
-    /// Finds where a source's whole faces end; empty if `fates` is empty.
+    /// Finds the vertices at which a source's whole faces (entirely boundary) meet faces that are cut or
+    /// gone; empty if `fates` is empty.
     fn of(source: &Source, fates: &[Fate]) -> Self {
         let (Some(mesh), false) = (source.mesh(), fates.is_empty()) else {
             return Self::default();
@@ -195,7 +198,7 @@ impl Rim {
             near: Vec::new(),
         };
         for vertex in source.open_vertices() {
-            rim.touch[vertex.place()] |= OPEN;
+            rim.touch[vertex.index()] |= OPEN;
         }
         if rim.touch.iter().any(|t| is_mixed(*t)) {
             let near = |(_, (corners, fate)): &(FaceId, (&[VertexId; 3], &Fate))| {
@@ -209,7 +212,7 @@ impl Rim {
 
     /// Return whether a vertex is a corner of a whole face.
     pub fn is_used(&self, vertex: VertexId) -> bool {
-        self.touch[vertex.place()] & (KEPT | TURNED) != 0
+        self.touch[vertex.index()] & (KEPT | TURNED) != 0
     }
 
     /// The number of vertices that are corners of whole faces.
@@ -225,7 +228,7 @@ impl Rim {
     /// Returns true if faces of different fates meet at a vertex, or if the vertex lies on an open edge of a
     /// face.
     fn is_mixed(&self, vertex: VertexId) -> bool {
-        is_mixed(self.touch[vertex.place()])
+        is_mixed(self.touch[vertex.index()])
     }
 
     /// Returns the half-edges of whole faces that have no opposite of the same orientation, ascending.
@@ -236,7 +239,7 @@ impl Rim {
             for number in face.half_edges() {
                 let ends = half_edge_ends(mesh, number);
                 if ends.iter().all(|v| self.is_mixed(*v)) {
-                    halves.push(Half::new(number, ends, fates[face.place()]));
+                    halves.push(Half::new(number, ends, fates[face.index()]));
                 }
             }
         }
@@ -283,7 +286,7 @@ impl Half {
     }
 }
 
-/// Returns true if more than one bit of a vertex is set.
+/// Returns true if more than one of the bits `KEPT`, `TURNED`, `OTHER` and `OPEN` of a vertex is set.
 fn is_mixed(touch: u8) -> bool {
     touch & touch.wrapping_sub(1) != 0
 }
@@ -298,9 +301,9 @@ fn touch(mesh: &TriangleMesh, fates: &[Fate]) -> Vec<u8> {
                 Fate::Whole(Orientation::Opposite) => TURNED,
                 Fate::Cut | Fate::Gone => OTHER,
             };
-            touch[a.place()] |= kind;
-            touch[b.place()] |= kind;
-            touch[c.place()] |= kind;
+            touch[a.index()] |= kind;
+            touch[b.index()] |= kind;
+            touch[c.index()] |= kind;
         }
     }
     touch
@@ -308,7 +311,7 @@ fn touch(mesh: &TriangleMesh, fates: &[Fate]) -> Vec<u8> {
 
 /// The vertices at which a half-edge starts and ends.
 pub fn half_edge_ends(mesh: &TriangleMesh, half: u32) -> [VertexId; 2] {
-    let face = mesh.vertices_of(FaceId::beside(half));
+    let face = mesh.vertices_of(FaceId::of_half_edge(half));
     let corner = half as usize % 3;
     [face[corner], face[(corner + 1) % 3]]
 }

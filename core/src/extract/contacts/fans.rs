@@ -14,7 +14,7 @@ use crate::arith::Sign;
 use crate::interrupt::poll;
 use crate::mesh::handle::VertexId;
 
-/// Marks a corner that does not belong to a fan yet.
+/// Marks a corner of a triangle that does not belong to a fan (a ring of triangles around a vertex) yet.
 const NONE: usize = usize::MAX;
 
 /// The exact geometry that the splitting of edges and vertices asks for.
@@ -186,7 +186,7 @@ impl Surface<'_> {
     /// Groups half-edges by the lower of their vertices; returns where each group starts, and all
     /// half-edges.
     fn halves_by_lower_end(&self, vertex_count: u32) -> (Vec<usize>, Vec<usize>) {
-        let group = |half: usize| ends(self.triangles, half)[0].place();
+        let group = |half: usize| ends(self.triangles, half)[0].index();
         let mut starts = vec![0; vertex_count as usize + 1];
         for half in 0..self.mates.len() {
             poll();
@@ -210,7 +210,8 @@ impl Surface<'_> {
         origin(self.triangles, half) < origin(self.triangles, next(half))
     }
 
-    /// The sort key of a half-edge among those with the same lower vertex: edge, then forward ones first.
+    /// The sort key of a half-edge among the half-edges with the same lower vertex: by edge, then forward
+    /// ones first.
     fn edge_key(&self, half: usize) -> (VertexId, bool, usize) {
         (ends(self.triangles, half)[1], !self.is_forward(half), half)
     }
@@ -268,7 +269,7 @@ fn next(half: usize) -> usize {
     }
 }
 
-/// The corners around vertices, grouped into connected fans.
+/// The corners of triangles around vertices, grouped into connected fans (rings of triangles).
 struct Fans {
     /// For each corner the number of its fan.
     of: Vec<usize>,
@@ -320,7 +321,8 @@ impl Fans {
         }
     }
 
-    /// Gives each fan its own vertex; returns the triangles over these vertices.
+    /// Gives each fan (ring of triangles around a vertex) its own copy of the vertex; returns the triangles
+    /// over these copies.
     fn number(
         &self,
         surface: &Surface,
@@ -335,7 +337,7 @@ impl Fans {
             let vertex = &mut corners[corner / 3][corner % 3];
             let copy = match copies[fan] {
                 Some(copy) => copy,
-                None if !std::mem::replace(&mut is_used[vertex.place()], true) => *vertex,
+                None if !std::mem::replace(&mut is_used[vertex.index()], true) => *vertex,
                 None => {
                     let copy = u32::try_from(origin.len()).map_err(|_| Error::TooMany)?;
                     let copy = VertexId(copy);

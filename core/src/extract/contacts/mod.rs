@@ -18,18 +18,18 @@ use crate::mesh::finding::{Finding, Severity};
 use crate::mesh::handle::VertexId;
 
 /// Splits edges and vertices at which the surface touches itself, and adds findings about them: then every
-/// directed edge has exactly one opposite by index and every vertex one fan. Copies directly follow their
-/// vertex.
+/// directed edge has exactly one opposite by index, and the triangles around every vertex form one ring.
+/// Copies of a vertex directly follow it.
 pub(super) fn split(mesh: &mut ExactMesh, sources: &Sources) -> Result<()> {
     let count = as_number(mesh.vertices.len());
     let split = split_fans(&mesh.triangles, count, &Geometry { mesh, sources })
         .map_err(|e| Error::internal(format!("contacts could not be split: {e}")))?;
     let origin = &split.origin;
-    mesh.vertices = origin.iter().map(|v| mesh.vertices[v.place()]).collect();
+    mesh.vertices = origin.iter().map(|v| mesh.vertices[v.index()]).collect();
     mesh.triangles = split.corners;
     // Copies follow their originals.
     let mut order: Vec<VertexId> = VertexId::all().take(origin.len()).collect();
-    order.sort_by_key(|v| origin[v.place()]);
+    order.sort_by_key(|v| origin[v.index()]);
     let numbers = renumber(&mut mesh.vertices, &mut mesh.triangles, &order);
     let starts = split.split_edges.iter().map(|e| e[0]);
     let text = "the solid touches itself along edges, which were split into separate edges (start vertices)";
@@ -50,7 +50,7 @@ fn add_finding(
     numbers: &[VertexId],
     text: &str,
 ) {
-    let places: Vec<u64> = vertices.map(|v| u64::from(numbers[v.place()])).collect();
+    let places: Vec<u64> = vertices.map(|v| u64::from(numbers[v.index()])).collect();
     if !places.is_empty() {
         let finding = Finding::about(code, Severity::Note, &places, text);
         mesh.findings.push(finding);

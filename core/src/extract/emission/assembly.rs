@@ -63,14 +63,14 @@ impl<'a> Assembly<'a> {
         mesh: &TriangleMesh,
         vertex: VertexId,
     ) -> u32 {
-        let image = self.images[slot.place()][vertex.place()];
-        if let Some(Corner::Point(point)) = self.vertices.get(image.place()) {
+        let image = self.images[slot.index()][vertex.index()];
+        if let Some(Corner::Point(point)) = self.vertices.get(image.index()) {
             return *point;
         }
-        let point = self.table.number_at(mesh.vertices[vertex.place()]);
+        let point = self.table.number_at(mesh.vertices[vertex.index()]);
         self.name(point, (slot, vertex));
         let image = self.image_of_point(point);
-        self.images[slot.place()][vertex.place()] = image;
+        self.images[slot.index()][vertex.index()] = image;
         point
     }
 
@@ -109,15 +109,15 @@ impl<'a> Assembly<'a> {
     pub(in crate::extract) fn special_place(&self, vertex: VertexId) -> Option<usize> {
         let others = &self.untouched.vertices;
         if vertex < others.start {
-            Some(vertex.place())
+            Some(vertex.index())
         } else {
-            (vertex >= others.end).then(|| vertex.place() - self.untouched.own_count())
+            (vertex >= others.end).then(|| vertex.index() - self.untouched.own_count())
         }
     }
 
     /// Returns the vertex at an index among the vertices that not only untouched faces use.
     pub(in crate::extract) fn special_vertex(&self, place: usize) -> VertexId {
-        let before = place < self.untouched.vertices.start.place();
+        let before = place < self.untouched.vertices.start.index();
         VertexId::of(if before {
             place
         } else {
@@ -168,7 +168,7 @@ impl<'a> Assembly<'a> {
         let mut given: Vec<(Slot, VertexId, VertexId)> = Vec::new();
         let mut points: Vec<VertexId> = Vec::new();
         for vertex in self.used_special_vertices() {
-            match self.vertices[vertex.place()] {
+            match self.vertices[vertex.index()] {
                 Corner::Source(slot, number) => given.push((slot, number, vertex)),
                 Corner::Point(_) => points.push(vertex),
             }
@@ -176,17 +176,17 @@ impl<'a> Assembly<'a> {
         given.sort_unstable();
         // The vertices that only untouched faces use are already in order.
         let Range { start, end } = self.untouched.vertices.clone();
-        let own = &self.vertices[start.place()..end.place()];
+        let own = &self.vertices[start.index()..end.index()];
         let mut order = Vec::with_capacity(own.len() + given.len() + points.len());
         let mut done = 0;
         for (slot, number, vertex) in given {
             let is_before = |corner: &Corner| *corner < Corner::Source(slot, number);
             let next = done + own[done..].partition_point(is_before);
-            order.extend((start.place() + done..start.place() + next).map(VertexId::of));
+            order.extend((start.index() + done..start.index() + next).map(VertexId::of));
             order.push(vertex);
             done = next;
         }
-        order.extend((start.place() + done..end.place()).map(VertexId::of));
+        order.extend((start.index() + done..end.index()).map(VertexId::of));
         order.extend(points);
         order
     }

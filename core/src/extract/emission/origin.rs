@@ -30,7 +30,7 @@ pub struct Owners<'a> {
     corners: Vec<Option<[[f64; 2]; 3]>>,
 }
 
-/// The least and the largest corner of a box.
+/// The corner of a rectangle with the least coordinates, and the corner with the largest.
 type Bounds = [[f64; 2]; 2];
 
 /// Points to locate, and the faces that may contain some of them, ascending.
@@ -185,14 +185,14 @@ mod tests {
         let mesh = assemble(&made_of(&boxes, Term::Or)).expect("bounded");
         let reach = [[0, 6], [3, 30]];
         for (triangle, face) in mesh.triangles.iter().zip(&mesh.faces) {
-            let x = triangle.map(|v| match mesh.vertices[v.place()] {
+            let x = triangle.map(|v| match mesh.vertices[v.index()] {
                 Corner::Source(slot, id) => {
-                    let source = boxes[slot.place()].sources().get(Slot(0));
-                    source.mesh().expect("a mesh").vertices[id.place()][0]
+                    let source = boxes[slot.index()].sources().get(Slot(0));
+                    source.mesh().expect("a mesh").vertices[id.index()][0]
                 }
                 Corner::Point(id) => mesh.table.point(id).as_lattice().expect("a corner")[0],
             });
-            let [low, high] = reach[face.slot().place()];
+            let [low, high] = reach[face.slot().index()];
             let sum: i64 = x.iter().sum();
             assert!((3 * low..=3 * high).contains(&sum));
         }

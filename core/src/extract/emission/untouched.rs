@@ -12,7 +12,7 @@ use crate::mesh::handle::{FaceId, OrientedFace, Slot, SourceFace, VertexId};
 use crate::mesh::tasks::{each_chunk, in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
 
-/// The untouched faces of sources among the triangles of a mesh; they come first.
+/// The triangles of a mesh that are whole, unchanged faces of sources; they come first in the mesh.
 #[derive(Debug, Default)]
 pub struct Untouched {
     /// The vertices that only triangles of untouched faces use.
@@ -53,7 +53,7 @@ impl Untouched {
 
     /// The number of vertices that only untouched faces use.
     pub fn own_count(&self) -> usize {
-        self.vertices.end.place() - self.vertices.start.place()
+        self.vertices.end.index() - self.vertices.start.index()
     }
 
     /// Appends the triangles of a source's whole faces.
@@ -114,7 +114,7 @@ impl Task<'_> {
             let Some(((triangle, origin), number)) = out.next() else {
                 break;
             };
-            let image = |v: VertexId| source.images[v.place()];
+            let image = |v: VertexId| source.images[v.index()];
             let (a, b, c) = (image(a), image(b), image(c));
             *triangle = match orientation {
                 Orientation::Same => [a, b, c],

@@ -58,15 +58,16 @@ impl Chord {
     }
 }
 
-/// A part of a plane group, and the chords that divide it further.
+/// A part of the polygon of a plane group (the boundary faces of one plane), and the chords that divide it
+/// further.
 struct Part {
     edges: Vec<BareEdge>,
     faces: SmallVec<[OrientedFace; 2]>,
     chords: Vec<Chord>,
 }
 
-/// Divides a plane group along chords, each extended through the part that it lies in: a planar
-/// autopartition. Appends to `lines` the line of each chord that was used.
+/// Divides the polygon of a plane group (the boundary faces of one plane) along chords, each extended through
+/// the part that it lies in: a planar autopartition. Appends to `lines` the line of each chord that was used.
 ///
 /// # Cost
 /// Each part is traversed once for each chord that divides it. The middle chord of a list comes first: of

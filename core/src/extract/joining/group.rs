@@ -9,7 +9,8 @@ use crate::geometry::outline::{BareEdge, Outline};
 use crate::geometry::plane::Plane;
 use crate::mesh::handle::OrientedFace;
 
-/// The boundary in one oriented plane, as far as its faces were cut or adjoin cut faces.
+/// The faces of a solid's boundary in one oriented plane that were cut or adjoin cut faces, with their common
+/// outline.
 #[derive(Debug)]
 pub struct PlaneGroup {
     /// The plane, with the inside of the solid on its minus side.

@@ -59,7 +59,7 @@ impl Patches {
 
     /// Returns the patch number of a face.
     pub fn of(&self, face: SourceFace, source: &Source) -> u32 {
-        let own = self.by_slot.get(face.slot.place()).and_then(Option::as_ref);
+        let own = self.by_slot.get(face.slot.index()).and_then(Option::as_ref);
         let found = own.and_then(|own| own.get(source.number(face.id) as usize));
         found.copied().unwrap_or(COMMON)
     }

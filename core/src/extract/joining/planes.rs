@@ -20,7 +20,7 @@ use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
 use crate::mesh::handle::{OrientedFace, SourceFace};
 
-/// A plane group whose faces are still being gathered.
+/// A plane group (the boundary faces of one plane) while its faces are gathered.
 struct Gathered {
     plane: Arc<Plane>,
     patch: u32,
@@ -51,7 +51,7 @@ impl Gathered {
     }
 }
 
-/// All plane groups while their faces are being gathered.
+/// All plane groups (the boundary faces of one plane each) while their faces are gathered.
 struct Grouping<'a> {
     sources: &'a Sources,
     patches: &'a Patches,
@@ -71,7 +71,7 @@ pub struct Joined {
     pub groups: Vec<PlaneGroup>,
     /// For each source, where its whole faces end.
     pub rims: Rims,
-    /// The lines of chords along which groups were divided.
+    /// The lines of the chords along which polygons were divided.
     pub chords: Vec<LineKey>,
 }
 
@@ -135,8 +135,8 @@ impl Grouping<'_> {
         }
     }
 
-    /// Puts the three faces at an edge contact into groups, and divides the group whose face contains the
-    /// edge.
+    /// Puts the three faces at an edge contact into groups by plane, and divides the polygon of the face that
+    /// contains the edge.
     fn add_contact(&mut self, contact: &EdgeContact) {
         for face in contact.faces() {
             if self.fates[face.face] == Fate::Whole(face.orientation) {
@@ -218,7 +218,8 @@ impl Grouping<'_> {
         Orientation::turned_around(opposite) == face.orientation
     }
 
-    /// Moves a whole face into a group; from then on its fate is `Cut`.
+    /// Moves a whole face into a plane group (the boundary faces of one plane); from then on its fate is
+    /// `Cut`.
     fn absorb(&mut self, face: OrientedFace, group: usize) {
         let source = self.sources.get(face.slot());
         let Some(mesh) = source.mesh() else {
@@ -227,7 +228,7 @@ impl Grouping<'_> {
         self.fates[face.face] = Fate::Cut;
         self.rims.outdated(face.slot());
         let polygon = Polygon::triangle(&mesh.corners(face.id()), source.plane(face.id()));
-        let edges = OutlineEdge::all_of(&polygon);
+        let edges = OutlineEdge::edges_of(&polygon);
         let faces = &mut self.groups[group].faces;
         faces.push(face);
         let target = &mut self.groups[group].whole;
@@ -238,8 +239,8 @@ impl Grouping<'_> {
         self.open.push((face, group));
     }
 
-    /// Moves whole faces into groups if they share an edge and the plane with a face of the group; repeats
-    /// this.
+    /// Moves whole faces into a plane group if they share an edge and the plane with a face of the group;
+    /// repeats this.
     fn spread(&mut self) {
         while let Some((face, group)) = self.open.pop() {
             poll();
@@ -301,7 +302,7 @@ impl Grouping<'_> {
         }
     }
 
-    /// Returns the edges where whole faces end, each with the group of its plane, sorted by group.
+    /// Returns the edges where whole faces end, each with the plane group of its face, sorted by group.
     fn candidates(&mut self) -> Vec<Candidate> {
         let frontier = self.rims.frontier(&self.fates, self.sources);
         let mut candidates: Vec<Candidate> = Vec::with_capacity(frontier.len());
@@ -329,7 +330,7 @@ impl Grouping<'_> {
     }
 }
 
-/// An edge where a whole face ends; the face may belong to the group of its plane.
+/// An edge where a whole face ends; the face may belong to the plane group of its plane.
 #[derive(Clone, Copy)]
 struct Candidate {
     group: usize,

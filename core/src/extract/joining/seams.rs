@@ -100,7 +100,7 @@ pub fn find_touching(
         let (first, second) = (&group.edges()[a].carrier, &group.edges()[b].carrier);
         let cut = Arc::new(second.plane(&group.plane));
         if let Some(vertex) = first.meet(&group.plane, &cut) {
-            let point = table.number(&Arc::new(vertex));
+            let point = table.number_of(&Arc::new(vertex));
             touches.extend([(a, point), (b, point)]);
         }
     }

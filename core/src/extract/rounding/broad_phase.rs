@@ -18,7 +18,8 @@ const MAX_CELLS_PER_AXIS: usize = 32;
 const MAX_CELLS_PER_TRIANGLE: usize = 64;
 
 /// Returns the triangles outside the ascending list `some` that may meet a triangle of `some` or a triangle
-/// with another party number; each with its own party number, ascending.
+/// with another party number; each with its own party number, ascending. Triangles with equal party numbers
+/// are known not to cross.
 ///
 /// # Cost
 /// Two passes over vertices and triangles.
@@ -59,10 +60,12 @@ struct Cells<'a> {
     bits: u32,
 }
 
-/// The mark of a cell that triangles with different party numbers, or a triangle of `some`, reach into.
+/// The mark of a grid cell that triangles with different party numbers, or a triangle of `some`, reach into;
+/// triangles with equal party numbers are known not to cross.
 const SHARED: u32 = u32::MAX;
 
-/// For each cell one plus the party number of the triangles that reach into it; 0 if none do.
+/// For each grid cell one plus the party number of the triangles that reach into it, or 0 if none do.
+/// Triangles with equal party numbers are known not to cross.
 type CellParties = Vec<AtomicU32>;
 
 impl<'a> Cells<'a> {
@@ -178,7 +181,7 @@ impl<'a> Cells<'a> {
         corners: [VertexId; 3],
         mut holds: impl FnMut(&[AtomicU32]) -> bool,
     ) -> bool {
-        let cells @ [a, b, c] = corners.map(|v| self.of_vertices[v.place()]);
+        let cells @ [a, b, c] = corners.map(|v| self.of_vertices[v.index()]);
         if a == b && b == c {
             return holds(&marks[usize::from(a)..=usize::from(a)]);
         }
@@ -218,7 +221,8 @@ fn along_axis(place: f64, bits: u32) -> Cell {
     (place as Cell).min((1 << bits) - 1)
 }
 
-/// Marks a cell with a party number, or as `SHARED` if it has another. The order of calls does not matter.
+/// Marks a grid cell with the party number of a triangle, or as `SHARED` if the cell has another. The order
+/// of calls does not matter.
 #[inline]
 fn join(mark: &AtomicU32, party: u32) {
     let mut old = mark.load(Ordering::Relaxed);

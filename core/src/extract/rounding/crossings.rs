@@ -12,10 +12,10 @@ use crate::geometry::doubles::meeting::{are_clear, folds_over, has_no_area, meet
 use crate::geometry::doubles::slabs::Slabs;
 use crate::geometry::doubles::Facing;
 use crate::interrupt::{poll, spend};
-use crate::merge::pairs::{pairs_of_many, Boxed, Part, Swept};
+use crate::merge::pairs::{pairs, BoundedElement, BoxedElement, ElementsInBox};
 use crate::mesh::faces::Faces;
 use crate::mesh::handle::VertexId;
-use crate::mesh::tasks::{both, each, each_chunk, Worth, CHUNK};
+use crate::mesh::tasks::{both, each, each_chunk, WorkSize, CHUNK};
 use crate::mesh::terrains::terrains;
 use crate::mesh::topology::NONE;
 
@@ -47,7 +47,7 @@ impl Faults {
 pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32 + Sync + Send) -> Faults {
     let candidate = |e: &(u32, u32)| Candidate::of(faces, *e);
     let (mut candidates, (own, flat)) = both(
-        Worth::pool_if(some.len() > TRIANGLES_PER_TASK),
+        WorkSize::pool_if(some.len() > TRIANGLES_PER_TASK),
         || -> Vec<Candidate> {
             let near = triangles_near(faces, some, &party);
             let has_area = near.iter().filter(|e| !has_no_area(&faces.corners(e.1)));
@@ -130,7 +130,8 @@ const TRIANGLES_PER_TASK: usize = 512;
 /// The number of pairs that are compared together, on several threads if there are any.
 const PAIRS_PER_BATCH: usize = 8 * CHUNK;
 
-/// A triangle that is compared with triangles of other party numbers.
+/// A triangle that is compared with triangles of other party numbers; triangles with equal party numbers are
+/// known not to cross.
 struct Candidate {
     party: u32,
     triangle: u32,
@@ -148,7 +149,8 @@ impl Candidate {
         }
     }
 
-    /// Raises the party number of the candidate by `first`.
+    /// Raises the party number of the candidate triangle by `first`; triangles with equal party numbers are
+    /// not compared.
     fn after(self, first: u32) -> Self {
         let party = first + self.party;
         Self { party, ..self }
@@ -250,14 +252,15 @@ impl Meetings {
 
 /// A search for pairs of candidate triangles that may meet.
 struct Search<'a> {
-    /// The triangles, sorted by party number.
+    /// The triangles, sorted by party number; triangles with equal party numbers are known not to cross.
     candidates: &'a [Candidate],
     image: Image,
     slabs: Vec<Slabs>,
 }
 
 impl<'a> Search<'a> {
-    /// Compares the pairs of candidates with different party numbers that may meet.
+    /// Compares the pairs of candidate triangles with different party numbers that may meet; triangles with
+    /// equal party numbers are known not to cross.
     fn among<K: PairFindings>(candidates: &'a [Candidate]) -> K {
         let corners = |k: u32| *candidates[k as usize].facing.triangle();
         let Some(image) = Image::of(candidates.len(), corners) else {
@@ -271,21 +274,22 @@ impl<'a> Search<'a> {
             slabs: candidates.iter().map(slabs).collect(),
         };
         let boxes = (0..as_number(candidates.len())).map(|k| search.boxed(k));
-        let parts = Part::of(boxes.collect(), Image::BITS - 30).divided(TRIANGLES_PER_TASK);
-        let found = each(Worth::Pool, parts, |part| search.findings_in(part));
+        let parts =
+            ElementsInBox::of(boxes.collect(), Image::BITS - 30).divided(TRIANGLES_PER_TASK);
+        let found = each(WorkSize::Pool, parts, |part| search.findings_in(part));
         found.into_iter().fold(K::default(), K::with)
     }
 
-    fn boxed(&self, k: u32) -> Boxed {
+    fn boxed(&self, k: u32) -> BoxedElement {
         let (low, high) = self.image.ends(k);
         let party = self.candidates[k as usize].party as usize;
-        Boxed::new(party, k, [&low, &high], Image::BITS - 30)
+        BoxedElement::new(party, k, [&low, &high], Image::BITS - 30)
     }
 
-    fn swept(&self, k: u32) -> Swept {
+    fn bounded(&self, k: u32) -> BoundedElement {
         let (low, high) = self.image.ends(k);
         let Candidate { party, facing, .. } = &self.candidates[k as usize];
-        Swept {
+        BoundedElement {
             operand: *party as usize,
             low,
             high,
@@ -294,12 +298,12 @@ impl<'a> Search<'a> {
     }
 
     /// Compares the pairs of candidates that belong to one part of space.
-    fn findings_in<K: PairFindings>(&self, part: Part) -> K {
+    fn findings_in<K: PairFindings>(&self, part: ElementsInBox) -> K {
         let mut found = K::default();
         let mut waiting = Vec::new();
-        pairs_of_many(
+        pairs(
             part,
-            |k| self.swept(k),
+            |k| self.bounded(k),
             |i, j| {
                 if self.slabs[i as usize].miss(&self.slabs[j as usize]) {
                     return Some(());

@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;
 
 use crate::geometry::doubles::meeting::Meeting;
-use crate::geometry::doubles::sheets::{entwine, pass, Sheet, Sheets};
+use crate::geometry::doubles::sheets::{surface_crosses_plane, surfaces_cross, Sheet, Sheets};
 use crate::geometry::doubles::Triangle;
 use crate::mesh::faces::{edges, Faces};
 use crate::mesh::handle::VertexId;
@@ -20,9 +20,11 @@ pub fn crosses_at(
     match meeting {
         Meeting::Clear => false,
         Meeting::Crossing | Meeting::Overlap => true,
-        Meeting::FirstEdge(i) => pass(q, &sheets(0, i)),
-        Meeting::SecondEdge(j) => pass(p, &sheets(1, j)),
-        Meeting::Edges(i, j) => entwine([&p[i], &p[(i + 1) % 3]], [&sheets(0, i), &sheets(1, j)]),
+        Meeting::FirstEdge(i) => surface_crosses_plane(q, &sheets(0, i)),
+        Meeting::SecondEdge(j) => surface_crosses_plane(p, &sheets(1, j)),
+        Meeting::Edges(i, j) => {
+            surfaces_cross([&p[i], &p[(i + 1) % 3]], [&sheets(0, i), &sheets(1, j)])
+        }
     }
 }
 
@@ -108,15 +110,15 @@ impl<'a> AtEdges<'a> {
     fn collect(&mut self) {
         let mut is_end = vec![false; self.faces.vertices.len()];
         for v in self.sheets.keys().flatten() {
-            is_end[v.place()] = true;
+            is_end[v.index()] = true;
         }
         for &triangle in self.faces.triangles {
             for (k, [a, b]) in edges(triangle).into_iter().enumerate() {
-                if is_end[a.place()]
-                    && is_end[b.place()]
+                if is_end[a.index()]
+                    && is_end[b.index()]
                     && let Some(found) = self.sheets.get_mut(&sorted([a, b]))
                 {
-                    let apex = self.faces.vertices[triangle[(k + 2) % 3].place()];
+                    let apex = self.faces.vertices[triangle[(k + 2) % 3].index()];
                     let is_along = a < b;
                     found.push(Sheet { apex, is_along });
                 }

@@ -7,7 +7,7 @@
 use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::extent::Extent;
-use crate::geometry::doubles::vector::{cross, dot, less, normal};
+use crate::geometry::doubles::vector::{cross, difference, dot, normal};
 use crate::geometry::doubles::{Point, Triangle};
 use crate::geometry::plane::Lattice;
 use crate::mesh::terrains::is_needle;
@@ -141,7 +141,7 @@ fn axes_across_needles(sample: &[Triangle]) -> Option<[Point; 3]> {
 /// edge is the diagonal between neighbours.
 fn second_edge_direction(triangle: &Triangle) -> Option<Point> {
     let [a, b, c] = triangle;
-    let mut edges = [less(b, a), less(c, b), less(a, c)];
+    let mut edges = [difference(b, a), difference(c, b), difference(a, c)];
     edges.sort_unstable_by(|e, f| dot(e, e).total_cmp(&dot(f, f)));
     is_needle(triangle).then_some(edges[1]).and_then(unit)
 }

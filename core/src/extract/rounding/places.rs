@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use super::crossings::Faults;
 use crate::geometry::axes::each_axis;
-use crate::geometry::doubles::vector::{dot, less, normal};
+use crate::geometry::doubles::vector::{difference, dot, normal};
 use crate::geometry::doubles::{Point, Triangle};
 use crate::mesh::faces::Faces;
 
@@ -35,7 +35,7 @@ fn in_order(a: &Point, b: &Point) -> Ordering {
 /// Yields the points in which the edges of a triangle pass through the plane of another triangle.
 fn through<'a>(t: &'a Triangle, plane: &Triangle) -> impl Iterator<Item = Point> + 'a {
     let across = normal(plane);
-    let heights = t.map(|c| dot(&less(&c, &plane[0]), &across));
+    let heights = t.map(|c| dot(&difference(&c, &plane[0]), &across));
     (0..3).filter_map(move |i| {
         let (from, to) = (i, (i + 1) % 3);
         let (above, below) = (heights[from], heights[to]);

@@ -10,13 +10,13 @@ use super::snapping::crossing_faces;
 use super::touching::touching;
 use super::unfold::{turned, unfold};
 use super::upright::keeps_order;
-use crate::arith::convert::{as_number, as_place};
+use crate::arith::convert::{as_index, as_number};
 use crate::error::Result;
 use crate::extract::assemble::assemble_patches;
 use crate::extract::joining::patches::Patches;
 use crate::extract::mesh::{numbers_left, Corner, ExactMesh, Mesh};
 use crate::extract::order::put_in_order;
-use crate::geometry::doubles::digits;
+use crate::geometry::doubles::bit_key;
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
 use crate::merge::evaluate::is_simple;
@@ -25,7 +25,7 @@ use crate::mesh::disjoint::DisjointSets;
 use crate::mesh::finding::{Finding, Severity};
 use crate::mesh::grid::snap_point;
 use crate::mesh::handle::{OrientedFace, VertexId};
-use crate::mesh::tasks::{both, Worth, CHUNK};
+use crate::mesh::tasks::{both, WorkSize, CHUNK};
 use crate::mesh::topology::NONE;
 use crate::tree::solid::Solid;
 
@@ -75,7 +75,7 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
     let sources = Sources::new(solid.sources().clone());
     let unfolded = unfold(&mut mesh, &exact, &sources);
     let (parties, names) = both(
-        Worth::pool_if(exact.faces.len() > CHUNK),
+        WorkSize::pool_if(exact.faces.len() > CHUNK),
         || parties(&mesh, &exact),
         || names(&exact.faces, &sources),
     );
@@ -129,11 +129,11 @@ fn settle_mesh(
     changed.dedup();
     changed.extend(as_number(exact.untouched)..as_number(mesh.triangles.len()));
     let party = |t: u32| parties[t as usize];
-    let corner = |v: VertexId| exact.vertices.get(v.place());
+    let corner = |v: VertexId| exact.vertices.get(v.index());
     let on_lattice = |v: VertexId| match corner(v) {
         Some(Corner::Source(slot, vertex)) => {
             let mesh = solid.sources().get(*slot).mesh()?;
-            let place = Vertex::lattice(mesh.vertices[vertex.place()]);
+            let place = Vertex::lattice(mesh.vertices[vertex.index()]);
             Some(solid.pitch().position(&place))
         }
         _ => None,
@@ -242,10 +242,10 @@ fn with_others_corners(mesh: &Mesh, sources: &Sources, exact: &ExactMesh) -> Vec
     let bits = |p: &[f64; 3]| p.map(f64::to_bits);
     let has_others = |t: &u32| {
         let face = exact.faces[*t as usize];
-        let corners = mesh.triangles[*t as usize].map(|v| bits(&mesh.vertices[v.place()]));
+        let corners = mesh.triangles[*t as usize].map(|v| bits(&mesh.vertices[v.index()]));
         sources.get(face.slot()).mesh().is_some_and(|source| {
             let given = source.vertices_of(face.id());
-            let given = given.map(|v| bits(&source.doubles[v.place()]));
+            let given = given.map(|v| bits(&source.doubles[v.index()]));
             corners.iter().any(|corner| !given.contains(corner))
         })
     };
@@ -272,13 +272,13 @@ fn drop_unused(mesh: &mut Mesh) {
     let used = used(mesh);
     let numbers = numbers_left(&used);
     for v in mesh.triangles.iter_mut().flatten() {
-        *v = numbers[v.place()];
+        *v = numbers[v.index()];
     }
     // At this stage findings name vertices only: contacts, and corners that were moved.
     for finding in &mut mesh.findings {
-        finding.place.retain(|v| used[as_place(*v)]);
+        finding.place.retain(|v| used[as_index(*v)]);
         for v in &mut finding.place {
-            *v = u64::from(numbers[as_place(*v)]);
+            *v = u64::from(numbers[as_index(*v)]);
         }
     }
     let mut kept = used.iter();
@@ -290,7 +290,7 @@ fn drop_unused(mesh: &mut Mesh) {
 fn used(mesh: &Mesh) -> Vec<bool> {
     let mut used = vec![false; mesh.vertices.len()];
     for v in mesh.triangles.iter().filter(|t| is_left(t)).flatten() {
-        used[v.place()] = true;
+        used[v.index()] = true;
     }
     used
 }
@@ -314,7 +314,7 @@ fn tell_touching(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources, is_mende
     let is_used = |v: u32| !is_mended || used[v as usize];
     let is_given = |v: u32| match exact.vertices.get(v as usize) {
         Some(Corner::Source(slot, vertex)) => sources.get(*slot).mesh().is_some_and(|source| {
-            digits(&source.doubles[vertex.place()]) == digits(&mesh.vertices[v as usize])
+            bit_key(&source.doubles[vertex.index()]) == bit_key(&mesh.vertices[v as usize])
         }),
         _ => false,
     };
@@ -333,7 +333,7 @@ fn tell_touching(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources, is_mende
 /// Adds findings about the triangles that rounding changed; `numbers` are the new numbers of triangles,
 /// empty if none was removed.
 fn report(mesh: &mut Mesh, swapped: &[u64], turned: &[u64], settled: &Settled, numbers: &[u64]) {
-    let number = |t: &u64| numbers.get(as_place(*t)).copied().unwrap_or(*t);
+    let number = |t: &u64| numbers.get(as_index(*t)).copied().unwrap_or(*t);
     let numbered = |ids: &[u64]| ids.iter().map(number).collect::<Vec<u64>>();
     let wide = |ids: &mut dyn Iterator<Item = &u32>| ids.map(|t| number(&u64::from(*t))).collect();
     let [crossing, own] = [&settled.left, &settled.own].map(|faults| {
@@ -385,7 +385,7 @@ const OWN: &str = "an operand crosses itself, so these triangles cross or overla
 /// Returns true if two corners of a triangle have equal doubles.
 #[allow(clippy::float_cmp)]
 fn is_collapsed(mesh: &Mesh, triangle: u64) -> bool {
-    let [a, b, c] = mesh.triangles[as_place(triangle)].map(|v| mesh.vertices[v.place()]);
+    let [a, b, c] = mesh.triangles[as_index(triangle)].map(|v| mesh.vertices[v.index()]);
     a == b || b == c || c == a
 }
 

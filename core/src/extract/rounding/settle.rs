@@ -14,7 +14,7 @@ use crate::mesh::faces::{edges, Faces};
 use crate::mesh::grid::{snap_point, Pitch};
 use crate::mesh::handle::VertexId;
 use crate::mesh::snap::snap_all;
-use crate::mesh::triangles::firsts;
+use crate::mesh::triangles::first_equal_vertices;
 
 /// The largest number of rounds: each mends the faults found, and the next one compares the triangles it
 /// changed.
@@ -100,7 +100,7 @@ pub fn settle_in_single(mesh: &mut Rounded) -> Settled {
         *moved = differ(&rounded, place);
         *place = rounded;
     }
-    let is_changed = |t: &u32| mesh.triangles[*t as usize].iter().any(|v| moved[v.place()]);
+    let is_changed = |t: &u32| mesh.triangles[*t as usize].iter().any(|v| moved[v.index()]);
     let changed: Vec<u32> = (0..as_number(mesh.triangles.len()))
         .filter(is_changed)
         .collect();
@@ -162,8 +162,8 @@ impl Rounded {
         let Ok(places) = snap_all(&self.vertices, pitch) else {
             return false;
         };
-        let image = firsts(&places);
-        let joined = |t: &[VertexId; 3]| match t.map(|v| image[v.place()]) {
+        let image = first_equal_vertices(&places);
+        let joined = |t: &[VertexId; 3]| match t.map(|v| image[v.index()]) {
             [a, b, c] if a == b || b == c || c == a => [a; 3],
             apart => apart,
         };
@@ -183,7 +183,7 @@ impl Rounded {
     fn settle_from_lattice(&mut self, found: Faults, pitch: Pitch) -> Settled {
         let given = self.vertices.clone();
         let on_lattice = |v: VertexId| {
-            let place = snap_point(pitch, given.get(v.place())?).ok()?;
+            let place = snap_point(pitch, given.get(v.index())?).ok()?;
             Some(pitch.position(&Vertex::lattice(place)))
         };
         self.settle_all(found, on_lattice)
@@ -241,10 +241,10 @@ impl Rounded {
         let wanted: HashSet<[VertexId; 2]> = corners.flat_map(edges).map(|[a, b]| [b, a]).collect();
         let mut is_end = vec![false; self.vertices.len()];
         for v in wanted.iter().flatten() {
-            is_end[v.place()] = true;
+            is_end[v.index()] = true;
         }
         let has =
-            |edge: &[VertexId; 2]| edge.iter().all(|v| is_end[v.place()]) && wanted.contains(edge);
+            |edge: &[VertexId; 2]| edge.iter().all(|v| is_end[v.index()]) && wanted.contains(edge);
         let numbered = (0u32..).zip(&self.triangles);
         let mates = numbered.filter(|(_, corners)| edges(**corners).iter().any(has));
         mates
@@ -253,7 +253,7 @@ impl Rounded {
             .collect()
     }
 
-    /// Returns true if all triangles have the same party number.
+    /// Returns true if all triangles have the same party number, so that they are known not to cross.
     fn is_of_one(&self, party: impl Fn(u32) -> u32) -> bool {
         (1..as_number(self.triangles.len())).all(|t| party(t) == party(0))
     }
@@ -276,9 +276,9 @@ impl Rounded {
         corners.sort_unstable();
         corners.dedup();
         corners.retain(|&v| {
-            let place = exact(v).filter(|p| differ(p, &self.vertices[v.place()]));
+            let place = exact(v).filter(|p| differ(p, &self.vertices[v.index()]));
             if let Some(place) = place {
-                self.vertices[v.place()] = place;
+                self.vertices[v.index()] = place;
             }
             place.is_some()
         });
@@ -318,7 +318,7 @@ impl Rounded {
                 .collect(),
             flat: found.flat.iter().map(local).collect(),
         };
-        let vertices = part.globals.iter().map(|v| self.vertices[v.place()]);
+        let vertices = part.globals.iter().map(|v| self.vertices[v.index()]);
         let marks = [
             part.is_cut_off(self),
             part.globals.iter().map(|v| given(*v)).collect(),
@@ -335,7 +335,7 @@ impl Rounded {
         let first = self.vertices.len() - globals.len();
         for (v, place) in mending.vertices.iter().enumerate() {
             if let Some(global) = globals.get(v) {
-                self.vertices[global.place()] = *place;
+                self.vertices[global.index()] = *place;
             } else {
                 globals.push(VertexId::of(first + v));
                 self.vertices.push(*place);
@@ -348,8 +348,8 @@ impl Rounded {
                 touched.push(*t);
             }
             self.triangles[*t as usize] = match new {
-                Some(corners) => corners.map(|v| globals[v.place()]),
-                None => [globals[old[0].place()]; 3],
+                Some(corners) => corners.map(|v| globals[v.index()]),
+                None => [globals[old[0].index()]; 3],
             };
         }
         touched
@@ -383,7 +383,7 @@ impl SubMesh {
     fn is_cut_off(&self, mesh: &Rounded) -> Vec<bool> {
         let mut missing: HashMap<VertexId, usize> = HashMap::default();
         for v in self.triangles.iter().flatten() {
-            *missing.entry(self.globals[v.place()]).or_default() += 1;
+            *missing.entry(self.globals[v.index()]).or_default() += 1;
         }
         let mut whole = missing.clone();
         for count in whole.values_mut() {
@@ -513,7 +513,7 @@ mod tests {
         let corners = mesh.triangles.iter().flatten();
         let rows = (0..as_number(mesh.triangles.len())).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
         Rounded {
-            vertices: corners.map(|v| mesh.vertices[v.place()]).collect(),
+            vertices: corners.map(|v| mesh.vertices[v.index()]).collect(),
             triangles: VertexId::rows(rows),
         }
     }

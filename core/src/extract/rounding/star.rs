@@ -20,7 +20,7 @@ pub fn is_star_shaped(faces: &Faces) -> bool {
     let mut left = 0;
     for t in 0..as_number(faces.triangles.len()) {
         let facing = Facing::of(&faces.corners(t));
-        if facing.clear_side_off(&eye) != Filtered::Certain(Side::Minus) {
+        if facing.clear_strict_side(&eye) != Filtered::Certain(Side::Minus) {
             return false;
         }
         left += u64::from(is_left_by(facing.triangle(), &eye));

@@ -6,7 +6,7 @@ use rustc_hash::{FxBuildHasher, FxHashSet as HashSet};
 
 use crate::arith::convert::as_number;
 use crate::extract::mesh::Corner;
-use crate::geometry::doubles::{digits, Point};
+use crate::geometry::doubles::{bit_key, Point};
 use crate::interrupt::spend;
 use crate::mesh::tasks::{each_chunk, CHUNK};
 
@@ -67,7 +67,7 @@ fn candidates(vertices: &[Point], is_used: impl Fn(u32) -> bool + Sync) -> Vec<(
     }
     let filter = Filter::of(&places);
     let found = each_chunk(vertices, |first, chunk| {
-        let numbered = (as_number(first)..).zip(chunk.iter().map(digits));
+        let numbered = (as_number(first)..).zip(chunk.iter().map(bit_key));
         let is_there =
             |(_, place): &(u32, Digits)| filter.may_have(place) && places.contains(place);
         let found = numbered
@@ -85,7 +85,7 @@ fn repeated(vertices: &[Point]) -> HashSet<Digits> {
     let mut places = HashSet::default();
     for chunk in vertices.chunks(CHUNK) {
         spend(chunk.len());
-        let placed = chunk.iter().map(digits);
+        let placed = chunk.iter().map(bit_key);
         places.extend(placed.filter(|place| !filter.add(place)));
     }
     places
@@ -162,7 +162,7 @@ mod tests {
     fn short_coordinates_are_told_apart() {
         let line = || (0..16).map(f64::from);
         let square = || line().flat_map(|x| line().map(move |y| [x, y, 0.5]));
-        let places: HashSet<Digits> = square().map(|p| digits(&p)).collect();
+        let places: HashSet<Digits> = square().map(|p| bit_key(&p)).collect();
         let filter = Filter::of(&places);
         let taken: u32 = filter.words.iter().map(|word| word.count_ones()).sum();
         assert!(places.len() == 256 && taken > 200, "{taken}");

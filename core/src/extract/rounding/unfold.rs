@@ -6,7 +6,7 @@
 
 use rustc_hash::FxHashMap as HashMap;
 
-use crate::arith::convert::as_place;
+use crate::arith::convert::as_index;
 use crate::arith::Sign;
 use crate::extract::mesh::{outward_normal, Corner, ExactMesh, Mesh};
 use crate::geometry::doubles::{seen_along, turn};
@@ -41,7 +41,7 @@ pub fn unfold(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources) -> Unfolded
     let mut surface = Surface::new(mesh, Planes { exact, sources });
     let mut tries = MAX_SWAPS_PER_TRIANGLE * turned.len();
     let mut found = Unfolded::default();
-    let mut open: Vec<usize> = turned.iter().rev().map(|t| as_place(*t)).collect();
+    let mut open: Vec<usize> = turned.iter().rev().map(|t| as_index(*t)).collect();
     while let Some(t) = open.pop() {
         if tries == 0 || !surface.is_turned(t) {
             continue;
@@ -56,14 +56,14 @@ pub fn unfold(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources) -> Unfolded
     }
     found.repaired.sort_unstable();
     found.repaired.dedup();
-    found.left.retain(|&t| surface.is_turned(as_place(t)));
+    found.left.retain(|&t| surface.is_turned(as_index(t)));
     found
 }
 
 /// Returns the triangles with a constructed corner that do not face as their planes do, ascending.
 pub fn turned(mesh: &Mesh, exact: &ExactMesh, sources: &Sources) -> Vec<u64> {
     let planes = Planes { exact, sources };
-    let is_given = |v: &VertexId| matches!(exact.vertices.get(v.place()), Some(Corner::Source(..)));
+    let is_given = |v: &VertexId| matches!(exact.vertices.get(v.index()), Some(Corner::Source(..)));
     let is_left = |t: &[VertexId; 3]| t[0] != t[1];
     let late = mesh.triangles.iter().enumerate().skip(exact.untouched);
     late.filter(|(_, t)| is_left(t) && !t.iter().all(is_given))
@@ -99,7 +99,7 @@ impl Planes<'_> {
 fn is_turned(mesh: &Mesh, corners: &[VertexId; 3], normal: &[i128; 3]) -> bool {
     let axis = (0..3).rev().max_by_key(|i| normal[*i].unsigned_abs());
     let axis = axis.unwrap_or(0);
-    let corners = corners.map(|c| mesh.vertices[c.place()]);
+    let corners = corners.map(|c| mesh.vertices[c.index()]);
     let facing = Sign::of(normal[axis]);
     turn(seen_along(&corners, axis)) != facing
 }

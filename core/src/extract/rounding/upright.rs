@@ -61,7 +61,7 @@ fn lattice_of(corner: Corner, exact: &ExactMesh, sources: &Sources) -> Option<La
         Corner::Point(point) => exact.table.point(point).as_lattice().copied(),
         Corner::Source(slot, vertex) => {
             let mesh = sources.get(slot).mesh()?;
-            Some(mesh.vertices[vertex.place()])
+            Some(mesh.vertices[vertex.index()])
         }
     }
 }

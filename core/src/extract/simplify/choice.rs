@@ -17,7 +17,7 @@ impl Surface<'_> {
     pub fn acts(&self, awake: &[bool], tolerance: f64) -> Vec<Act> {
         let of = |first: usize, triangles: &[[VertexId; 3]]| {
             let some = (as_number(first)..).zip(triangles);
-            let near = some.filter(|(_, t)| t.iter().any(|v| awake[v.place()]));
+            let near = some.filter(|(_, t)| t.iter().any(|v| awake[v.index()]));
             let all = near.flat_map(|(t, _)| self.acts_at(t, tolerance));
             all.collect::<Vec<Wanted>>()
         };
@@ -117,7 +117,7 @@ struct Lock {
 /// A collapse reads the neighbours of both ends, and the triangles around the removed end. A flip reads its
 /// two triangles, whether their apexes are joined, and the drift at its corners.
 fn is_locked(surface: &Surface, locks: &[Lock], act: &Act) -> bool {
-    let at = |v: &VertexId| locks[v.place()];
+    let at = |v: &VertexId| locks[v.index()];
     match act {
         Act::Collapse(ends) => {
             let taken = |v: &VertexId| at(v).ends || at(v).beside || at(v).turns;
@@ -139,15 +139,15 @@ fn lock(surface: &Surface, locks: &mut [Lock], act: &Act) {
     match act {
         Act::Collapse(ends) => {
             for v in ends {
-                locks[v.place()].ends = true;
+                locks[v.index()].ends = true;
             }
             for v in surface.neighbours(ends[0]) {
-                locks[v.place()].beside = true;
+                locks[v.index()].beside = true;
             }
         }
         Act::Flip(corners) => {
             for v in corners {
-                locks[v.place()].turns = true;
+                locks[v.index()].turns = true;
             }
         }
     }

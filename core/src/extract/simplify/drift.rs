@@ -55,7 +55,7 @@ impl Drift {
 
     /// Returns a bound on the distance of a vertex from the old points that were moved to it.
     pub fn at(&self, v: VertexId) -> f64 {
-        self.bounds[v.place()]
+        self.bounds[v.index()]
     }
 
     /// Returns the bound at vertex `to` after more points are moved to it; `None` if it exceeds `limit`.
@@ -92,9 +92,9 @@ impl Drift {
 
     /// Records that points were moved to a vertex, and the bound after that.
     pub fn follow(&mut self, to: VertexId, arrival: Arrival, bound: f64) {
-        let to = to.place();
+        let to = to.index();
         let from = match arrival {
-            Arrival::Vertex(v) => v.place(),
+            Arrival::Vertex(v) => v.index(),
             Arrival::Point(place, slack) => {
                 let next = as_number(self.witnesses.len());
                 self.witnesses.push(Witness { place, slack, next });

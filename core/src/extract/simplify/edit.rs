@@ -3,7 +3,7 @@
 use super::drift::{Arrival, Drift};
 use super::sizes::{height, rounding_of, swept};
 use super::surface::{place_of, Surface};
-use crate::geometry::doubles::vector::{dot, less, normal};
+use crate::geometry::doubles::vector::{difference, dot, normal};
 use crate::geometry::doubles::{is_flat, Triangle};
 use crate::mesh::handle::VertexId;
 
@@ -190,8 +190,8 @@ impl Limits<'_> {
     /// Returns the point of the edge a → b nearest to c; `None` if it is not strictly between the ends.
     fn beside(&self, [a, b, c]: [VertexId; 3]) -> Option<Arrival> {
         let [p, q, r] = [a, b, c].map(|v| self.surface.place(v));
-        let along = less(q, p);
-        let share = dot(&less(r, p), &along) / dot(&along, &along);
+        let along = difference(q, p);
+        let share = dot(&difference(r, p), &along) / dot(&along, &along);
         let place = [0, 1, 2].map(|i| p[i] + share * along[i]);
         let slack = self.drift.at(a).max(self.drift.at(b)) + rounding_of(p, q);
         (share > 0.0 && share < 1.0).then_some(Arrival::Point(place, slack))

@@ -168,7 +168,7 @@ mod tests {
     fn a_change_that_sweeps_over_another_shell_is_taken_back() {
         assert_eq!(kept_beside(|_| [9.0; 3]), [1, 0]);
         let inside = |edit: &Edit| {
-            let body = edit.bodies()[0].map(|v| PLACES[v.place()]);
+            let body = edit.bodies()[0].map(|v| PLACES[v.index()]);
             [0, 1, 2].map(|i| body.iter().map(|p| p[i]).sum::<f64>() / 4.0)
         };
         assert_eq!(kept_beside(inside), [0, 1]);

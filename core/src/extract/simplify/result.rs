@@ -13,8 +13,9 @@ use crate::mesh::import::import;
 use crate::mesh::source::Source;
 use crate::tree::solid::Solid;
 
-/// The lattices that are tried, by how many powers of ten they are finer than the solid's own: rounding
-/// leaves triangles lower than a step, down to a few units in the last place.
+/// The lattices that are tried for a simplified mesh, by how many powers of ten their step is finer than the
+/// step of the solid's own lattice. On a lattice that is too coarse, triangles lower than a step would become
+/// flat; the next lattice is then 1000 times finer.
 const FINER_POWERS_OF_TEN: [i64; 3] = [0, 3, 6];
 
 /// Returns the solid of a bounded solid's mesh without its short edges and slivers.
@@ -42,14 +43,15 @@ pub fn simplified(solid: &Solid, tolerance: f64) -> Result<Option<Solid>> {
     Ok(None)
 }
 
-/// Returns the solid of a mesh on a lattice; `None` if a face would change there, or faces would overlap.
+/// Returns the solid of a mesh on a lattice; `None` if rounding to the lattice would change a face, or faces
+/// would overlap there.
 fn on_lattice(mesh: &Simplified, pitch: Pitch, noticed: Vec<Finding>) -> Result<Option<Solid>> {
     let faces: Vec<[i64; 3]> = mesh.triangles.iter().map(|t| t.map(i64::from)).collect();
     let imported = import(&mesh.vertices, &faces, Some(pitch)).ok();
     let Some(source) = imported.filter(Source::is_as_given) else {
         return Ok(None);
     };
-    let solid = Solid::of_source(Arc::new(source.noting(noticed)), false);
+    let solid = Solid::of_source(Arc::new(source.with_findings(noticed)), false);
     normalize(&solid, Rule::Positive)?;
     Ok(solid.is_reduced().then_some(solid))
 }

@@ -100,10 +100,10 @@ impl Simplifying {
         let tried = !edits.is_empty();
         let (kept, refused) = proved(&self.vertices, &mut self.triangles, edits, &self.shells);
         for act in &waiting {
-            act.corners().for_each(|v| self.awake[v.place()] = true);
+            act.corners().for_each(|v| self.awake[v.index()] = true);
         }
         for edit in &kept {
-            edit.corners().for_each(|v| self.awake[v.place()] = true);
+            edit.corners().for_each(|v| self.awake[v.index()] = true);
             self.drift.follow(edit.target, edit.arrival, edit.bound);
         }
         self.changed |= !kept.is_empty();
@@ -114,7 +114,7 @@ impl Simplifying {
 
     fn finished(self) -> Simplified {
         let tolerance = self.tolerance;
-        let corners = |t: &[VertexId; 3]| t.map(|v| self.vertices[v.place()]);
+        let corners = |t: &[VertexId; 3]| t.map(|v| self.vertices[v.index()]);
         let is_left = |t: &[VertexId; 3]| is_small(&corners(t), tolerance);
         let numbered = |first: usize, triangles: &[[VertexId; 3]]| {
             let small = (as_number(first)..)
@@ -141,12 +141,12 @@ fn without_unused(
 ) -> (Vec<Point>, Vec<[VertexId; 3]>) {
     let mut used = vec![false; vertices.len()];
     for v in triangles.iter().flatten() {
-        used[v.place()] = true;
+        used[v.index()] = true;
     }
     let numbers = numbers_left(&used);
     let kept = vertices.iter().zip(used).filter(|(_, used)| *used);
     let kept = kept.map(|(place, _)| *place).collect();
-    let renumbered = |t: &[VertexId; 3]| t.map(|v| numbers[v.place()]);
+    let renumbered = |t: &[VertexId; 3]| t.map(|v| numbers[v.index()]);
     (kept, triangles.iter().map(renumbered).collect())
 }
 

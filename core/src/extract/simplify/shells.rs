@@ -5,7 +5,7 @@
 
 use super::edit::Edit;
 use crate::arith::{Filtered, Sign};
-use crate::geometry::doubles::vector::{dot, less, normal};
+use crate::geometry::doubles::vector::{difference, dot, normal};
 use crate::geometry::doubles::{side, Point};
 use crate::geometry::side::Side;
 use crate::interrupt::{poll, spend};
@@ -48,7 +48,7 @@ impl Shells {
 
     /// Returns the number of the shell that a change belongs to.
     pub fn of_edit(&self, edit: &Edit) -> usize {
-        self.numbers[edit.target.place()] as usize
+        self.numbers[edit.target.index()] as usize
     }
 
     /// Returns for each change whether another shell may lie in the volume that the change sweeps.
@@ -66,7 +66,7 @@ impl Shells {
             let own = self.of_edit(edit);
             edit.bodies().iter().any(|body| {
                 poll();
-                let body = body.map(|v| &vertices[v.place()]);
+                let body = body.map(|v| &vertices[v.index()]);
                 let others = shell_points.beside(&body).iter().filter(|r| r.0 != own);
                 others.into_iter().any(|(_, p)| may_hold(&body, p))
             })
@@ -83,11 +83,11 @@ impl Shells {
     ) -> ShellPoints {
         let mut goes = vec![false; vertices.len()];
         for v in edits.iter().filter_map(Edit::going) {
-            goes[v.place()] = true;
+            goes[v.index()] = true;
         }
         let mut found: Vec<Option<Point>> = vec![None; self.sides.len()];
-        for &v in triangles.as_flattened().iter().filter(|v| !goes[v.place()]) {
-            found[self.numbers[v.place()] as usize].get_or_insert(vertices[v.place()]);
+        for &v in triangles.as_flattened().iter().filter(|v| !goes[v.index()]) {
+            found[self.numbers[v.index()] as usize].get_or_insert(vertices[v.index()]);
         }
         let numbered = (0..).zip(found);
         let mut points: Vec<(usize, Point)> = numbered.filter_map(|(k, p)| Some((k, p?))).collect();
@@ -102,8 +102,8 @@ impl Shells {
         let count = used.max().map_or(0, |m| *m as usize + 1);
         let mut sums = vec![ShellVolume::default(); count];
         for t in triangles.iter().filter(|t| t[0] != t[1]) {
-            let corners = t.map(|v| vertices[v.place()]);
-            sums[self.numbers[t[0].place()] as usize].add(&corners);
+            let corners = t.map(|v| vertices[v.index()]);
+            sums[self.numbers[t[0].index()] as usize].add(&corners);
         }
         sums.iter().map(ShellVolume::sign).collect()
     }
@@ -126,9 +126,9 @@ impl ShellVolume {
     fn add(&mut self, corners: &[Point; 3]) {
         let origin = *self.origin.get_or_insert(corners[0]);
         let [a, b, c] = corners;
-        let arm = less(a, &origin);
+        let arm = difference(a, &origin);
         self.volume += dot(&arm, &normal(corners));
-        let lengths = [arm, less(b, a), less(c, a)].map(|e| dot(&e, &e).sqrt());
+        let lengths = [arm, difference(b, a), difference(c, a)].map(|e| dot(&e, &e).sqrt());
         self.size += lengths.iter().product::<f64>();
         self.count += 1.0;
     }
@@ -179,7 +179,7 @@ fn connected(count: usize, triangles: &[[VertexId; 3]]) -> Vec<u32> {
             numbers[root] = next;
             next += 1;
         }
-        numbers[v.place()] = numbers[root];
+        numbers[v.index()] = numbers[root];
     }
     numbers
 }

@@ -1,6 +1,6 @@
 //! Lengths and heights of triangles, in doubles; they never decide whether a change is right.
 
-use crate::geometry::doubles::vector::{cross, dot, less, normal};
+use crate::geometry::doubles::vector::{cross, difference, dot, normal};
 use crate::geometry::doubles::{Point, Triangle};
 
 /// The rounding error of a sum of three squares and its root, relative to the root, with a margin.
@@ -14,7 +14,7 @@ const POINT_ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Dividing by the largest difference keeps squares of the smallest and the largest doubles apart
 /// from zero and infinity.
 pub fn distance_above(p: &Point, q: &Point) -> f64 {
-    let gap = less(p, q);
+    let gap = difference(p, q);
     let most = gap.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     if most == 0.0 {
         return 0.0;
@@ -32,7 +32,7 @@ pub fn rounding_of(p: &Point, q: &Point) -> f64 {
 /// The lengths of a triangle's edges, each from a corner to the next one.
 pub fn lengths(corners: &Triangle) -> [f64; 3] {
     [0, 1, 2].map(|i| {
-        let edge = less(&corners[(i + 1) % 3], &corners[i]);
+        let edge = difference(&corners[(i + 1) % 3], &corners[i]);
         dot(&edge, &edge).sqrt()
     })
 }
@@ -54,7 +54,11 @@ pub fn is_small(corners: &Triangle, tolerance: f64) -> bool {
 
 /// Six times the volume that a triangle with the edge p → q sweeps when its third corner moves.
 pub fn swept(from: &Point, to: &Point, [p, q]: [&Point; 2]) -> f64 {
-    dot(&less(to, from), &cross(&less(p, from), &less(q, from))).abs()
+    dot(
+        &difference(to, from),
+        &cross(&difference(p, from), &difference(q, from)),
+    )
+    .abs()
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ impl<'a> Surface<'a> {
         spend(triangles.len());
         let mut starts = vec![0u32; vertices.len() + 1];
         for v in triangles.as_flattened() {
-            starts[v.place() + 1] += 1;
+            starts[v.index() + 1] += 1;
         }
         for v in 0..vertices.len() {
             starts[v + 1] += starts[v];
@@ -30,7 +30,7 @@ impl<'a> Surface<'a> {
         let mut stars = vec![0; 3 * triangles.len()];
         for (t, corners) in (0..).zip(triangles) {
             for v in corners {
-                let end = &mut ends[v.place()];
+                let end = &mut ends[v.index()];
                 stars[*end as usize] = t;
                 *end += 1;
             }
@@ -45,7 +45,7 @@ impl<'a> Surface<'a> {
 
     /// The triangles around a vertex.
     pub fn star(&self, v: VertexId) -> &[u32] {
-        let [start, end] = [0, 1].map(|next| self.starts[v.place() + next] as usize);
+        let [start, end] = [0, 1].map(|next| self.starts[v.index() + next] as usize);
         &self.stars[start..end]
     }
 
@@ -74,7 +74,7 @@ impl<'a> Surface<'a> {
 
     /// The position of a vertex.
     pub fn place(&self, v: VertexId) -> &'a Point {
-        &self.vertices[v.place()]
+        &self.vertices[v.index()]
     }
 
     /// The corners of a triangle.

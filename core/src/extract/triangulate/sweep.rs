@@ -35,7 +35,8 @@ enum Kind {
     Start,
 }
 
-/// A vertex in a chain, with the nodes below and above it.
+/// A vertex of an interval's chain, which are the vertices between its two edges that are not yet
+/// triangulated; with the nodes below and above it.
 struct Node {
     vertex: u32,
     down: usize,
@@ -46,7 +47,8 @@ struct Node {
 struct Interval {
     lower: usize,
     upper: usize,
-    /// The lowest, the highest and the rightmost node of the chain.
+    /// The lowest, the highest and the rightmost node in the interval's chain of vertices that are not yet
+    /// triangulated.
     bottom: usize,
     top: usize,
     last: usize,
@@ -245,7 +247,8 @@ impl<P: Planar> Sweep<'_, P> {
         self.intervals[interval].last = node;
     }
 
-    /// Cuts off triangles between `vertex` and the chain upwards of `node`; returns the last node used.
+    /// Cuts off triangles between `vertex` and the vertices of an interval's chain from `node` upwards;
+    /// returns the last node used.
     fn cut_up(&mut self, vertex: u32, mut node: usize) -> usize {
         while self.nodes[node].up != NONE {
             let up = self.nodes[node].up;
@@ -258,7 +261,8 @@ impl<P: Planar> Sweep<'_, P> {
         node
     }
 
-    /// Cuts off triangles between `vertex` and the chain downwards of `node`; returns the last node used.
+    /// Cuts off triangles between `vertex` and the vertices of an interval's chain from `node` downwards;
+    /// returns the last node used.
     fn cut_down(&mut self, vertex: u32, mut node: usize) -> usize {
         while self.nodes[node].down != NONE {
             let down = self.nodes[node].down;
@@ -295,7 +299,8 @@ impl<P: Planar> Sweep<'_, P> {
         self.nodes[up].down = down;
     }
 
-    /// Moves the part of the chain above `node` to a copy of the node, which it returns.
+    /// Moves the part of an interval's chain of vertices above `node` to a copy of the node, which it
+    /// returns.
     fn twin(&mut self, node: usize) -> usize {
         let twin = self.push_node(self.nodes[node].vertex);
         let up = self.nodes[node].up;

@@ -12,7 +12,7 @@ use rustc_hash::FxHashMap as HashMap;
 
 use crate::arith::Sign;
 use crate::geometry::doubles::reach::is_beyond;
-use crate::geometry::doubles::vector::{cross, dot, less, normal};
+use crate::geometry::doubles::vector::{cross, difference, dot, normal};
 use crate::geometry::doubles::{side, turn, Facing, Point, Triangle};
 use crate::geometry::side::Side;
 use crate::interrupt::poll;
@@ -47,7 +47,7 @@ struct Face {
 /// ```
 #[must_use]
 pub fn hull(points: &[Point]) -> Vec<[usize; 3]> {
-    hull_beyond(points, 0.0)
+    hull_of_inexact(points, 0.0)
 }
 
 /// The triangles of a convex hull of finite points that may each be off by a radius.
@@ -57,20 +57,20 @@ pub fn hull(points: &[Point]) -> Vec<[usize; 3]> {
 ///
 /// # Example
 /// ```
-/// use bspcsg::geometry::doubles::hull::hull_beyond;
+/// use bspcsg::geometry::doubles::hull::hull_of_inexact;
 ///
 /// let mut points = vec![[0.0; 3], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 0.0, 9.0]];
 /// points.push([2.0, 2.0, -0.1]);
-/// assert_eq!(hull_beyond(&points, 0.0).len(), 6);
-/// assert_eq!(hull_beyond(&points, 0.1).len(), 4);
+/// assert_eq!(hull_of_inexact(&points, 0.0).len(), 6);
+/// assert_eq!(hull_of_inexact(&points, 0.1).len(), 4);
 /// ```
 #[must_use]
-pub fn hull_beyond(points: &[Point], radius: f64) -> Vec<[usize; 3]> {
+pub fn hull_of_inexact(points: &[Point], radius: f64) -> Vec<[usize; 3]> {
     let all: Vec<usize> = (0..points.len()).collect();
     let mut faces = Polytope::around(points, &[&all], 0.0);
     let corners = corners_of(&faces);
-    let places: Vec<Point> = corners.iter().map(|p| points[*p]).collect();
-    if radius > 0.0 && is_flat_within(&places, FLAT_RADII * radius) {
+    let corner_points: Vec<Point> = corners.iter().map(|p| points[*p]).collect();
+    if radius > 0.0 && is_flat_within(&corner_points, FLAT_RADII * radius) {
         return Vec::new();
     }
     for _ in 0..MAX_PASSES {
@@ -104,7 +104,7 @@ pub fn corners_of(faces: &[[usize; 3]]) -> Vec<usize> {
 }
 
 /// Return whether all points lie within a distance from the plane through three of them that are far apart.
-fn is_flat_within(points: &[Point], most: f64) -> bool {
+fn is_flat_within(points: &[Point], max_distance: f64) -> bool {
     let width = |axis: usize| {
         let along = || points.iter().map(|p| p[axis]);
         along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
@@ -116,28 +116,28 @@ fn is_flat_within(points: &[Point], most: f64) -> bool {
     };
     let axis = widest.unwrap_or_default();
     let (low, high) = (farthest(&|p| -p[axis]), farthest(&|p| p[axis]));
-    let along = less(&high, &low);
+    let along = difference(&high, &low);
     let length = dot(&along, &along);
     // Computed relative to the line, so that a plane through points near it keeps its digits.
     let off = |p: &Point| {
-        let way = less(p, &low);
-        let share = dot(&way, &along) / length;
-        [0, 1, 2].map(|i| way[i] - share * along[i])
+        let offset = difference(p, &low);
+        let share = dot(&offset, &along) / length;
+        [0, 1, 2].map(|i| offset[i] - share * along[i])
     };
     let widest = off(&farthest(&|p| dot(&off(p), &off(p))));
     let normal = cross(&along, &widest);
     let height = |p: &Point| dot(&normal, &off(p)).abs();
-    height(&farthest(&height)) <= most * dot(&normal, &normal).sqrt()
+    height(&farthest(&height)) <= max_distance * dot(&normal, &normal).sqrt()
 }
 
 /// The corners of faces that lie farther than a distance from the hull of their neighbours, ascending.
-fn sharp_corners(points: &[Point], faces: &[[usize; 3]], most: f64) -> Vec<usize> {
+fn sharp_corners(points: &[Point], faces: &[[usize; 3]], max_distance: f64) -> Vec<usize> {
     let mut around: Vec<(usize, usize)> = Vec::with_capacity(3 * faces.len());
     for (number, face) in faces.iter().enumerate() {
         around.extend(face.map(|corner| (corner, number)));
     }
     around.sort_unstable();
-    let clearly = (CLEAR_DISTANCE * size_of(points, faces)).max(most);
+    let clearly = (CLEAR_DISTANCE * size_of(points, faces)).max(max_distance);
     let mut sharp = Vec::new();
     for star in around.chunk_by(|p, q| p.0 == q.0) {
         poll();
@@ -147,11 +147,11 @@ fn sharp_corners(points: &[Point], faces: &[[usize; 3]], most: f64) -> Vec<usize
             .filter(|p| *p != corner)
             .map(|p| points[p])
             .collect();
-        let is_beyond = |most: f64| is_beyond(&points[corner], &others, most);
+        let is_beyond = |max_distance: f64| is_beyond(&points[corner], &others, max_distance);
         let planes = || star.iter().map(|(_, face)| faces[*face].map(|p| points[p]));
         let is_sharp = is_beyond(clearly)
             || has_three_planes(&planes().collect::<Vec<Triangle>>())
-                && (most == 0.0 || is_beyond(most));
+                && (max_distance == 0.0 || is_beyond(max_distance));
         if is_sharp {
             sharp.push(corner);
         }
@@ -167,12 +167,16 @@ fn size_of(points: &[Point], faces: &[[usize; 3]]) -> f64 {
     let Some([first, ..]) = faces.first() else {
         return 0.0;
     };
-    let ways = faces
+    let offsets = faces
         .as_flattened()
         .iter()
-        .map(|p| less(&points[*p], &points[*first]));
-    let most = |way: Point| way.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    ways.map(most).fold(0.0, f64::max)
+        .map(|p| difference(&points[*p], &points[*first]));
+    let largest = |offset: Point| {
+        offset
+            .iter()
+            .fold(0.0, |largest: f64, x| largest.max(x.abs()))
+    };
+    offsets.map(largest).fold(0.0, f64::max)
 }
 
 /// Return whether the triangles around a corner lie in at least three planes: the corner is then inside no
@@ -198,8 +202,8 @@ struct Polytope<'a> {
 
 impl<'a> Polytope<'a> {
     /// The hull of several groups of points: of all points of the first group, and of those points of the
-    /// others that lie farther outside than the distance `most`.
-    fn around(points: &'a [Point], groups: &[&[usize]], most: f64) -> Vec<[usize; 3]> {
+    /// others that lie farther outside than the distance `max_distance`.
+    fn around(points: &'a [Point], groups: &[&[usize]], max_distance: f64) -> Vec<[usize; 3]> {
         let all = groups.concat();
         let Some(first) = simplex(points, groups[0]).or_else(|| simplex(points, &all)) else {
             return Vec::new();
@@ -220,26 +224,26 @@ impl<'a> Polytope<'a> {
         }
         polytope.start(first, all);
         for round in 0..groups.len() {
-            polytope.add_all(round, if round == 0 { 0.0 } else { most });
+            polytope.add_all(round, if round == 0 { 0.0 } else { max_distance });
         }
         let left = polytope.faces.iter().filter(|face| !face.is_gone);
         left.map(|face| face.corners).collect()
     }
 
-    /// Adds the points up to a round that lie farther outside the polytope than the distance `most`.
-    fn add_all(&mut self, round: usize, most: f64) {
+    /// Adds the points up to a round that lie farther outside the polytope than the distance `max_distance`.
+    fn add_all(&mut self, round: usize, max_distance: f64) {
         let is_left = |f: &usize| !self.faces[*f].is_gone;
         self.waiting = (0..self.faces.len()).filter(is_left).collect();
         while let Some(face) = self.waiting.pop() {
             poll();
-            if most > 0.0 {
-                self.leave_out(face, most);
+            if max_distance > 0.0 {
+                self.drop_points_near(face, max_distance);
             }
             let Some(point) = self.farthest(face, round) else {
                 continue;
             };
             let (seen, rim) = self.seen(point, face);
-            if most > 0.0 && self.is_within(point, &seen, most) {
+            if max_distance > 0.0 && self.is_within(point, &seen, max_distance) {
                 for face in seen {
                     self.faces[face].is_gone = false;
                 }
@@ -251,17 +255,17 @@ impl<'a> Polytope<'a> {
         }
     }
 
-    /// Drops the points listed at a face that lie within the distance `most` of it.
-    fn leave_out(&mut self, face: usize, most: f64) {
+    /// Drops the points listed at a face that lie within the distance `max_distance` of it.
+    fn drop_points_near(&mut self, face: usize, max_distance: f64) {
         let (triangle, points) = (self.triangle(face), self.points);
         let before = &mut self.faces[face].before;
-        before.retain(|p| is_beyond(&points[*p], &triangle, most));
+        before.retain(|p| is_beyond(&points[*p], &triangle, max_distance));
     }
 
-    /// Return whether a point lies within the distance `most` of the faces that it sees.
-    fn is_within(&self, point: usize, seen: &[usize], most: f64) -> bool {
+    /// Return whether a point lies within the distance `max_distance` of the faces that it sees.
+    fn is_within(&self, point: usize, seen: &[usize], max_distance: f64) -> bool {
         let corners: Vec<Point> = seen.iter().flat_map(|f| self.triangle(*f)).collect();
-        !is_beyond(&self.points[point], &corners, most)
+        !is_beyond(&self.points[point], &corners, max_distance)
     }
 
     /// Starts with the tetrahedron of four points in general position, and lists all points at its faces.
@@ -312,7 +316,7 @@ impl<'a> Polytope<'a> {
         }
         let [a, b, c] = self.triangle(face);
         let normal = normal(&[a, b, c]);
-        let height = |p: usize| dot(&normal, &less(&self.points[p], &a));
+        let height = |p: usize| dot(&normal, &difference(&self.points[p], &a));
         let listed = self.faces[face].before.iter().copied();
         let due = listed.filter(|p| self.rounds.get(*p).is_none_or(|of| *of <= round));
         due.max_by(|p, q| {
@@ -393,8 +397,8 @@ struct Rim {
 
 /// Four of the points in general position, the last on the inner side of the first three; `None` if all lie
 /// in one plane.
-fn simplex(points: &[Point], some: &[usize]) -> Option<[usize; 4]> {
-    let all = || some.iter().copied();
+fn simplex(points: &[Point], candidates: &[usize]) -> Option<[usize; 4]> {
+    let all = || candidates.iter().copied();
     let a = all().min_by(|p, q| order(&points[*p], &points[*q]))?;
     let b = all().max_by(|p, q| order(&points[*p], &points[*q]))?;
     let (pa, pb) = (points[a], points[b]);
@@ -407,7 +411,7 @@ fn simplex(points: &[Point], some: &[usize]) -> Option<[usize; 4]> {
     let c = Some(wide).filter(is_off).or_else(|| all().find(is_off))?;
     let base = [pa, pb, points[c]];
     let normal = normal(&[pa, pb, points[c]]);
-    let height = |p: &usize| dot(&normal, &less(&points[*p], &pa)).abs();
+    let height = |p: &usize| dot(&normal, &difference(&points[*p], &pa)).abs();
     let high = all().max_by(|p, q| height(p).total_cmp(&height(q)))?;
     let is_out = |p: &usize| side(&base, &points[*p]) != Side::On;
     let d = Some(high).filter(is_out).or_else(|| all().find(is_out))?;
@@ -432,7 +436,7 @@ fn order(p: &Point, q: &Point) -> std::cmp::Ordering {
 
 #[cfg(test)]
 mod tests {
-    use super::{hull, hull_beyond, side, Point, Side};
+    use super::{hull, hull_of_inexact, side, Point, Side};
     use proptest::prelude::*;
 
     /// Points of a small grid, of which many share lines and planes.
@@ -485,7 +489,7 @@ mod tests {
             let moved: Vec<Point> = points.iter().zip(&moves).map(|(p, by)| {
                 [0, 1, 2].map(|i| 1e6 * p[i] + f64::from(by[i]))
             }).collect();
-            let faces = hull_beyond(&moved, 2.0);
+            let faces = hull_of_inexact(&moved, 2.0);
             prop_assert_eq!(faces.len(), hull(&points).len());
             for face in &faces {
                 let triangle = face.map(|p| moved[p]);

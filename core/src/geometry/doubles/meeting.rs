@@ -45,21 +45,23 @@ pub fn meeting_of(p: &Facing, q: &Facing) -> Meeting {
 
 fn meeting_by_sides(p: &Triangle, q: &Triangle) -> Meeting {
     let of_p = sides(p, q);
-    let first = reach(of_p);
-    if first == Reach::Point {
+    let first = part_in_plane(of_p);
+    if first == PartInPlane::Point {
         return Meeting::Clear;
     }
     let of_q = sides(q, p);
-    match (first, reach(of_q)) {
-        (_, Reach::Point) => Meeting::Clear,
-        (Reach::All, _) | (_, Reach::All) if overlap(p, q) => Meeting::Overlap,
-        (Reach::All, _) | (_, Reach::All) => Meeting::Clear,
-        (Reach::Edge(i), Reach::Edge(j)) if is_same_edge(p, i, q, j) => Meeting::Edges(i, j),
-        (first, second) if has_common_stretch(p, lone_corner(of_p), q, lone_corner(of_q)) => {
+    match (first, part_in_plane(of_q)) {
+        (_, PartInPlane::Point) => Meeting::Clear,
+        (PartInPlane::All, _) | (_, PartInPlane::All) if overlap(p, q) => Meeting::Overlap,
+        (PartInPlane::All, _) | (_, PartInPlane::All) => Meeting::Clear,
+        (PartInPlane::Edge(i), PartInPlane::Edge(j)) if is_same_edge(p, i, q, j) => {
+            Meeting::Edges(i, j)
+        }
+        (first, second) if has_common_segment(p, lone_corner(of_p), q, lone_corner(of_q)) => {
             match (first, second) {
-                (Reach::Edge(i), Reach::Edge(j)) => Meeting::Edges(i, j),
-                (Reach::Edge(i), _) => Meeting::FirstEdge(i),
-                (_, Reach::Edge(j)) => Meeting::SecondEdge(j),
+                (PartInPlane::Edge(i), PartInPlane::Edge(j)) => Meeting::Edges(i, j),
+                (PartInPlane::Edge(i), _) => Meeting::FirstEdge(i),
+                (_, PartInPlane::Edge(j)) => Meeting::SecondEdge(j),
                 _ => Meeting::Crossing,
             }
         }
@@ -70,8 +72,8 @@ fn meeting_by_sides(p: &Triangle, q: &Triangle) -> Meeting {
 /// Return whether doubles alone prove that two triangles have nothing or one corner in common; true for
 /// nearly all pairs.
 pub fn are_clear(p: &Facing, q: &Facing) -> bool {
-    let common = Common::of(p.triangle(), q.triangle());
-    if common.several() {
+    let common = CommonCorners::of(p.triangle(), q.triangle());
+    if common.has_several() {
         return false;
     }
     if lies_beside(p, common, q) || lies_beside(q, common.turned(), p) {
@@ -84,9 +86,9 @@ pub fn are_clear(p: &Facing, q: &Facing) -> bool {
 /// The corners that two triangles have in common: bit `3 i + j` is set if corner `i` of the first
 /// is corner `j` of the second.
 #[derive(Clone, Copy)]
-struct Common(u16);
+struct CommonCorners(u16);
 
-impl Common {
+impl CommonCorners {
     #[inline]
     fn of(p: &Triangle, q: &Triangle) -> Self {
         let mut bits = 0;
@@ -100,7 +102,7 @@ impl Common {
 
     /// Return whether the triangles have at least two corners in common.
     #[inline]
-    fn several(self) -> bool {
+    fn has_several(self) -> bool {
         // Corners of a triangle with area are distinct.
         self.0.count_ones() > 1
     }
@@ -133,15 +135,15 @@ impl Common {
 /// Return whether a triangle, except for its common corners, is certainly on one side of another triangle's
 /// plane.
 #[inline]
-fn lies_beside(t: &Facing, common: Common, plane: &Facing) -> bool {
+fn lies_beside(t: &Facing, common: CommonCorners, plane: &Facing) -> bool {
     let corners = t.triangle().iter().enumerate();
     let others = corners.filter(|(i, _)| !common.has(*i));
-    plane.clearly_beside(others.map(|(_, corner)| corner))
+    plane.clearly_on_one_side(others.map(|(_, corner)| corner))
 }
 
 /// Return whether a triangle, projected along an axis, certainly lies on the outer side of an edge of another
 /// one, except for ends of that edge. The projection of the other triangle must have an area.
-fn lies_outside(t: &Facing, common: Common, other: &Facing, axis: usize) -> bool {
+fn lies_outside(t: &Facing, common: CommonCorners, other: &Facing, axis: usize) -> bool {
     let Filtered::Certain(inner) = other.clear_turn(axis) else {
         return false;
     };
@@ -202,7 +204,7 @@ fn is_same(p: &Point, q: &Point) -> bool {
 
 /// The part of a triangle that lies in the plane of another triangle.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Reach {
+enum PartInPlane {
     /// One corner, or nothing.
     Point,
     /// An edge, by its number.
@@ -213,14 +215,14 @@ enum Reach {
     All,
 }
 
-fn reach(sides: [Side; 3]) -> Reach {
+fn part_in_plane(sides: [Side; 3]) -> PartInPlane {
     let zeros = sides.iter().filter(|s| **s == Side::On).count();
     let passes = straddle(&sides) == (true, true);
     match (zeros, passes) {
-        (3, _) => Reach::All,
-        (2, _) => Reach::Edge((lone_corner(sides) + 1) % 3),
-        (_, true) => Reach::Inside,
-        _ => Reach::Point,
+        (3, _) => PartInPlane::All,
+        (2, _) => PartInPlane::Edge((lone_corner(sides) + 1) % 3),
+        (_, true) => PartInPlane::Inside,
+        _ => PartInPlane::Point,
     }
 }
 
@@ -245,7 +247,7 @@ fn lone_corner(sides: [Side; 3]) -> usize {
 /// The edges at the lone corners `p[i]` and `q[k]` bound the segments. The sign of the volume that two such
 /// edges span says which edge meets the line first, up to a sign that is the same for all four pairs; `On`
 /// means that both meet it in one point.
-fn has_common_stretch(p: &Triangle, i: usize, q: &Triangle, k: usize) -> bool {
+fn has_common_segment(p: &Triangle, i: usize, q: &Triangle, k: usize) -> bool {
     let ends = |t: &Triangle, at: usize| [t[(at + 1) % 3], t[(at + 2) % 3]];
     let order = |our: &Point, their: &Point| side(&[p[i], *our, q[k]], their);
     let (ours, theirs) = (ends(p, i), ends(q, k));

@@ -34,14 +34,14 @@ pub type Triangle = [Point; 3];
 ///
 /// # Example
 /// ```
-/// use bspcsg::geometry::doubles::digits;
+/// use bspcsg::geometry::doubles::bit_key;
 ///
-/// assert_eq!(digits(&[0.0, 1.0, 2.0]), digits(&[-0.0, 1.0, 2.0]));
-/// assert_ne!(digits(&[0.0, 1.0, 2.0]), digits(&[0.0, 1.0, 3.0]));
+/// assert_eq!(bit_key(&[0.0, 1.0, 2.0]), bit_key(&[-0.0, 1.0, 2.0]));
+/// assert_ne!(bit_key(&[0.0, 1.0, 2.0]), bit_key(&[0.0, 1.0, 3.0]));
 /// ```
 #[inline]
-pub fn digits(place: &Point) -> [u64; 3] {
-    place.map(|c| folded((c + 0.0).to_bits()))
+pub fn bit_key(point: &Point) -> [u64; 3] {
+    point.map(|c| folded((c + 0.0).to_bits()))
 }
 
 /// The bits of a double, the upper half folded into the lower one; different bits give different results.
@@ -127,13 +127,13 @@ impl Facing {
         if level(0) || level(1) || level(2) {
             return Filtered::Certain(Side::On);
         }
-        self.clear_side_off(d)
+        self.clear_strict_side(d)
     }
 
     /// The side of the triangle's plane on which a point lies, where doubles prove that it is not in the
     /// plane.
     #[inline]
-    pub fn clear_side_off(&self, d: &Point) -> Filtered<Side> {
+    pub fn clear_strict_side(&self, d: &Point) -> Filtered<Side> {
         let (value, error) = self.height(d);
         let side = if value > 0.0 { Side::Plus } else { Side::Minus };
         Filtered::when(value.abs() > error, side)
@@ -141,7 +141,7 @@ impl Facing {
 
     /// Return whether doubles prove that all points lie strictly on one side of the triangle's plane.
     #[inline]
-    pub fn clearly_beside<'a>(&self, points: impl Iterator<Item = &'a Point>) -> bool {
+    pub fn clearly_on_one_side<'a>(&self, points: impl Iterator<Item = &'a Point>) -> bool {
         let (mut above, mut below) = (true, true);
         for (value, error) in points.map(|d| self.height(d)) {
             above &= value > error;

@@ -1,13 +1,13 @@
 //! Tests in doubles whether a point lies far from the convex hull of a small number of other points.
 
-use crate::geometry::doubles::vector::{cross, dot, less};
+use crate::geometry::doubles::vector::{cross, difference, dot};
 use crate::geometry::doubles::{Point, Triangle};
 
 /// The largest number of steps towards the nearest point of the hull; usually two or three suffice.
 const MAX_STEPS: usize = 64;
 
 /// Return whether `point`, outside the convex hull of `others`, lies farther from it than the distance
-/// `most`; true where rounding leaves a doubt, and if there are no others.
+/// `max_distance`; true where rounding leaves a doubt, and if there are no others.
 ///
 /// The nearest point of the hull lies in a triangle of the others. In each step, the one of them that lies
 /// farthest towards `point` replaces a corner of the triangle.
@@ -25,19 +25,19 @@ const MAX_STEPS: usize = 64;
 /// assert!(!is_beyond(&[-3.0, 2.0, 4.0], &square, 5.0));
 /// ```
 #[must_use]
-pub fn is_beyond(point: &Point, others: &[Point], most: f64) -> bool {
+pub fn is_beyond(point: &Point, others: &[Point], max_distance: f64) -> bool {
     let Some(mut near) = middle(point, others) else {
         return true;
     };
     let mut triangle = [near; 3];
     for _ in 0..MAX_STEPS {
         let size = square(&near);
-        if size <= most * most {
+        if size <= max_distance * max_distance {
             return false;
         }
         let (along, next) = farthest_against(&near, point, others);
         // All others lie on the far side of a plane that is far enough away.
-        if along > 0.0 && along * along > most * most * size {
+        if along > 0.0 && along * along > max_distance * max_distance * size {
             return true;
         }
         let [a, b, c] = triangle;
@@ -64,7 +64,7 @@ fn middle(point: &Point, others: &[Point]) -> Option<Point> {
     let mut sum = [0.0; 3];
     let mut count = 0.0;
     for other in others {
-        let way = less(other, point);
+        let way = difference(other, point);
         sum = [sum[0] + way[0], sum[1] + way[1], sum[2] + way[2]];
         count += 1.0;
     }
@@ -76,7 +76,7 @@ fn middle(point: &Point, others: &[Point]) -> Option<Point> {
 fn farthest_against(direction: &Point, point: &Point, others: &[Point]) -> (f64, Point) {
     let mut least = (f64::INFINITY, *direction);
     for other in others {
-        let way = less(other, point);
+        let way = difference(other, point);
         let along = dot(direction, &way);
         if along < least.0 {
             least = (along, way);
@@ -92,7 +92,7 @@ fn square(p: &Point) -> f64 {
 /// The point of a triangle that is nearest to the origin.
 fn nearest(triangle: &Triangle) -> Point {
     let [a, b, c] = triangle;
-    let normal = cross(&less(b, a), &less(c, a));
+    let normal = cross(&difference(b, a), &difference(c, a));
     let share = |p: &Point, q: &Point| dot(&cross(p, q), &normal);
     let shares = [share(b, c), share(c, a), share(a, b)];
     let sum: f64 = shares.iter().sum();
@@ -115,7 +115,7 @@ fn nearest(triangle: &Triangle) -> Point {
 
 /// The point of a segment that is nearest to the origin.
 fn nearest_on(p: &Point, q: &Point) -> Point {
-    let way = less(q, p);
+    let way = difference(q, p);
     let size = square(&way);
     let share = if size > 0.0 {
         (-dot(p, &way) / size).clamp(0.0, 1.0)

@@ -22,7 +22,7 @@ pub struct Sheet {
 
 impl Sheet {
     /// 1 if the triangle's border runs in the direction of the edge, −1 if in the opposite direction.
-    fn way(&self) -> i64 {
+    fn direction_sign(&self) -> i64 {
         if self.is_along {
             1
         } else {
@@ -37,21 +37,21 @@ pub type Sheets = SmallVec<[Sheet; 2]>;
 /// Return whether more sheets run in one direction of the edge than in the other, so that a surface ends
 /// there.
 fn is_open(sheets: &[Sheet]) -> bool {
-    sheets.iter().map(Sheet::way).sum::<i64>() != 0
+    sheets.iter().map(Sheet::direction_sign).sum::<i64>() != 0
 }
 
 /// Return whether a surface made of the sheets at an edge crosses the plane of a triangle that contains the
 /// edge, or ends at the edge.
 ///
 /// Sheets in the plane overlap the triangle, which other tests find; here they do not count as crossing.
-pub fn pass(plane: &Triangle, sheets: &[Sheet]) -> bool {
+pub fn surface_crosses_plane(plane: &Triangle, sheets: &[Sheet]) -> bool {
     let facing = Facing::of(plane);
     let (mut below, mut above) = (0, 0);
     for sheet in sheets {
         match facing.side(&sheet.apex) {
-            Side::Minus => below += sheet.way(),
+            Side::Minus => below += sheet.direction_sign(),
             Side::On => {}
-            Side::Plus => above += sheet.way(),
+            Side::Plus => above += sheet.direction_sign(),
         }
     }
     is_open(sheets) || below != 0 && above != 0
@@ -64,13 +64,13 @@ pub fn pass(plane: &Triangle, sheets: &[Sheet]) -> bool {
 /// letter: the sheets can be paired without a crossing exactly if their word cancels in the free group.
 ///
 /// Sheets that coincide overlap, which other tests find; here they do not count as crossing.
-pub fn entwine(axis: [&Point; 2], [first, second]: [&[Sheet]; 2]) -> bool {
+pub fn surfaces_cross(axis: [&Point; 2], [first, second]: [&[Sheet]; 2]) -> bool {
     if is_open(first) || is_open(second) {
         return true;
     }
     let letters = |is_first: bool, sheets: &[Sheet]| {
         let letter = |sheet: &Sheet| (is_first, *sheet);
-        sheets.iter().map(letter).collect::<Letters>()
+        sheets.iter().map(letter).collect::<SheetWord>()
     };
     let mut word = letters(true, first);
     word.extend(letters(false, second));
@@ -84,7 +84,7 @@ pub fn entwine(axis: [&Point; 2], [first, second]: [&[Sheet]; 2]) -> bool {
 }
 
 /// The sheets around a line at which two edges lie, each with true if it belongs to the first edge.
-type Letters = SmallVec<[(bool, Sheet); 4]>;
+type SheetWord = SmallVec<[(bool, Sheet); 4]>;
 
 /// Return whether a word of sheets cancels to the empty word in the free group.
 fn cancels(word: &[(bool, Sheet)]) -> bool {
@@ -152,8 +152,8 @@ mod tests {
 
     fn are_entwined(first: &[i32], second: &[i32]) -> bool {
         let ([a, b], [first, second]) = (AXIS, [first, second].map(sheets));
-        let there = entwine([&a, &b], [&first, &second]);
-        assert_eq!(there, entwine([&b, &a], [&second, &first]));
+        let there = surfaces_cross([&a, &b], [&first, &second]);
+        assert_eq!(there, surfaces_cross([&b, &a], [&second, &first]));
         there
     }
 
@@ -224,7 +224,7 @@ mod tests {
     fn surfaces_pass_where_a_side_is_left_with_a_sheet_too_many() {
         // The plane contains the directions of 12 and of 6 hours.
         let plane = [[-9.0, 0.0, 0.0], [9.0, 0.0, -1.0], [9.0, 0.0, 2.0]];
-        let there = |hours: &[i32]| pass(&plane, &sheets(hours));
+        let there = |hours: &[i32]| surface_crosses_plane(&plane, &sheets(hours));
         assert!(there(&[1, -8]) && there(&[1]) && there(&[1, -2, 3]));
         assert!(!there(&[1, -2]) && !there(&[1, -12]));
         // The wedges lie on both sides of the plane, in any order.

@@ -4,7 +4,7 @@ use super::{Point, Triangle};
 
 /// The vector p − q, from `q` to `p`.
 #[inline]
-pub fn less(p: &Point, q: &Point) -> Point {
+pub fn difference(p: &Point, q: &Point) -> Point {
     [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
 }
 
@@ -33,5 +33,5 @@ pub fn cross(u: &Point, v: &Point) -> Point {
 /// The normal of a triangle by the right-hand rule, its length twice the triangle's area.
 #[inline]
 pub fn normal([a, b, c]: &Triangle) -> Point {
-    cross(&less(b, a), &less(c, a))
+    cross(&difference(b, a), &difference(c, a))
 }

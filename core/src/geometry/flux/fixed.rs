@@ -15,13 +15,13 @@ use crate::geometry::vertex::Vertex;
 
 /// The number of binary fraction digits of a coordinate in lattice steps. Coordinates are below 2^54 steps,
 /// so a sum of three fits an `i128`.
-pub const PLACES: u32 = 72;
+pub const FRACTION_BITS: u32 = 72;
 
-/// A point in fixed-point binary: coordinates in units of 2^-`PLACES` lattice steps.
+/// A point in fixed-point binary: coordinates in units of 2^-`FRACTION_BITS` lattice steps.
 pub type Fixed = [i128; 3];
 
 /// The corners of a closed polygon, in order.
-pub type Ring = SmallVec<[Fixed; 12]>;
+pub type FixedPolygon = SmallVec<[Fixed; 12]>;
 
 /// Six times the flux of the field (0, 0, z) through a surface, in units of 2^-152 cubic lattice steps, with
 /// a bound on its error.
@@ -36,9 +36,9 @@ pub struct Flux {
     pub error: f64,
 }
 
-/// The number of binary fraction digits of a [`Flux`] in cubic lattice steps: three times `PLACES` less one
-/// limb.
-pub const FLUX_PLACES: u32 = 3 * PLACES - 64;
+/// The number of binary fraction digits of a [`Flux`] in cubic lattice steps: three times `FRACTION_BITS`
+/// less one limb.
+pub const FLUX_FRACTION_BITS: u32 = 3 * FRACTION_BITS - 64;
 
 impl Flux {
     /// The exact flux zero.
@@ -72,7 +72,7 @@ impl Flux {
 
 /// A lattice point in fixed-point binary; exact.
 pub fn of_lattice(p: &Lattice) -> Fixed {
-    p.map(|c| i128::from(c) << PLACES)
+    p.map(|c| i128::from(c) << FRACTION_BITS)
 }
 
 /// An exact point in fixed-point binary, each coordinate within `slack` of the exact one.
@@ -82,24 +82,24 @@ pub fn of_vertex(vertex: &Vertex) -> Fixed {
     }
     let h = vertex.coordinates();
     let near = vertex.approx();
-    each_axis(|i| place(&h.x[i], &h.w, near[i]))
+    each_axis(|i| fixed_coordinate(&h.x[i], &h.w, near[i]))
 }
 
-/// The quotient x / w in units of 2^-`PLACES`, improved from a double that is off by a few units in its last
-/// place.
+/// The quotient x / w in units of 2^-`FRACTION_BITS`, improved from a double that is off by a few units in
+/// its last place.
 ///
 /// Uses the leading 120 bits of w, and drops as many bits of x as of w: an error of 2^-119 of the quotient.
-fn place(x: &Int<6>, w: &Int<6>, near: f64) -> i128 {
+fn fixed_coordinate(x: &Int<6>, w: &Int<6>, near: f64) -> i128 {
     let shift = w.bit_length().saturating_sub(120).cast_signed();
-    let divisor: Int<2> = window(w, shift);
-    let dividend: Int<4> = window(x, shift - PLACES.cast_signed());
+    let divisor: Int<2> = shifted_down(w, shift);
+    let dividend: Int<4> = shifted_down(x, shift - FRACTION_BITS.cast_signed());
     let first = as_wide(near * UNIT);
     let rest = dividend - divisor.mul_i128(first);
     first + as_wide(rest.to_f64() / divisor.to_f64())
 }
 
 /// The integer divided by 2^shift and rounded down, in `N` limbs, which must suffice.
-fn window<const N: usize>(number: &Int<6>, shift: i32) -> Int<N> {
+fn shifted_down<const N: usize>(number: &Int<6>, shift: i32) -> Int<N> {
     let sign = if number.is_negative() { u64::MAX } else { 0 };
     let limb = |i: i32| match usize::try_from(i) {
         Ok(i) => number.limbs().get(i).copied().unwrap_or(sign),
@@ -113,24 +113,24 @@ fn window<const N: usize>(number: &Int<6>, shift: i32) -> Int<N> {
     }))
 }
 
-/// The number of units of 2^-`PLACES` in a lattice step.
+/// The number of units of 2^-`FRACTION_BITS` in a lattice step.
 #[allow(clippy::cast_precision_loss, reason = "a small constant")]
-const UNIT: f64 = (1u128 << PLACES) as f64;
+const UNIT: f64 = (1u128 << FRACTION_BITS) as f64;
 
-/// The quotient n / d in units of 2^-`PLACES`, by two steps of long division in doubles.
+/// The quotient n / d in units of 2^-`FRACTION_BITS`, by two steps of long division in doubles.
 fn fraction(n: i128, d: i128) -> i128 {
     if n.unsigned_abs() >= 1 << 104 || d.unsigned_abs() >= 1 << 120 {
         return long_fraction(&Int::from_i128(n), d);
     }
     let first = as_wide(as_double(n) / as_double(d) * UNIT);
     // The remainder is 2^-50 of the numerator, so it fits; overflow cancels.
-    let rest = (n << PLACES).wrapping_sub(first.wrapping_mul(d));
+    let rest = (n << FRACTION_BITS).wrapping_sub(first.wrapping_mul(d));
     first.saturating_add(as_wide(as_double(rest) / as_double(d)))
 }
 
 fn long_fraction(n: &Int<3>, d: i128) -> i128 {
     quotient(
-        &n.mul_i128::<5>(1 << PLACES),
+        &n.mul_i128::<5>(1 << FRACTION_BITS),
         &Int::<2>::from_i128(d),
         |q| Int::<2>::from_i128(q).mul_i128(d),
     )
@@ -149,7 +149,7 @@ fn quotient<const N: usize, const M: usize>(
 }
 
 /// A bound on the error of a coordinate that is a quotient of at most `size` in magnitude, in units of
-/// 2^-`PLACES`.
+/// 2^-`FRACTION_BITS`.
 ///
 /// The first step of the division leaves 2^-50 of the quotient, the second 2^-50 of that, and rounding 1.
 fn slack(size: f64) -> f64 {
@@ -161,7 +161,7 @@ fn slack(size: f64) -> f64 {
 pub struct Walls {
     /// The coordinates of the walls in half lattice steps.
     doubled: [i64; 6],
-    /// The coordinates of the walls in units of 2^-`PLACES` steps.
+    /// The coordinates of the walls in units of 2^-`FRACTION_BITS` steps.
     at: [i128; 6],
 }
 
@@ -175,12 +175,12 @@ impl Walls {
         });
         Self {
             doubled,
-            at: doubled.map(|half| i128::from(half) << (PLACES - 1)),
+            at: doubled.map(|half| i128::from(half) << (FRACTION_BITS - 1)),
         }
     }
 
     /// Return how far a lattice point lies outside a wall, in half steps; negative for points inside.
-    pub fn beyond(&self, wall: usize, p: &Lattice) -> i64 {
+    pub fn half_steps_outside(&self, wall: usize, p: &Lattice) -> i64 {
         let over = 2 * p[wall / 2] - self.doubled[wall];
         if wall.is_multiple_of(2) {
             -over
@@ -189,8 +189,9 @@ impl Walls {
         }
     }
 
-    /// Return how far a point lies outside a wall, in units of 2^-`PLACES` steps; negative for points inside.
-    fn excess(&self, wall: usize, p: &Fixed) -> i128 {
+    /// Return how far a point lies outside a wall, in units of 2^-`FRACTION_BITS` steps; negative for points
+    /// inside.
+    fn distance_outside(&self, wall: usize, p: &Fixed) -> i128 {
         let over = p[wall / 2] - self.at[wall];
         if wall.is_multiple_of(2) {
             -over
@@ -200,13 +201,13 @@ impl Walls {
     }
 
     /// Return whether all points lie inside all walls, or on them.
-    pub fn hold<'a>(&self, mut points: impl Iterator<Item = &'a Fixed>) -> bool {
-        points.all(|p| (0..6).all(|wall| self.excess(wall, p) <= 0))
+    pub fn contain<'a>(&self, mut points: impl Iterator<Item = &'a Fixed>) -> bool {
+        points.all(|p| (0..6).all(|wall| self.distance_outside(wall, p) <= 0))
     }
 
     /// Return whether a point certainly lies inside all walls; its doubles may be off by a few units in the
     /// last place.
-    pub fn surely_hold(&self, near: &[f64; 3]) -> bool {
+    pub fn surely_contain(&self, near: &[f64; 3]) -> bool {
         (0..3).all(|i| {
             let [low, high] = [2 * i, 2 * i + 1].map(|wall| as_double(self.doubled[wall]) / 2.0);
             let doubt = 2f64.powi(-48) * (near[i].abs() + low.abs() + high.abs());
@@ -215,10 +216,10 @@ impl Walls {
     }
 
     /// Clips a polygon to the inside of the cell; returns the number of walls that cut it.
-    pub fn clip(&self, ring: &mut Ring) -> u32 {
+    pub fn clip(&self, ring: &mut FixedPolygon) -> u32 {
         let mut cuts = 0;
         for wall in 0..6 {
-            if ring.iter().any(|p| self.excess(wall, p) > 0) {
+            if ring.iter().any(|p| self.distance_outside(wall, p) > 0) {
                 *ring = self.inner(ring, wall);
                 cuts += 1;
             }
@@ -227,11 +228,14 @@ impl Walls {
     }
 
     /// The part of a polygon on the inner side of a wall.
-    fn inner(&self, ring: &Ring, wall: usize) -> Ring {
-        let mut kept = Ring::new();
+    fn inner(&self, ring: &FixedPolygon, wall: usize) -> FixedPolygon {
+        let mut kept = FixedPolygon::new();
         for (i, p) in ring.iter().enumerate() {
             let q = &ring[(i + 1) % ring.len()];
-            let (a, b) = (self.excess(wall, p), self.excess(wall, q));
+            let (a, b) = (
+                self.distance_outside(wall, p),
+                self.distance_outside(wall, q),
+            );
             if a <= 0 {
                 kept.push(*p);
             }
@@ -272,7 +276,7 @@ pub struct Triangle<'a> {
 
 /// A corner of a clipped triangle, and what carries the edge that leaves it: a number below 3 is an edge of
 /// the triangle, by its first corner; 3 + k is wall k.
-type Cut = (Fixed, usize);
+type CarriedCorner = (Fixed, usize);
 
 impl<'a> Triangle<'a> {
     /// A triangle with its normal, whose components may have a common divisor.
@@ -281,12 +285,12 @@ impl<'a> Triangle<'a> {
     }
 
     /// The part of the triangle inside a cell, as corners; `None` if it has no area.
-    pub fn clipped(&self, walls: &Walls) -> Option<Ring> {
-        let mut ring: SmallVec<[Cut; 12]> =
+    pub fn clipped(&self, walls: &Walls) -> Option<FixedPolygon> {
+        let mut ring: SmallVec<[CarriedCorner; 12]> =
             (0..3).map(|i| (of_lattice(&self.corners[i]), i)).collect();
         let mut spare = SmallVec::new();
         for wall in 0..6 {
-            let beyond = |p: &&Lattice| walls.beyond(wall, p) > 0;
+            let beyond = |p: &&Lattice| walls.half_steps_outside(wall, p) > 0;
             match self.corners.iter().filter(beyond).count() {
                 0 => {}
                 3 => return None,
@@ -299,11 +303,20 @@ impl<'a> Triangle<'a> {
         (ring.len() >= 3).then(|| ring.into_iter().map(|c| c.0).collect())
     }
 
-    fn cut(&self, ring: &[Cut], walls: &Walls, wall: usize, kept: &mut SmallVec<[Cut; 12]>) {
+    fn cut(
+        &self,
+        ring: &[CarriedCorner],
+        walls: &Walls,
+        wall: usize,
+        kept: &mut SmallVec<[CarriedCorner; 12]>,
+    ) {
         kept.clear();
         for (i, p) in ring.iter().enumerate() {
             let q = &ring[(i + 1) % ring.len()];
-            let (a, b) = (walls.excess(wall, &p.0), walls.excess(wall, &q.0));
+            let (a, b) = (
+                walls.distance_outside(wall, &p.0),
+                walls.distance_outside(wall, &q.0),
+            );
             if a <= 0 {
                 kept.push((p.0, if a == 0 && b > 0 { 3 + wall } else { p.1 }));
             }
@@ -316,7 +329,7 @@ impl<'a> Triangle<'a> {
 
     /// Return the point in which the edge between two corners of a clipped triangle meets a wall; the ends
     /// lie on different sides.
-    fn crossing(&self, from: &Cut, to: &Fixed, walls: &Walls, wall: usize) -> Fixed {
+    fn crossing(&self, from: &CarriedCorner, to: &Fixed, walls: &Walls, wall: usize) -> Fixed {
         let axis = wall / 2;
         let mut at = from.0;
         at[axis] = walls.at[wall];
@@ -333,14 +346,14 @@ impl<'a> Triangle<'a> {
     }
 
     /// The coordinate along `axis` of the point in which an edge of the triangle meets a wall, in units of
-    /// 2^-`PLACES` steps.
+    /// 2^-`FRACTION_BITS` steps.
     fn on_edge(&self, edge: usize, axis: usize, walls: &Walls, wall: usize) -> i128 {
         let (a, b) = (&self.corners[edge], &self.corners[(edge + 1) % 3]);
         let across = wall / 2;
         let run = 2 * i128::from(b[across] - a[across]);
         let part = i128::from(walls.doubled[wall] - 2 * a[across]);
         let rise = i128::from(b[axis] - a[axis]);
-        (i128::from(a[axis]) << PLACES) + fraction(rise * part, run)
+        (i128::from(a[axis]) << FRACTION_BITS) + fraction(rise * part, run)
     }
 
     /// The coordinate along `axis` of the point in which the triangle's plane meets two walls across the
@@ -363,12 +376,12 @@ impl<'a> Triangle<'a> {
             let product = |(n, part): (i128, i128)| Int::<2>::from_i128(n).mul_i128::<3>(part);
             long_fraction(&(product(p) + product(q)), divisor)
         };
-        (i128::from(a[axis]) << PLACES).checked_sub(offset)
+        (i128::from(a[axis]) << FRACTION_BITS).checked_sub(offset)
     }
 }
 
-/// Six times the flux of (0, 0, z) through the triangle with these corners, in units of 2^-[`FLUX_PLACES`]
-/// cubic steps.
+/// Six times the flux of (0, 0, z) through the triangle with these corners, in units of
+/// 2^-[`FLUX_FRACTION_BITS`] cubic steps.
 pub fn through(a: &Fixed, b: &Fixed, c: &Fixed) -> Int<6> {
     let product = |x: i128, y: i128| -> Int<4> { Int::<2>::from_i128(x).mul_i128(y) };
     let area = product(b[0] - a[0], c[1] - a[1]) - product(c[0] - a[0], b[1] - a[1]);
@@ -382,8 +395,8 @@ pub fn over_limb(number: &Int<6>) -> Int<6> {
     Int::from_limbs(limbs)
 }
 
-/// Six times the flux of (0, 0, z) through a polygon, in units of 2^-[`FLUX_PLACES`] cubic steps.
-pub fn through_ring(ring: &Ring) -> Int<6> {
+/// Six times the flux of (0, 0, z) through a polygon, in units of 2^-[`FLUX_FRACTION_BITS`] cubic steps.
+pub fn flux_through_ring(ring: &FixedPolygon) -> Int<6> {
     let mut sum = Int::ZERO;
     for i in 2..ring.len() {
         sum += through(&ring[0], &ring[i - 1], &ring[i]);
@@ -419,24 +432,24 @@ pub fn minor(corners: &[Lattice; 3], u: usize, v: usize) -> i128 {
     d(b, u) * d(c, v) - d(c, u) * d(b, v)
 }
 
-/// A whole number of cubic lattice steps in the units of a [`Flux`], 2^-[`FLUX_PLACES`] cubic steps.
-pub fn of_cubic_steps(whole: &Int<4>) -> Int<6> {
-    let high: Int<4> = whole.mul_i64(1 << (FLUX_PLACES - 128));
+/// A whole number of cubic lattice steps in the units of a [`Flux`], 2^-[`FLUX_FRACTION_BITS`] cubic steps.
+pub fn from_cubic_steps(whole: &Int<4>) -> Int<6> {
+    let high: Int<4> = whole.mul_i64(1 << (FLUX_FRACTION_BITS - 128));
     let mut limbs = [0; 6];
     limbs[2..].copy_from_slice(high.limbs());
     Int::from_limbs(limbs)
 }
 
 /// How far points lie from the origin, and how wide the box around them is, along the worst axis; in units of
-/// 2^-`PLACES` steps.
+/// 2^-`FRACTION_BITS` steps.
 #[derive(Clone, Copy, Debug)]
-pub struct Reach {
+pub struct CoordinateExtent {
     size: f64,
     extent: f64,
 }
 
-impl Reach {
-    /// The reach of points in fixed-point binary.
+impl CoordinateExtent {
+    /// How far points in fixed-point binary lie from the origin, and how wide the box around them is.
     pub fn of(points: &[Fixed]) -> Self {
         let mut low = [i128::MAX; 3];
         let mut high = [i128::MIN; 3];
@@ -454,7 +467,7 @@ impl Reach {
         }
     }
 
-    /// The reach of the corners of a lattice triangle.
+    /// How far the corners of a lattice triangle lie from the origin, and how wide the box around them is.
     pub fn of_triangle(corners: &[Lattice; 3]) -> Self {
         let size = corners.iter().flatten().map(|c| c.unsigned_abs()).max();
         let spread = |i: usize| {
@@ -491,8 +504,8 @@ mod tests {
         [-reach..=reach, -reach..=reach, -reach..=reach]
     }
 
-    fn sixfold(ring: &Ring) -> f64 {
-        through_ring(ring).to_f64() / 2f64.powi(FLUX_PLACES.cast_signed())
+    fn sixfold(ring: &FixedPolygon) -> f64 {
+        flux_through_ring(ring).to_f64() / 2f64.powi(FLUX_FRACTION_BITS.cast_signed())
     }
 
     proptest! {
@@ -510,7 +523,7 @@ mod tests {
             let normal = [(1, 2), (2, 0), (0, 1)].map(|(u, v)| minor(&corners, u, v));
             prop_assume!(normal[2] != 0);
             let once = Triangle::new(&corners, normal).clipped(&walls);
-            let mut ring: Ring = corners.iter().map(of_lattice).collect();
+            let mut ring: FixedPolygon = corners.iter().map(of_lattice).collect();
             walls.clip(&mut ring);
             let gap = once.map_or(0.0, |ring| sixfold(&ring)) - sixfold(&ring);
             prop_assert!(gap.abs() < 1e-9, "{} apart", gap);

@@ -4,7 +4,7 @@
 //! one corner from the two others: the flux through this corner's part follows from where the wall divides
 //! two edges, without computing new corners.
 
-use super::fixed::{of_cubic_steps, over_limb, sixfold_flux, Flux, Walls, PLACES};
+use super::fixed::{from_cubic_steps, over_limb, sixfold_flux, Flux, Walls, FRACTION_BITS};
 use crate::arith::convert::as_double;
 use crate::arith::Int;
 use crate::geometry::axes::each_axis;
@@ -13,41 +13,45 @@ use crate::geometry::side::Orientation;
 
 /// The part of a triangle inside the walls of a cell.
 #[derive(Clone, Copy, Debug)]
-pub enum Rest {
+pub enum TrimmedFlux {
     /// The whole triangle.
     All,
     /// Part of the triangle, with six times the flux through that part.
-    Some(Flux),
+    Part(Flux),
     /// No part of the triangle: all corners lie outside one wall.
     Nothing,
     /// Undecided: walls across several axes cut the triangle.
-    Open,
+    Undecided,
 }
 
 /// Trims a lattice triangle by the walls of a cell; `area` is the z component of its normal, in lattice
 /// steps.
-pub fn trimmed(corners: &[Lattice; 3], area: i128, walls: &Walls) -> Rest {
+pub fn trimmed(corners: &[Lattice; 3], area: i128, walls: &Walls) -> TrimmedFlux {
     let mut cuts = [None; 6];
     for (wall, cut) in cuts.iter_mut().enumerate() {
-        let beyond = corners.map(|p| walls.beyond(wall, &p));
+        let beyond = corners.map(|p| walls.half_steps_outside(wall, &p));
         match beyond.iter().filter(|b| **b > 0).count() {
             0 => {}
-            3 => return Rest::Nothing,
+            3 => return TrimmedFlux::Nothing,
             _ => *cut = Some(beyond),
         }
     }
     let across = |axis: usize| cuts[2 * axis].is_some() || cuts[2 * axis + 1].is_some();
     match (0..3).filter(|axis| across(*axis)).count() {
-        0 => Rest::All,
-        1 => Rest::Some(less(corners, area, cuts.iter().flatten())),
-        _ => Rest::Open,
+        0 => TrimmedFlux::All,
+        1 => TrimmedFlux::Part(flux_inside(corners, area, cuts.iter().flatten())),
+        _ => TrimmedFlux::Undecided,
     }
 }
 
 /// Six times the flux through a triangle minus its parts outside walls that do not meet; each of `cuts` has
 /// the corners' distances outside a wall.
-fn less<'a>(corners: &[Lattice; 3], area: i128, cuts: impl Iterator<Item = &'a [i64; 3]>) -> Flux {
-    let all = of_cubic_steps(&sixfold_flux(corners));
+fn flux_inside<'a>(
+    corners: &[Lattice; 3],
+    area: i128,
+    cuts: impl Iterator<Item = &'a [i64; 3]>,
+) -> Flux {
+    let all = from_cubic_steps(&sixfold_flux(corners));
     let mut rest = Flux {
         value: all,
         error: 0.0,
@@ -74,7 +78,7 @@ fn lone_corner(beyond: &[i64; 3]) -> usize {
 }
 
 /// The number of binary fraction digits of a [`share`].
-const SHARE_PLACES: u32 = 104;
+const SHARE_FRACTION_BITS: u32 = 104;
 
 /// Six times the flux through the part of a triangle between its corner `lone` and a wall that separates this
 /// corner from the others.
@@ -105,23 +109,23 @@ fn at_corner(corners: &[Lattice; 3], area: i128, beyond: &[i64; 3], lone: usize)
 }
 
 /// Return the fraction of an edge before a wall, from the distances of both ends to the wall, in units of
-/// 2^-[`SHARE_PLACES`]; rounded down.
+/// 2^-[`SHARE_FRACTION_BITS`]; rounded down.
 fn share(before: u64, behind: u64) -> Int<2> {
     let length = u128::from(before + behind);
-    let dividend = u128::from(before) << (SHARE_PLACES / 2);
+    let dividend = u128::from(before) << (SHARE_FRACTION_BITS / 2);
     let (high, rest) = (dividend / length, dividend % length);
-    let low = (rest << (SHARE_PLACES / 2)) / length;
-    Int::from_i128((high << (SHARE_PLACES / 2) | low).cast_signed())
+    let low = (rest << (SHARE_FRACTION_BITS / 2)) / length;
+    Int::from_i128((high << (SHARE_FRACTION_BITS / 2) | low).cast_signed())
 }
 
-/// The height `first` plus the given shares of rises, in units of 2^-`PLACES` steps; rounded down.
+/// The height `first` plus the given shares of rises, in units of 2^-`FRACTION_BITS` steps; rounded down.
 fn height(first: i64, rises: [(Int<2>, i64); 2]) -> i128 {
-    let mut sum: Int<3> = Int::<2>::from_i128(1 << SHARE_PLACES).mul_i64(first);
+    let mut sum: Int<3> = Int::<2>::from_i128(1 << SHARE_FRACTION_BITS).mul_i64(first);
     for (share, rise) in rises {
         sum += share.mul_i64(rise);
     }
     let [low, middle, high] = *sum.limbs();
-    let shift = SHARE_PLACES - PLACES;
+    let shift = SHARE_FRACTION_BITS - FRACTION_BITS;
     let pair = |a: u64, b: u64| u128::from(a >> shift | b << (64 - shift));
     (pair(middle, high) << 64 | pair(low, middle)).cast_signed()
 }
@@ -133,7 +137,7 @@ mod tests {
     use super::*;
     use crate::geometry::cell::Cell;
     use crate::geometry::flux::fixed::minor;
-    use crate::geometry::flux::fixed::{through_ring, Triangle, FLUX_PLACES};
+    use crate::geometry::flux::fixed::{flux_through_ring, Triangle, FLUX_FRACTION_BITS};
 
     fn point(reach: i64) -> impl Strategy<Value = Lattice> {
         [-reach..=reach, -reach..=reach, -reach..=reach]
@@ -156,16 +160,16 @@ mod tests {
             prop_assume!(normal[2] != 0);
             let walls = Walls::of(&Cell::around(&low, &high));
             let clipped = Triangle::new(&corners, normal).clipped(&walls);
-            let expected = clipped.map_or(Int::ZERO, |ring| through_ring(&ring));
+            let expected = clipped.map_or(Int::ZERO, |ring| flux_through_ring(&ring));
             let flux = match trimmed(&corners, normal[2], &walls) {
-                Rest::All => Flux { value: of_cubic_steps(&sixfold_flux(&corners)), error: 0.0 },
-                Rest::Some(flux) => flux,
-                Rest::Nothing => Flux::ZERO,
-                Rest::Open => return Ok(()),
+                TrimmedFlux::All => Flux { value: from_cubic_steps(&sixfold_flux(&corners)), error: 0.0 },
+                TrimmedFlux::Part(flux) => flux,
+                TrimmedFlux::Nothing => Flux::ZERO,
+                TrimmedFlux::Undecided => return Ok(()),
             };
             let gap = (flux.value - expected).to_f64().abs();
             // The corners of the clipped polygon are rounded to 2^-72 steps.
-            let rounding = 2f64.powi(FLUX_PLACES.cast_signed() - 60) * (1.0 + as_double(shift));
+            let rounding = 2f64.powi(FLUX_FRACTION_BITS.cast_signed() - 60) * (1.0 + as_double(shift));
             prop_assert!(gap <= flux.error + rounding, "{} apart, {}", gap, flux.error);
         }
     }

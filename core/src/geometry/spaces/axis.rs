@@ -6,7 +6,7 @@ use super::dim1::{Dim1, Direction, Point1};
 use super::dim2::{Dim2, Line2, Square};
 use super::dim3::Dim3;
 use super::space::Space;
-use crate::arith::bounds::REACH;
+use crate::arith::bounds::MAX_COORDINATE;
 use crate::arith::convert::as_whole;
 use crate::arith::Sign;
 use crate::geometry::cell::Cell;
@@ -45,7 +45,7 @@ impl AxisSpace for Dim1 {
     fn universe() {}
 
     fn border() -> Vec<Point1> {
-        let beyond = REACH + 1;
+        let beyond = MAX_COORDINATE + 1;
         vec![
             Point1::new(-beyond, Direction::Above),
             Point1::new(beyond, Direction::Below),
@@ -79,7 +79,7 @@ impl AxisSpace for Dim2 {
 
     fn side_of_corner(cut: &Line2) -> Half {
         let ([a, b], c) = cut.coefficients();
-        let wall = 2 * i128::from(REACH) + 1;
+        let wall = 2 * i128::from(MAX_COORDINATE) + 1;
         let value = 2 * c - (i128::from(a) + i128::from(b)) * wall;
         Half::from_sign(Sign::first([Sign::of(value), Sign::of(a), Sign::of(b)]))
     }

@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 use super::space::Space;
 use crate::arith::bounds::{
     COORDINATE_BITS, LINE_AT_MEET_LIMBS, LINE_CROSS_LIMBS, LINE_MEET_LIMBS, LINE_NORMAL_BITS,
-    LINE_OFFSET_BITS, REACH,
+    LINE_OFFSET_BITS, MAX_COORDINATE,
 };
 use crate::arith::convert::as_double;
 use crate::arith::{gcd, gcd_u128, Int, Sign};
@@ -23,7 +23,8 @@ pub struct Dim2;
 /// A lattice point of the plane.
 pub type Lattice2 = [i64; 2];
 
-/// The frame of the plane: the square |x|, |y| ≤ [`REACH`] + 1/2, whose border contains no lattice point.
+/// The frame of the plane: the square |x|, |y| ≤ [`MAX_COORDINATE`] + 1/2, whose border contains no lattice
+/// point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Square;
 
@@ -63,7 +64,7 @@ pub struct Segment2 {
 impl Line2 {
     /// The line through two lattice points with its minus side to the left of `from` → `to`.
     ///
-    /// Returns `None` if the points are equal or a coordinate exceeds [`REACH`].
+    /// Returns `None` if the points are equal or a coordinate exceeds [`MAX_COORDINATE`].
     pub fn through(from: Lattice2, to: Lattice2) -> Option<Self> {
         if from == to || !is_near(from) || !is_near(to) {
             return None;
@@ -74,7 +75,7 @@ impl Line2 {
     /// The line with the outward normal (a, b) through a lattice point.
     ///
     /// Returns `None` if the normal is zero or has [`LINE_NORMAL_BITS`] bits or more, or if a coordinate
-    /// exceeds [`REACH`].
+    /// exceeds [`MAX_COORDINATE`].
     pub fn with_normal(normal: [i64; 2], point: Lattice2) -> Option<Self> {
         let wide = normal.iter().any(|n| is_wide(*n));
         if normal == [0; 2] || wide || !is_near(point) {
@@ -289,7 +290,7 @@ impl Point2 {
 impl Segment2 {
     /// The segment between two lattice points, with its minus side to the left of `from` → `to`.
     ///
-    /// Returns `None` if the points are equal or a coordinate exceeds [`REACH`].
+    /// Returns `None` if the points are equal or a coordinate exceeds [`MAX_COORDINATE`].
     pub fn between(from: Lattice2, to: Lattice2) -> Option<Self> {
         let line = Line2::through(from, to)?;
         Some(Self {
@@ -332,7 +333,7 @@ impl Segment2 {
     }
 
     /// The order of two points of the segment's line along the line's direction.
-    pub fn along(&self, p: &Point2, q: &Point2) -> Ordering {
+    pub fn order_along(&self, p: &Point2, q: &Point2) -> Ordering {
         let direction = [-self.line.b, self.line.a];
         let axis = usize::from(direction[0].unsigned_abs() < direction[1].unsigned_abs());
         match direction[axis] {
@@ -353,7 +354,7 @@ impl Segment2 {
 
     /// The segment with its first (0) or last (1) point moved to where the line `cut` crosses it; `None` if
     /// they are parallel.
-    fn ended(&self, end: usize, cut: Line2) -> Option<Self> {
+    fn cut_at_end(&self, end: usize, cut: Line2) -> Option<Self> {
         let mut shorter = *self;
         shorter.points[end] = Point2::meet(&self.line, &cut)?;
         shorter.ends[end] = cut;
@@ -362,11 +363,11 @@ impl Segment2 {
 
     /// The parts of the segment on the minus and on the plus side of a line; its first point lies on the side
     /// `first`, its last on the other. `None` if the two are parallel.
-    fn parted(&self, first: Side, cut: &Line2) -> Option<Split<Self>> {
+    fn split_by(&self, first: Side, cut: &Line2) -> Option<Split<Self>> {
         let flipped = cut.flipped();
         let (inner, outer) = match first {
-            Side::Minus => (self.ended(1, *cut)?, self.ended(0, flipped)?),
-            _ => (self.ended(0, *cut)?, self.ended(1, flipped)?),
+            Side::Minus => (self.cut_at_end(1, *cut)?, self.cut_at_end(0, flipped)?),
+            _ => (self.cut_at_end(0, *cut)?, self.cut_at_end(1, flipped)?),
         };
         Some(Split::Both {
             minus: inner,
@@ -403,7 +404,7 @@ impl Space for Dim2 {
             (Side::Minus | Side::On, Side::Minus | Side::On) => Split::Minus,
             (Side::Plus | Side::On, Side::Plus | Side::On) => Split::Plus,
             // The ends lie strictly on different sides of the line, so it is not parallel to the segment.
-            _ => piece.parted(first, cut).unwrap_or(Split::Minus),
+            _ => piece.split_by(first, cut).unwrap_or(Split::Minus),
         }
     }
 
@@ -459,7 +460,7 @@ fn between_walls(line: &Line2, p: &Line2, q: &Line2) -> Option<Segment2> {
 
 /// The lines of the frame's four walls, opposite ones in pairs, with the frame on their minus sides.
 fn square_walls() -> [Line2; 4] {
-    let c = -(2 * i128::from(REACH) + 1);
+    let c = -(2 * i128::from(MAX_COORDINATE) + 1);
     [(2, 0), (-2, 0), (0, 2), (0, -2)].map(|(a, b)| Line2 { a, b, c })
 }
 
@@ -481,5 +482,5 @@ fn is_wide(component: i64) -> bool {
 fn is_near(point: Lattice2) -> bool {
     point
         .iter()
-        .all(|k| k.unsigned_abs() <= REACH.unsigned_abs())
+        .all(|k| k.unsigned_abs() <= MAX_COORDINATE.unsigned_abs())
 }

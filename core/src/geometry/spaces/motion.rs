@@ -3,7 +3,7 @@
 
 use super::dim1::{Direction, Point1};
 use super::dim2::Line2;
-use crate::arith::bounds::{is_coordinate, REACH};
+use crate::arith::bounds::{is_coordinate, MAX_COORDINATE};
 use crate::geometry::plane::{Lattice, Plane};
 
 /// A map of the lattice into itself: a signed permutation of the axes, a scale and a shift.
@@ -80,7 +80,7 @@ impl Motion {
         turned.checked_add(self.shift[axis])
     }
 
-    /// The image of an oriented point of the line; `None` if it exceeds [`REACH`].
+    /// The image of an oriented point of the line; `None` if it exceeds [`MAX_COORDINATE`].
     pub fn end(&self, p: &Point1) -> Option<Point1> {
         let (_, sign) = self.axes[0];
         let turned = match (p.inside(), sign < 0) {
@@ -88,7 +88,7 @@ impl Motion {
             _ => Direction::Above,
         };
         self.coordinate(p.at(), sign, 0)
-            .filter(|at| at.unsigned_abs() <= REACH.unsigned_abs())
+            .filter(|at| at.unsigned_abs() <= MAX_COORDINATE.unsigned_abs())
             .map(|at| Point1::new(at, turned))
     }
 
@@ -149,8 +149,8 @@ mod tests {
 
     #[test]
     fn nothing_leaves_the_lattice() {
-        let far = Motion::of_axes(&[1, 2, 3], &[REACH - 1, 0, 0]).expect("a motion");
-        assert_eq!(far.point(&[0; 3]), Some([REACH - 1, 0, 0]));
+        let far = Motion::of_axes(&[1, 2, 3], &[MAX_COORDINATE - 1, 0, 0]).expect("a motion");
+        assert_eq!(far.point(&[0; 3]), Some([MAX_COORDINATE - 1, 0, 0]));
         assert_eq!(far.point(&[1, 0, 0]), None);
     }
 }

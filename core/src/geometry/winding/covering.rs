@@ -11,14 +11,14 @@ use crate::geometry::doubles::turn;
 use crate::interrupt::poll;
 
 /// A point of the plane in finite doubles.
-pub type Place = [f64; 2];
+pub type PlanarPoint = [f64; 2];
 
 /// A directed edge with its ends in the order in which a sweep to the right meets them; upwards for a
 /// vertical edge.
 #[derive(Clone, Copy, Debug)]
-struct Running {
-    left: Place,
-    right: Place,
+struct SweptEdge {
+    left: PlanarPoint,
+    right: PlanarPoint,
     /// True if the edge runs from `left` to `right`: the winding number is then one more above the edge than
     /// below.
     forward: bool,
@@ -48,14 +48,14 @@ struct Running {
 /// assert!(!winds_at_most_once(&[low, beside].concat()));
 /// assert!(winds_at_most_once(&[low[0], low[2], beside[0], beside[1]]));
 /// ```
-pub fn winds_at_most_once(edges: &[[Place; 2]]) -> bool {
-    let edges: Vec<Running> = edges.iter().map(Running::of).collect();
+pub fn winds_at_most_once(edges: &[[PlanarPoint; 2]]) -> bool {
+    let edges: Vec<SweptEdge> = edges.iter().map(SweptEdge::of).collect();
     let mut starts: Vec<u32> = (0u32..).zip(&edges).map(|(k, _)| k).collect();
     starts.sort_unstable_by(|a, b| {
         let [a, b] = [a, b].map(|k| &edges[*k as usize]);
         compare(&a.left, &b.left)
     });
-    let mut stops: Vec<Place> = edges.iter().flat_map(|e| [e.left, e.right]).collect();
+    let mut stops: Vec<PlanarPoint> = edges.iter().flat_map(|e| [e.left, e.right]).collect();
     stops.sort_unstable_by(compare);
     stops.dedup_by(|a, b| is_same(a, b));
     let mut sweep = Sweep {
@@ -63,11 +63,11 @@ pub fn winds_at_most_once(edges: &[[Place; 2]]) -> bool {
         starts: &starts,
         above: Vec::new(),
     };
-    stops.iter().all(|stop| sweep.passes(stop))
+    stops.iter().all(|stop| sweep.advance_to(stop))
 }
 
-impl Running {
-    fn of([from, to]: &[Place; 2]) -> Self {
+impl SweptEdge {
+    fn of([from, to]: &[PlanarPoint; 2]) -> Self {
         let forward = compare(from, to) == Ordering::Less;
         let (left, right) = if forward { (*from, *to) } else { (*to, *from) };
         Self {
@@ -78,14 +78,14 @@ impl Running {
     }
 
     /// The side of the edge on which a point lies: positive above, zero on its line.
-    fn turn_to(&self, p: &Place) -> Sign {
+    fn turn_to(&self, p: &PlanarPoint) -> Sign {
         turn([self.left, self.right, *p])
     }
 }
 
 /// The state of a sweep to the right over edges.
 struct Sweep<'a> {
-    edges: &'a [Running],
+    edges: &'a [SweptEdge],
     /// The edges that the sweep has not reached, by their left ends.
     starts: &'a [u32],
     /// The edges that cross the sweep line, in order from bottom to top.
@@ -93,13 +93,13 @@ struct Sweep<'a> {
 }
 
 impl Sweep<'_> {
-    fn edge(&self, number: u32) -> &Running {
+    fn edge(&self, number: u32) -> &SweptEdge {
         &self.edges[number as usize]
     }
 
     /// Advances the sweep to a stop; returns whether the outlines wind at most once there and up to the next
     /// stop.
-    fn passes(&mut self, stop: &Place) -> bool {
+    fn advance_to(&mut self, stop: &PlanarPoint) -> bool {
         poll();
         let first = self
             .above
@@ -125,7 +125,7 @@ impl Sweep<'_> {
     }
 
     /// Removes and returns the edges whose left end is the stop; all earlier ones must be removed already.
-    fn beginning_at(&mut self, stop: &Place) -> &[u32] {
+    fn beginning_at(&mut self, stop: &PlanarPoint) -> &[u32] {
         let begins = |k: &u32| is_same(&self.edges[*k as usize].left, stop);
         let count = self.starts.iter().take_while(|k| begins(k)).count();
         let (beginning, later) = self.starts.split_at(count);
@@ -169,12 +169,12 @@ impl Sweep<'_> {
 }
 
 /// The order in which a sweep to the right stops at points: by x, then by y.
-fn compare(a: &Place, b: &Place) -> Ordering {
+fn compare(a: &PlanarPoint, b: &PlanarPoint) -> Ordering {
     let order = |i: usize| a[i].partial_cmp(&b[i]).unwrap_or(Ordering::Equal);
     order(0).then_with(|| order(1))
 }
 
-fn is_same(a: &Place, b: &Place) -> bool {
+fn is_same(a: &PlanarPoint, b: &PlanarPoint) -> bool {
     compare(a, b) == Ordering::Equal
 }
 
@@ -184,10 +184,10 @@ mod tests {
 
     use super::*;
 
-    fn outline(corners: &[[i32; 2]]) -> Vec<[Place; 2]> {
-        let place = |k: usize| corners[k % corners.len()].map(f64::from);
+    fn outline(corners: &[[i32; 2]]) -> Vec<[PlanarPoint; 2]> {
+        let point = |k: usize| corners[k % corners.len()].map(f64::from);
         (0..corners.len())
-            .map(|k| [place(k), place(k + 1)])
+            .map(|k| [point(k), point(k + 1)])
             .collect()
     }
 
@@ -212,8 +212,8 @@ mod tests {
     }
 
     /// The winding number of edges around a point that lies on none of them.
-    fn winding(edges: &[[Place; 2]], p: Place) -> i32 {
-        let crossed = |[a, b]: &[Place; 2]| {
+    fn winding(edges: &[[PlanarPoint; 2]], p: PlanarPoint) -> i32 {
+        let crossed = |[a, b]: &[PlanarPoint; 2]| {
             let up = a[1] <= p[1] && p[1] < b[1];
             let down = b[1] <= p[1] && p[1] < a[1];
             let left = turn([*a, *b, p]);
@@ -241,14 +241,14 @@ mod tests {
         #[test]
         fn stars_wind_once(radii in prop::collection::vec(1..40i32, 3..40), turned in 0..9i32) {
             let count = f64::from(u32::try_from(radii.len()).unwrap());
-            let edges: Vec<[Place; 2]> = {
-                let place = |k: usize| {
+            let edges: Vec<[PlanarPoint; 2]> = {
+                let point = |k: usize| {
                     let turns = f64::from(u32::try_from(k % radii.len()).unwrap()) / count;
                     let angle = std::f64::consts::TAU * turns + f64::from(turned);
                     let radius = f64::from(radii[k % radii.len()]);
                     [radius * angle.cos(), radius * angle.sin()]
                 };
-                (0..radii.len()).map(|k| [place(k), place(k + 1)]).collect()
+                (0..radii.len()).map(|k| [point(k), point(k + 1)]).collect()
             };
             prop_assert!(winds_at_most_once(&edges));
             let back: Vec<_> = edges.iter().map(|[a, b]| [*b, *a]).collect();

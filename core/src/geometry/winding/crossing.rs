@@ -120,7 +120,7 @@ pub fn polygon_change(polygon: &Polygon, segment: &Segment) -> i32 {
             turn_at_corner(a, b, &segment.from, u, v) == upward
         }
         Carrier::Cut(plane, flip) => {
-            let side = side_where_met(support, plane, segment) * upward;
+            let side = sign_where_met(support, plane, segment) * upward;
             let wanted = if *flip {
                 Sign::Positive
             } else {
@@ -138,7 +138,7 @@ pub fn polygon_change(polygon: &Polygon, segment: &Segment) -> i32 {
 
 /// The sign of `plane` where the line through the segment meets `support`, times the sign of `support`'s
 /// normal along the segment's axis.
-fn side_where_met(support: &Plane, plane: &Plane, segment: &Segment) -> Sign {
+fn sign_where_met(support: &Plane, plane: &Plane, segment: &Segment) -> Sign {
     let (p, e) = (support.normal(), plane.normal());
     let a = segment.axis;
     let wide = |c: i128| Int::<2>::from_i128(c);

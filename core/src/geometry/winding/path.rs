@@ -22,10 +22,10 @@ const DETERMINANT_FILTER: f64 = 16.0 / 9_007_199_254_740_992.0;
 ///
 /// Ends and differences are rounded by a few units in the last place of a coordinate, quotients by as much
 /// of the extent: together below 2^-48 of the largest coordinate.
-const WAY_SLACK: f64 = 1e-14;
+const PATH_SLACK: f64 = 1e-14;
 
 /// A straight path from one point to another in doubles, to test against boxes.
-pub struct Way {
+pub struct PaddedPath {
     from: [f64; 3],
     /// For each axis, one over the path's extent along it; infinite if the path is perpendicular to the axis.
     inverse: [f64; 3],
@@ -36,11 +36,11 @@ pub struct Way {
     high: Lattice,
 }
 
-impl Way {
+impl PaddedPath {
     /// The path between two points, each rounded by less than a lattice step.
     pub fn new(from: [f64; 3], to: [f64; 3]) -> Self {
         let sizes = from.iter().chain(&to).map(|x| x.abs());
-        let slack = 2.0 + sizes.fold(0.0, f64::max) * WAY_SLACK;
+        let slack = 2.0 + sizes.fold(0.0, f64::max) * PATH_SLACK;
         Self {
             from,
             inverse: each_axis(|i| 1.0 / (to[i] - from[i])),
@@ -55,10 +55,10 @@ impl Way {
     #[inline]
     pub fn may_meet(&self, low: &Lattice, high: &Lattice) -> bool {
         let beyond = |i: usize| low[i] > self.high[i] || high[i] < self.low[i];
-        !(beyond(0) || beyond(1) || beyond(2)) && self.passes(low, high)
+        !(beyond(0) || beyond(1) || beyond(2)) && self.meets_padded_box(low, high)
     }
 
-    fn passes(&self, low: &Lattice, high: &Lattice) -> bool {
+    fn meets_padded_box(&self, low: &Lattice, high: &Lattice) -> bool {
         let (mut first, mut last) = (0.0f64, 1.0f64);
         for i in 0..3 {
             let before = as_double(low[i]) - self.slack - self.from[i];
@@ -79,7 +79,11 @@ impl Way {
 
 /// The change of the winding number across a lattice triangle, along a path from the corner of a cell, in
 /// half steps, to a lattice point; doubtful if the path meets an edge or ends in the plane.
-pub fn triangle_on_path(corners: &[Lattice; 3], from: &Lattice, to: &Lattice) -> Filtered<i32> {
+pub fn triangle_change_on_path(
+    corners: &[Lattice; 3],
+    from: &Lattice,
+    to: &Lattice,
+) -> Filtered<i32> {
     let doubled = |p: &Lattice| each_axis(|i| 2 * p[i] - from[i]);
     let [a, b, c] = [&corners[0], &corners[1], &corners[2]].map(doubled);
     let end = doubled(to);
@@ -91,10 +95,10 @@ pub fn triangle_on_path(corners: &[Lattice; 3], from: &Lattice, to: &Lattice) ->
     if !all(Sign::Positive) && !all(Sign::Negative) {
         return Filtered::Certain(0);
     }
-    let less = |p: &Lattice, q: &Lattice| each_axis(|i| p[i] - q[i]);
-    let (u, v) = (less(&b, &a), less(&c, &a));
-    let before = determinant(&less(&[0; 3], &a), &u, &v);
-    let after = determinant(&less(&end, &a), &u, &v);
+    let difference = |p: &Lattice, q: &Lattice| each_axis(|i| p[i] - q[i]);
+    let (u, v) = (difference(&b, &a), difference(&c, &a));
+    let before = determinant(&difference(&[0; 3], &a), &u, &v);
+    let after = determinant(&difference(&end, &a), &u, &v);
     if before == Sign::Zero || after == Sign::Zero {
         return Filtered::Doubtful;
     }
@@ -183,7 +187,7 @@ fn exact_determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> Sign {
 ///
 /// `support` is the polygon's plane, and `rims` are planes through its edges with the polygon on their minus
 /// sides.
-pub fn polygon_on_path<'a>(
+pub fn polygon_change_on_path<'a>(
     support: &Plane,
     rims: impl FnOnce() -> &'a [Plane],
     from: &Lattice,

@@ -11,7 +11,7 @@ use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::slabs::Slabs;
 use crate::geometry::doubles::{Point, Triangle};
 use crate::interrupt::{poll, spend};
-use crate::mesh::tasks::{each, Worth};
+use crate::mesh::tasks::{each, WorkSize};
 
 /// The number of children of a node of the tree.
 const CHILDREN_PER_NODE: usize = 4;
@@ -27,7 +27,7 @@ const PAIRS_PER_BLOCK: usize = 1 << 9;
 
 /// A box in single precision, rounded outwards.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bounds {
+pub(super) struct RoundedBox {
     pub(super) low: [f32; 3],
     pub(super) high: [f32; 3],
 }
@@ -36,30 +36,30 @@ pub(super) struct Bounds {
 /// of the level below.
 #[derive(Debug)]
 pub(super) struct BoxTree {
-    bounds: Vec<Bounds>,
+    bounds: Vec<RoundedBox>,
     slabs: Vec<Slabs>,
     /// The levels from the lowest to the root.
-    levels: Vec<Vec<Bounds>>,
+    levels: Vec<Vec<RoundedBox>>,
 }
 
 /// A node of a tree of boxes: its level, and its index in this level.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     level: usize,
-    place: usize,
+    index: usize,
 }
 
 /// Returns a number in single precision that is at most x: the margin exceeds the rounding.
 #[allow(clippy::cast_possible_truncation, reason = "rounded down on purpose")]
-fn down(x: f64) -> f32 {
+fn rounded_down(x: f64) -> f32 {
     (x - x.abs() * f64::from(f32::EPSILON)) as f32
 }
 
-fn up(x: f64) -> f32 {
-    -down(-x)
+fn rounded_up(x: f64) -> f32 {
+    -rounded_down(-x)
 }
 
-impl Bounds {
+impl RoundedBox {
     const NOTHING: Self = Self {
         low: [f32::INFINITY; 3],
         high: [f32::NEG_INFINITY; 3],
@@ -68,8 +68,8 @@ impl Bounds {
     /// Returns the box from a low to a high corner, rounded outwards.
     pub(super) fn between(low: &Point, high: &Point) -> Self {
         Self {
-            low: low.map(down),
-            high: high.map(up),
+            low: low.map(rounded_down),
+            high: high.map(rounded_up),
         }
     }
 
@@ -92,27 +92,27 @@ impl Bounds {
         }
     }
 
-    fn around_all(some: &[Self]) -> Self {
-        some.iter().fold(Self::NOTHING, |all, one| all.joined(one))
+    fn around_all(boxes: &[Self]) -> Self {
+        boxes.iter().fold(Self::NOTHING, |all, one| all.joined(one))
     }
 
-    fn girth(&self) -> f32 {
+    fn extent_sum(&self) -> f32 {
         (0..3).map(|i| self.high[i] - self.low[i]).sum()
     }
 }
 
 /// Returns the indices of triangles in the order of their boxes' centres along a space-filling curve.
 pub(super) fn order(triangles: &[Triangle]) -> Vec<u32> {
-    let bounds: Vec<Bounds> = triangles.iter().map(Bounds::around).collect();
-    let all = Bounds::around_all(&bounds);
+    let bounds: Vec<RoundedBox> = triangles.iter().map(RoundedBox::around).collect();
+    let all = RoundedBox::around_all(&bounds);
     let scale = each_axis(|i| {
         let width = 2.0 * (all.high[i] - all.low[i]);
         f32::from(CURVE_STEPS - 1) / width.max(f32::MIN_POSITIVE)
     });
     spend(triangles.len());
-    let number = |b: &Bounds| {
+    let number = |b: &RoundedBox| {
         let step = |i: usize| (b.low[i] + b.high[i] - 2.0 * all.low[i]) * scale[i];
-        (0..3).fold(0, |all, i| all | spread(along_curve(step(i))) << i)
+        (0..3).fold(0, |all, i| all | spread_bits(along_curve(step(i))) << i)
     };
     let mut keys: Vec<u64> = (0u64..)
         .zip(&bounds)
@@ -137,7 +137,7 @@ fn low_half(key: u64) -> u32 {
 }
 
 /// Spreads the ten low bits of x, with two zero bits after each.
-fn spread(x: u32) -> u32 {
+fn spread_bits(x: u32) -> u32 {
     let x = (x | x << 16) & 0x0300_00ff;
     let x = (x | x << 8) & 0x0300_f00f;
     let x = (x | x << 4) & 0x030c_30c3;
@@ -148,14 +148,14 @@ impl BoxTree {
     /// Makes the tree of triangles, which must be sorted along a space-filling curve.
     pub(super) fn new(triangles: &[Triangle]) -> Self {
         spend(triangles.len());
-        let bounds: Vec<Bounds> = triangles.iter().map(Bounds::around).collect();
+        let bounds: Vec<RoundedBox> = triangles.iter().map(RoundedBox::around).collect();
         let mut levels = Vec::new();
         let mut below = &bounds;
         while below.len() > 1 || levels.is_empty() {
             levels.push(
                 below
                     .chunks(CHILDREN_PER_NODE)
-                    .map(Bounds::around_all)
+                    .map(RoundedBox::around_all)
                     .collect(),
             );
             below = &levels[levels.len() - 1];
@@ -167,7 +167,8 @@ impl BoxTree {
         }
     }
 
-    /// Adds the slabs of the triangles, which a search for pairs needs; both trees must use the same origin.
+    /// Adds the slabs of the triangles (the intervals that they cover along diagonals), which a search for
+    /// pairs needs; both trees must use the same origin.
     pub(super) fn with_slabs(self, triangles: &[Triangle], origin: &Point) -> Self {
         let slabs = triangles.iter().map(|t| Slabs::of(t, origin)).collect();
         Self { slabs, ..self }
@@ -175,27 +176,27 @@ impl BoxTree {
 
     fn root(&self) -> Node {
         let level = self.levels.len() - 1;
-        Node { level, place: 0 }
+        Node { level, index: 0 }
     }
 
-    fn at(&self, node: Node) -> &Bounds {
-        &self.levels[node.level][node.place]
+    fn at(&self, node: Node) -> &RoundedBox {
+        &self.levels[node.level][node.index]
     }
 
     fn children(&self, node: Node) -> impl Iterator<Item = Node> + use<> {
         let level = node.level - 1;
-        let end = (CHILDREN_PER_NODE * (node.place + 1)).min(self.levels[level].len());
-        (CHILDREN_PER_NODE * node.place..end).map(move |place| Node { level, place })
+        let end = (CHILDREN_PER_NODE * (node.index + 1)).min(self.levels[level].len());
+        (CHILDREN_PER_NODE * node.index..end).map(move |index| Node { level, index })
     }
 
     /// Returns the indices of the triangles' boxes in a node of the lowest level.
     fn leaves(&self, node: Node) -> std::ops::Range<usize> {
-        CHILDREN_PER_NODE * node.place
-            ..(CHILDREN_PER_NODE * (node.place + 1)).min(self.bounds.len())
+        CHILDREN_PER_NODE * node.index
+            ..(CHILDREN_PER_NODE * (node.index + 1)).min(self.bounds.len())
     }
 
     /// Calls `visit` with the index of each triangle's box that meets `bounds`.
-    pub(super) fn each_meeting(&self, bounds: &Bounds, mut visit: impl FnMut(usize)) {
+    pub(super) fn each_meeting(&self, bounds: &RoundedBox, mut visit: impl FnMut(usize)) {
         let mut open = if self.bounds.is_empty() {
             Vec::new()
         } else {
@@ -219,13 +220,13 @@ impl BoxTree {
     pub(super) fn each_block<T: Send, E: Send>(
         &self,
         other: &Self,
-        worth: Worth,
+        work_size: WorkSize,
         visit: impl Fn(&[[u32; 2]]) -> Result<T, E> + Sync + Send,
     ) -> Result<Vec<T>, E> {
         if self.bounds.is_empty() || other.bounds.is_empty() {
             return Ok(Vec::new());
         }
-        let found = each(worth, self.starts(other), |start| {
+        let found = each(work_size, self.start_pairs(other), |start| {
             self.blocks_below(other, start, &visit)
         });
         let found: Result<Vec<Vec<T>>, E> = found.into_iter().collect();
@@ -234,12 +235,12 @@ impl BoxTree {
 
     /// Returns pairs of nodes that contain all pairs of triangles to be found: at least `MIN_TASKS`, if there
     /// are so many.
-    fn starts(&self, other: &Self) -> Vec<[Node; 2]> {
+    fn start_pairs(&self, other: &Self) -> Vec<[Node; 2]> {
         let mut open = vec![[self.root(), other.root()]];
         while open.len() < MIN_TASKS && open.iter().any(|p| p[0].level + p[1].level > 0) {
             let mut next = Vec::with_capacity(CHILDREN_PER_NODE * open.len());
             for pair in open {
-                self.descend(other, pair, &mut next);
+                self.push_child_pairs(other, pair, &mut next);
             }
             if next.is_empty() {
                 return next;
@@ -250,11 +251,12 @@ impl BoxTree {
     }
 
     /// Replaces the larger node of a pair by its children, and adds to `found` the pairs whose boxes meet.
-    fn descend(&self, other: &Self, [a, b]: [Node; 2], found: &mut Vec<[Node; 2]>) {
+    fn push_child_pairs(&self, other: &Self, [a, b]: [Node; 2], found: &mut Vec<[Node; 2]>) {
         let (ours, theirs) = (self.at(a), other.at(b));
         if a.level == 0 && b.level == 0 {
             found.push([a, b]);
-        } else if b.level > a.level || b.level == a.level && theirs.girth() > ours.girth() {
+        } else if b.level > a.level || b.level == a.level && theirs.extent_sum() > ours.extent_sum()
+        {
             let met = other.children(b).filter(|n| ours.meets(other.at(*n)));
             found.extend(met.map(|n| [a, n]));
         } else {
@@ -275,7 +277,7 @@ impl BoxTree {
             if a.level == 0 && b.level == 0 {
                 self.pairs_of_leaves(other, [a, b], &mut pairs);
             } else {
-                self.descend(other, [a, b], &mut open);
+                self.push_child_pairs(other, [a, b], &mut open);
             }
             if pairs.len() >= PAIRS_PER_BLOCK || open.is_empty() {
                 found.push(visit(&pairs)?);
@@ -317,7 +319,7 @@ mod tests {
             let (a, b) = (triangles(count, 1), triangles(others, 77));
             let [ours, theirs] = [&a, &b].map(|t| BoxTree::new(t).with_slabs(t, &[0.0; 3]));
             let visit = |pairs: &[[u32; 2]]| Ok::<_, ()>(pairs.to_vec());
-            let found = ours.each_block(&theirs, Worth::Nothing, visit);
+            let found = ours.each_block(&theirs, WorkSize::Nothing, visit);
             let mut found = found.expect("no error").concat();
             found.sort_unstable();
             let met = |i: usize, j: usize| {
@@ -334,7 +336,7 @@ mod tests {
     #[test]
     fn boxes_are_rounded_outwards() {
         let x = f64::from(1 << 30) + 0.5;
-        let bounds = Bounds::between(&[x; 3], &[x; 3]);
+        let bounds = RoundedBox::between(&[x; 3], &[x; 3]);
         assert!(f64::from(bounds.low[0]) < x && f64::from(bounds.high[0]) > x);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::boxes::{order, Bounds, BoxTree};
+use super::boxes::{order, BoxTree, RoundedBox};
 use super::occupancy::Occupancy;
 use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;
@@ -26,9 +26,9 @@ pub(super) struct Operand<'a> {
 /// The faces of an operand that reach into the window (the intersection of both meshes' boxes), each with its
 /// box.
 #[derive(Debug, Default)]
-pub(super) struct Within {
+pub(super) struct FacesInWindow {
     pub(super) faces: Vec<FaceId>,
-    pub(super) boxes: Vec<Bounds>,
+    pub(super) boxes: Vec<RoundedBox>,
 }
 
 /// The faces of an operand that may meet faces of the other operand, sorted along a space-filling curve.
@@ -58,28 +58,32 @@ impl<'a> Operand<'a> {
     }
 
     /// Returns the faces whose boxes meet the given box, ascending.
-    pub(super) fn within(&self, [low, high]: &[Point; 2]) -> Within {
+    pub(super) fn faces_in_window(&self, [low, high]: &[Point; 2]) -> FacesInWindow {
         let found = each_chunk(&self.mesh.faces, |first, chunk| {
-            let mut some = Within::default();
+            let mut inside = FacesInWindow::default();
             for id in (first..first + chunk.len()).map(|i| FaceId(as_number(i))) {
                 let [a, b, c] = self.triangle(id);
                 let least = each_axis(|i| a[i].min(b[i]).min(c[i]));
                 let most = each_axis(|i| a[i].max(b[i]).max(c[i]));
                 if (0..3).all(|i| least[i] <= high[i] && most[i] >= low[i]) {
-                    some.faces.push(id);
-                    some.boxes.push(Bounds::between(&least, &most));
+                    inside.faces.push(id);
+                    inside.boxes.push(RoundedBox::between(&least, &most));
                 }
             }
-            some
+            inside
         });
-        found.into_iter().reduce(Within::with).unwrap_or_default()
+        found
+            .into_iter()
+            .reduce(FacesInWindow::with)
+            .unwrap_or_default()
     }
 
     /// Returns the faces that reach into cells of the coarse grid `others` that the other operand's faces
-    /// reach into; the slabs of both operands must have the same `origin`.
+    /// reach into; the intervals (slabs) that both operands' faces cover along diagonals must have the same
+    /// `origin`.
     pub(super) fn candidates(
         &self,
-        within: &Within,
+        within: &FacesInWindow,
         others: &Occupancy,
         origin: &Point,
     ) -> Candidates {
@@ -97,7 +101,7 @@ impl<'a> Operand<'a> {
     }
 }
 
-impl Within {
+impl FacesInWindow {
     fn with(mut self, mut other: Self) -> Self {
         self.faces.append(&mut other.faces);
         self.boxes.append(&mut other.boxes);

@@ -20,14 +20,14 @@ pub(super) enum Contact {
     Apart,
     /// The triangles cross in a segment whose inner points are inside both. Seen from in front of the first
     /// triangle, the points behind the second one are on the left of the directed segment.
-    Crossing([End; 2]),
+    Crossing([PiercingPoint; 2]),
     /// The triangles have common points in another configuration.
     Touching(Box<Touching>),
 }
 
 /// A point in which an edge of one triangle passes through the inside of the other triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct End {
+pub(super) struct PiercingPoint {
     /// The triangle that has the edge: 0 for the first, 1 for the second.
     pub(super) of: usize,
     /// The indices of the corners at the ends of the edge.
@@ -36,12 +36,12 @@ pub(super) struct End {
 
 /// A common point of two triangles, named by the corners or edges that define it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Spot {
+pub(super) enum CommonPoint {
     /// A corner: its triangle (0 or 1) and its index there; if two corners coincide, the corner of triangle
     /// 0.
     Corner(usize, usize),
     /// An edge of one triangle passes through the inside of the other.
-    Through(End),
+    Through(PiercingPoint),
     /// An edge of the first triangle and an edge of the second cross; each is given by the index of its first
     /// corner.
     Edges(usize, usize),
@@ -49,9 +49,9 @@ pub(super) enum Spot {
 
 /// A common segment of two triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Stretch {
+pub(super) struct CommonSegment {
     /// The points at the ends of the segment.
-    pub(super) ends: [Spot; 2],
+    pub(super) ends: [CommonPoint; 2],
     /// For triangles in one plane, the edge that contains the segment: its triangle (0 or 1) and the index of
     /// its first corner; otherwise `None`.
     pub(super) along: Option<(usize, usize)>,
@@ -63,9 +63,9 @@ pub(super) struct Touching {
     /// For each triangle, the sides of the other triangle's plane on which its corners lie.
     pub(super) sides: [[Side; 3]; 2],
     /// The points at which an edge or a corner of one triangle meets the other triangle.
-    pub(super) spots: SmallVec<[Spot; 6]>,
+    pub(super) points: SmallVec<[CommonPoint; 6]>,
     /// The common segments: one at most, except for triangles in one plane.
-    pub(super) stretches: SmallVec<[Stretch; 6]>,
+    pub(super) segments: SmallVec<[CommonSegment; 6]>,
     /// True if the triangles have an area in common.
     pub(super) overlap: bool,
 }
@@ -82,27 +82,27 @@ pub(super) fn contact(f: &Facing, g: &Facing) -> Contact {
     }
     let both = [ours, theirs];
     if ours == [Side::On; 3] {
-        return in_one_plane(f, g, both).into_contact();
+        return contact_in_one_plane(f, g, both).into_contact();
     }
     if both.as_flattened().contains(&Side::On) {
-        return across(f, g, both).into_contact();
+        return contact_in_two_planes(f, g, both).into_contact();
     }
-    crossing(f.triangle(), g.triangle(), ours, theirs)
-        .unwrap_or_else(|| across(f, g, both).into_contact())
+    crossing_contact(f.triangle(), g.triangle(), ours, theirs)
+        .unwrap_or_else(|| contact_in_two_planes(f, g, both).into_contact())
 }
 
 impl Touching {
     fn new(sides: [[Side; 3]; 2]) -> Self {
         Self {
             sides,
-            spots: SmallVec::new(),
-            stretches: SmallVec::new(),
+            points: SmallVec::new(),
+            segments: SmallVec::new(),
             overlap: false,
         }
     }
 
     fn into_contact(self) -> Contact {
-        if self.spots.is_empty() {
+        if self.points.is_empty() {
             Contact::Apart
         } else {
             Contact::Touching(Box::new(self))
@@ -121,7 +121,7 @@ fn is_apart(sides: [Side; 3]) -> bool {
 
 /// Returns the edge (the indices of its corners) at which a triangle's border leaves the given side of a
 /// plane; its first corner is on that side.
-fn leaving(sides: [Side; 3], side: Side) -> [usize; 2] {
+fn edge_leaving(sides: [Side; 3], side: Side) -> [usize; 2] {
     let next = |i: usize| (i + 1) % 3;
     let leaves = |i: &usize| sides[*i] == side && sides[next(*i)] != side;
     let i = (0..3).find(leaves).unwrap_or(0);
@@ -130,10 +130,18 @@ fn leaving(sides: [Side; 3], side: Side) -> [usize; 2] {
 
 /// Returns the intersection of two triangles, each of which has all corners off the other's plane and on both
 /// sides of it; `None` if two edges meet.
-fn crossing(f: &Triangle, g: &Triangle, ours: [Side; 3], theirs: [Side; 3]) -> Option<Contact> {
-    let [end, start] = leaving(ours, Side::Plus);
-    let (f_first, f_last) = (leaving(ours, Side::Minus), [start, end]);
-    let (g_first, g_last) = (leaving(theirs, Side::Plus), leaving(theirs, Side::Minus));
+fn crossing_contact(
+    f: &Triangle,
+    g: &Triangle,
+    ours: [Side; 3],
+    theirs: [Side; 3],
+) -> Option<Contact> {
+    let [end, start] = edge_leaving(ours, Side::Plus);
+    let (f_first, f_last) = (edge_leaving(ours, Side::Minus), [start, end]);
+    let (g_first, g_last) = (
+        edge_leaving(theirs, Side::Plus),
+        edge_leaving(theirs, Side::Minus),
+    );
     let turn = |a: [usize; 2], b: [usize; 2]| side(&[f[a[0]], f[a[1]], g[b[0]]], &g[b[1]]);
     let order = [turn(f_first, g_last), turn(f_last, g_first)];
     if order.contains(&Side::Minus) {
@@ -144,8 +152,8 @@ fn crossing(f: &Triangle, g: &Triangle, ours: [Side; 3], theirs: [Side; 3]) -> O
         return None;
     }
     let end = |side: Side, ours: [usize; 2], theirs: [usize; 2]| match side {
-        Side::Plus => End { of: 0, edge: ours },
-        Side::Minus | Side::On => End {
+        Side::Plus => PiercingPoint { of: 0, edge: ours },
+        Side::Minus | Side::On => PiercingPoint {
             of: 1,
             edge: theirs,
         },
@@ -156,48 +164,53 @@ fn crossing(f: &Triangle, g: &Triangle, ours: [Side; 3], theirs: [Side; 3]) -> O
 
 /// Returns the intersection of two triangles in different planes; `both` has the sides of the other's plane
 /// on which their corners lie.
-fn across(f: &Facing, g: &Facing, both: [[Side; 3]; 2]) -> Touching {
+fn contact_in_two_planes(f: &Facing, g: &Facing, both: [[Side; 3]; 2]) -> Touching {
     let mut found = Touching::new(both);
     for (of, t, other) in [(0, f, g), (1, g, f)] {
         let (corners, sides) = (t.triangle(), both[of]);
         for (i, corner) in corners.iter().enumerate() {
             let next = (i + 1) % 3;
-            if sides[i] == Side::On && holds(other, corner) {
+            if sides[i] == Side::On && contains(other, corner) {
                 add(
-                    &mut found.spots,
-                    corner_spot(of, i, corner, other.triangle()),
+                    &mut found.points,
+                    corner_point(of, i, corner, other.triangle()),
                 );
             } else if sides[i].is_across_from(sides[next])
-                && let Some(spot) = spot_inside(of, [i, next], corners, other.triangle())
+                && let Some(point) = piercing_point(of, [i, next], corners, other.triangle())
             {
-                add(&mut found.spots, spot);
+                add(&mut found.points, point);
             }
         }
     }
-    if let [from, to] = found.spots[..] {
+    if let [from, to] = found.points[..] {
         let ends = [from, to];
-        found.stretches.push(Stretch { ends, along: None });
+        found.segments.push(CommonSegment { ends, along: None });
     }
     found
 }
 
-fn add(spots: &mut SmallVec<[Spot; 6]>, spot: Spot) {
-    if !spots.contains(&spot) {
-        spots.push(spot);
+fn add(points: &mut SmallVec<[CommonPoint; 6]>, point: CommonPoint) {
+    if !points.contains(&point) {
+        points.push(point);
     }
 }
 
 /// Names a corner of a triangle; if it coincides with a corner of the first triangle, by that corner.
-fn corner_spot<P: PartialEq>(of: usize, corner: usize, place: &P, others: &[P; 3]) -> Spot {
-    match others.iter().position(|p| p == place).filter(|_| of == 1) {
-        Some(twin) => Spot::Corner(0, twin),
-        None => Spot::Corner(of, corner),
+fn corner_point<P: PartialEq>(of: usize, corner: usize, point: &P, others: &[P; 3]) -> CommonPoint {
+    match others.iter().position(|p| p == point).filter(|_| of == 1) {
+        Some(twin) => CommonPoint::Corner(0, twin),
+        None => CommonPoint::Corner(of, corner),
     }
 }
 
 /// Returns the point in which an edge that crosses the plane of triangle `other` meets this triangle; `None`
 /// if it misses the triangle or meets it at a corner.
-fn spot_inside(of: usize, edge: [usize; 2], t: &Triangle, other: &Triangle) -> Option<Spot> {
+fn piercing_point(
+    of: usize,
+    edge: [usize; 2],
+    t: &Triangle,
+    other: &Triangle,
+) -> Option<CommonPoint> {
     let [p, q] = edge.map(|i| t[i]);
     let beside = |k: usize| side(&[p, q, other[k]], &other[(k + 1) % 3]);
     let turns = [0, 1, 2].map(beside);
@@ -206,15 +219,15 @@ fn spot_inside(of: usize, edge: [usize; 2], t: &Triangle, other: &Triangle) -> O
     }
     let mut on = (0..3).filter(|k| turns[*k] == Side::On);
     match (on.next(), on.next()) {
-        (None, _) => Some(Spot::Through(End { of, edge })),
-        (Some(k), None) if of == 0 => Some(Spot::Edges(edge[0], k)),
-        (Some(k), None) => Some(Spot::Edges(k, edge[0])),
+        (None, _) => Some(CommonPoint::Through(PiercingPoint { of, edge })),
+        (Some(k), None) if of == 0 => Some(CommonPoint::Edges(edge[0], k)),
+        (Some(k), None) => Some(CommonPoint::Edges(k, edge[0])),
         _ => None,
     }
 }
 
 /// Returns true if a triangle contains a point of its plane, inside or on the border.
-fn holds(g: &Facing, p: &Point) -> bool {
+fn contains(g: &Facing, p: &Point) -> bool {
     let axis = g.main_axis();
     let corners = seen_along(g.triangle(), axis);
     let [at, ..] = seen_along(&[*p; 3], axis);
@@ -223,7 +236,7 @@ fn holds(g: &Facing, p: &Point) -> bool {
 }
 
 /// Returns the intersection of two triangles in one plane.
-fn in_one_plane(f: &Facing, g: &Facing, sides: [[Side; 3]; 2]) -> Touching {
+fn contact_in_one_plane(f: &Facing, g: &Facing, sides: [[Side; 3]; 2]) -> Touching {
     let axis = f.main_axis();
     let both = [f, g].map(|t| seen_along(t.triangle(), axis));
     let beside = [
@@ -236,15 +249,15 @@ fn in_one_plane(f: &Facing, g: &Facing, sides: [[Side; 3]; 2]) -> Touching {
     }
     for of in [0, 1] {
         for edge in 0..3 {
-            let spots = spots_along(of, edge, &both, &beside);
-            if let [from, to] = spots[..] {
-                found.stretches.push(Stretch {
+            let points = common_points_of_edge(of, edge, &both, &beside);
+            if let [from, to] = points[..] {
+                found.segments.push(CommonSegment {
                     ends: [from, to],
                     along: Some((of, edge)),
                 });
             }
-            for spot in spots {
-                add(&mut found.spots, spot);
+            for point in points {
+                add(&mut found.points, point);
             }
         }
     }
@@ -279,7 +292,7 @@ impl CornerSides {
         self.turns.iter().any(|t| !t.contains(&Sign::Positive))
     }
 
-    fn holds(&self, corner: usize) -> bool {
+    fn contains(&self, corner: usize) -> bool {
         (0..3).all(|k| self.turns[k][corner] != Sign::Negative)
     }
 
@@ -293,32 +306,32 @@ impl CornerSides {
 
 /// Returns the ends of the intersection of an edge of triangle `of` with the other triangle, in one plane:
 /// no, one or two points.
-fn spots_along(
+fn common_points_of_edge(
     of: usize,
     edge: usize,
     both: &[[[f64; 2]; 3]; 2],
     beside: &[CornerSides; 2],
-) -> SmallVec<[Spot; 6]> {
+) -> SmallVec<[CommonPoint; 6]> {
     let (ours, theirs) = (&both[of], &both[1 - of]);
     let (in_theirs, in_ours) = (&beside[1 - of], &beside[of]);
-    let mut spots = SmallVec::new();
+    let mut points = SmallVec::new();
     for end in [edge, (edge + 1) % 3]
         .into_iter()
-        .filter(|i| in_theirs.holds(*i))
+        .filter(|i| in_theirs.contains(*i))
     {
-        add(&mut spots, corner_spot(of, end, &ours[end], theirs));
+        add(&mut points, corner_point(of, end, &ours[end], theirs));
     }
     for (k, corner) in theirs.iter().enumerate() {
         if in_theirs.are_divided(k, edge) && in_ours.are_divided(edge, k) {
             let [first, second] = if of == 0 { [edge, k] } else { [k, edge] };
-            add(&mut spots, Spot::Edges(first, second));
+            add(&mut points, CommonPoint::Edges(first, second));
         }
         let on_line = in_ours.turns[edge][k] == Sign::Zero;
         if on_line && is_between(ours[edge], *corner, ours[(edge + 1) % 3]) {
-            add(&mut spots, Spot::Corner(1 - of, k));
+            add(&mut points, CommonPoint::Corner(1 - of, k));
         }
     }
-    spots
+    points
 }
 
 /// Returns true if the point p lies strictly between the points a and b of the same line.
@@ -344,7 +357,7 @@ mod tests {
         let Contact::Crossing([from, to]) = contact(&of(FLOOR), &of(wall)) else {
             panic!("they cross");
         };
-        let along = |end: End| {
+        let along = |end: PiercingPoint| {
             let [a, b] = end.edge.map(|i| wall[i]);
             assert_eq!(end.of, 1);
             (a[1] + b[1]).min(5)
@@ -390,16 +403,16 @@ mod tests {
     }
 
     /// Returns a name for a common point that does not depend on the order of the triangles.
-    fn name(spot: Spot, pair: [&[[i32; 3]; 3]; 2]) -> Vec<[i32; 3]> {
+    fn name(point: CommonPoint, pair: [&[[i32; 3]; 3]; 2]) -> Vec<[i32; 3]> {
         let edge = |of: usize, i: usize, j: usize| {
             let mut ends = [pair[of][i], pair[of][j]];
             ends.sort_unstable();
             ends
         };
-        match spot {
-            Spot::Corner(of, i) => vec![pair[of][i]],
-            Spot::Through(End { of, edge: [i, j] }) => edge(of, i, j).to_vec(),
-            Spot::Edges(i, j) => {
+        match point {
+            CommonPoint::Corner(of, i) => vec![pair[of][i]],
+            CommonPoint::Through(PiercingPoint { of, edge: [i, j] }) => edge(of, i, j).to_vec(),
+            CommonPoint::Edges(i, j) => {
                 let mut edges = [edge(0, i, (i + 1) % 3), edge(1, j, (j + 1) % 3)];
                 edges.sort_unstable();
                 edges.concat()
@@ -411,9 +424,9 @@ mod tests {
     /// order.
     #[test]
     fn common_points_are_named_alike_from_both_sides() {
-        let place = |k: i32| [k % 3, k / 3 % 3, k / 9 % 3];
+        let point = |k: i32| [k % 3, k / 3 % 3, k / 9 % 3];
         let mut triangles =
-            (0..2500).map(|k: i32| [7 * k, 11 * k + k / 27, 5 * k + k / 9].map(place));
+            (0..2500).map(|k: i32| [7 * k, 11 * k + k / 27, 5 * k + k / 9].map(point));
         let triangles: Vec<_> = triangles
             .by_ref()
             .filter(|t| !crate::geometry::doubles::is_flat(&t.map(|c| c.map(f64::from))))
@@ -428,8 +441,8 @@ mod tests {
                 let Contact::Touching(touching) = contact(&of(*f), &of(*g)) else {
                     return Vec::new();
                 };
-                let spots = touching.spots.iter().map(|s| name(*s, [f, g]));
-                let mut names: Vec<_> = spots.collect();
+                let points = touching.points.iter().map(|s| name(*s, [f, g]));
+                let mut names: Vec<_> = points.collect();
                 names.sort_unstable();
                 names
             };

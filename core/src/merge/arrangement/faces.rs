@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;
 
-use super::segments::{Cover, Line, Point, Segment};
+use super::segments::{Cover, Line, MeetingPoint, Segment};
 use super::surfaces::Surfaces;
 use super::windings::Probe;
 use crate::arith::convert::as_number;
@@ -16,15 +16,15 @@ use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Carrier;
 use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
-use crate::merge::division::{axes, Defect, Division, Spot, Triangulation};
+use crate::merge::division::{axes, Defect, Division, PositionInPolygon, Triangulation};
 use crate::merge::profile::Declined;
 use crate::mesh::handle::VertexId;
 
 /// The exact points and planes that the divisions of all faces share.
 #[derive(Debug)]
-pub(super) struct Shared<'a> {
+pub(super) struct SharedGeometry<'a> {
     pub(super) surfaces: &'a Surfaces<'a>,
-    pub(super) points: &'a [Point],
+    pub(super) points: &'a [MeetingPoint],
     /// For each point its exact position.
     pub(super) vertices: Vec<Arc<Vertex>>,
     /// The planes of the divided faces, by joint number.
@@ -46,7 +46,7 @@ pub(super) struct Face<'a> {
     pub(super) covers: &'a [Cover],
 }
 
-/// A face divided into triangular cells, with the winding numbers around each.
+/// A face divided into triangular cells, with the winding numbers on both sides of each cell.
 #[derive(Debug)]
 pub(super) struct Arrangement<'a> {
     pub(super) face: Face<'a>,
@@ -62,7 +62,7 @@ pub(super) struct CellNumbers {
     /// The winding number behind the cell, minus the number in front of it, without the contribution of the
     /// face itself.
     pub(super) behind: i32,
-    /// The number of other faces of the same plane that cover the cell.
+    /// The number of other faces of the same plane that cover the triangular cell.
     pub(super) covers: u32,
     /// Whether a covering face has a lower joint number than the face.
     pub(super) is_of_earlier: bool,
@@ -73,34 +73,35 @@ impl<'a> Arrangement<'a> {
     ///
     /// # Errors
     /// `Defect` if a segment leaves the face.
-    pub(super) fn new(face: Face<'a>, shared: &Shared) -> Result<Self, Declined> {
+    pub(super) fn new(face: Face<'a>, shared: &SharedGeometry) -> Result<Self, Declined> {
         let mut made = Self {
             division: divided(&face, shared)?,
             face,
             cells: Vec::new(),
         };
-        made.cells = made.numbered();
+        made.cells = made.numbers_in_front();
         made.cover(shared);
         Ok(made)
     }
 
     /// Returns the winding number in front of the face at one of its corners, minus the number in front of
-    /// its first cell.
+    /// the face's first triangular cell.
     pub(super) fn at_corner(&self, corner: u32) -> i32 {
         self.cells[self.division.cell_at_corner(corner as usize)].in_front
     }
 
-    /// Returns a cell for which `count` finds a winding number at a point inside it, with this number; `None`
-    /// if there is none.
-    pub(super) fn counted(
+    /// Returns a triangular cell of the divided face for which `count` finds a winding number at a point
+    /// inside the cell, with this number; `None` if there is none.
+    pub(super) fn count_in_cell(
         &mut self,
         count: impl FnMut(&Probe) -> Option<i32>,
     ) -> Option<(usize, i32)> {
-        counted(self.division.triangulation(), self.face.plane, count)
+        cell_with_number(self.division.triangulation(), self.face.plane, count)
     }
 
-    /// Returns for each cell the winding number in front of it, relative to the first cell.
-    fn numbered(&self) -> Vec<CellNumbers> {
+    /// Returns for each triangular cell of the divided face the winding number in front of it, relative to
+    /// the first cell.
+    fn numbers_in_front(&self) -> Vec<CellNumbers> {
         let numbers = self
             .division
             .spread(0, |here, cell, edge| here - self.change(cell, edge));
@@ -111,8 +112,8 @@ impl<'a> Arrangement<'a> {
         numbers.into_iter().map(cell).collect()
     }
 
-    /// Returns the winding number in front of a cell minus the number in front of its neighbour across an
-    /// edge: the left of a segment is behind the other face, where the number is larger.
+    /// Returns the winding number in front of a triangular cell of the face minus the number in front of its
+    /// neighbour across an edge: the left of a segment is behind the other face, where the number is larger.
     fn change(&self, cell: usize, edge: usize) -> i32 {
         let change = |(segment, is_along): (usize, bool)| match self.face.segments[segment].line {
             Line::Directed | Line::Touching { in_front: true, .. } => {
@@ -127,9 +128,9 @@ impl<'a> Arrangement<'a> {
         self.division.along_edge(cell, edge).map(change).sum()
     }
 
-    /// Records which cells are covered by other faces of the same plane, and how these change the number
-    /// behind.
-    fn cover(&mut self, shared: &Shared) {
+    /// Records which triangular cells of the face are covered by other faces of the same plane, and how these
+    /// change the number behind.
+    fn cover(&mut self, shared: &SharedGeometry) {
         let axis = self.face.plane.main_axis();
         let is_up = self.face.plane.normal()[axis] > 0;
         for Cover { other, .. } in self.face.covers {
@@ -153,15 +154,16 @@ impl<'a> Arrangement<'a> {
         }
     }
 
-    /// Returns the outline of the cells for which `holds` is true; collinear consecutive edges are merged.
-    pub(super) fn outline(&mut self, holds: impl Fn(&CellNumbers) -> bool) -> Vec<BareEdge> {
-        let holds: Vec<bool> = self.cells.iter().map(holds).collect();
-        self.division.outline(&holds)
+    /// Returns the outline of the face's triangular cells for which `is_kept` is true; collinear consecutive
+    /// edges are merged.
+    pub(super) fn outline(&mut self, is_kept: impl Fn(&CellNumbers) -> bool) -> Vec<BareEdge> {
+        let is_kept: Vec<bool> = self.cells.iter().map(is_kept).collect();
+        self.division.outline(&is_kept)
     }
 }
 
 /// Divides a face along its segments.
-fn divided(face: &Face, shared: &Shared) -> Result<Division, Defect> {
+fn divided(face: &Face, shared: &SharedGeometry) -> Result<Division, Defect> {
     let ring = Arc::new(Ring::from_slice(&face.corners));
     let corner = |(i, at): (u32, &Lattice)| {
         let side = Carrier::Edge(LatticeEdge::of_ring(&ring, i));
@@ -181,19 +183,20 @@ fn divided(face: &Face, shared: &Shared) -> Result<Division, Defect> {
 
 /// Returns the winding number that `count` finds at a point inside a face; `None` if the face is too thin for
 /// such a point.
-pub(super) fn counted_in_face(
+pub(super) fn count_in_face(
     corners: &[Lattice; 3],
     plane: &Arc<Plane>,
     count: impl FnMut(&Probe) -> Option<i32>,
 ) -> Option<i32> {
     let corners = corners.map(|c| Arc::new(Vertex::lattice(c)));
     let mut face = Triangulation::new(corners.into_iter(), axes(plane));
-    counted(&mut face, plane, count).map(|(_, number)| number)
+    cell_with_number(&mut face, plane, count).map(|(_, number)| number)
 }
 
-/// Returns a cell for which `count` finds a winding number at a point inside it, with this number. Tries the
-/// widest cells first, and several points of each, because another surface may touch the cell at a point.
-fn counted(
+/// Returns a triangular cell of a face for which `count` finds a winding number at a point inside the cell,
+/// with this number. Tries the widest cells first, and several points of each, because another surface may
+/// touch the cell at a point.
+fn cell_with_number(
     cells: &mut Triangulation,
     plane: &Arc<Plane>,
     mut count: impl FnMut(&Probe) -> Option<i32>,
@@ -210,15 +213,15 @@ fn counted(
         .into_iter()
         .flat_map(|cell| WEIGHTS.map(|w| (cell, w)));
     points.into_iter().find_map(|(cell, weights)| {
-        let probe = Probe::above(cells.mean(cell, weights), plane)?;
-        let is_inside = cells.holds(cell, Arc::clone(&probe.point));
+        let probe = Probe::at_coordinates(cells.mean(cell, weights), plane)?;
+        let is_inside = cells.contains(cell, Arc::clone(&probe.point));
         let number = if is_inside { count(&probe) } else { None };
         Some((cell as usize, number?))
     })
 }
 
 /// Returns a plane that cuts a face along a segment.
-fn cut(segment: &Segment, face: &Face, shared: &Shared) -> Arc<Plane> {
+fn cut(segment: &Segment, face: &Face, shared: &SharedGeometry) -> Arc<Plane> {
     match segment.line {
         Line::Directed | Line::Touching { .. } => Arc::clone(&shared.planes[&segment.other]),
         Line::Edge(edge) => {
@@ -257,9 +260,9 @@ fn directed(
 }
 
 /// The numbers in a face's triangulation of the points in which faces meet, by the index of the point.
-struct Places(SmallVec<[(u32, u32); 16]>);
+struct PointNumbers(SmallVec<[(u32, u32); 16]>);
 
-impl Places {
+impl PointNumbers {
     fn of(&self, point: u32) -> u32 {
         let at = self.0.binary_search_by_key(&point, |p| p.0);
         at.map_or(0, |i| self.0[i].1)
@@ -267,23 +270,27 @@ impl Places {
 }
 
 /// Inserts the ends of a face's segments into its triangulation, and returns their numbers there.
-fn insert(division: &mut Division, face: &Face, shared: &Shared) -> Result<Places, Defect> {
+fn insert(
+    division: &mut Division,
+    face: &Face,
+    shared: &SharedGeometry,
+) -> Result<PointNumbers, Defect> {
     let mut points: SmallVec<[u32; 16]> = face.segments.iter().flat_map(|s| s.ends).collect();
     points.sort_unstable();
     points.dedup();
     let end = |p: &u32| {
-        let spot = face.spot(&shared.points[*p as usize]);
-        (&shared.vertices[*p as usize], spot)
+        let position = face.position_of(&shared.points[*p as usize]);
+        (&shared.vertices[*p as usize], position)
     };
     let ends: SmallVec<[_; 16]> = points.iter().map(end).collect();
     let places = division.insert(&ends)?;
-    Ok(Places(points.into_iter().zip(places).collect()))
+    Ok(PointNumbers(points.into_iter().zip(places).collect()))
 }
 
 impl Face<'_> {
     /// Returns whether a point is a corner of the face, lies on one of its sides, or is not known to lie on
     /// its border, as its name tells.
-    fn spot(&self, point: &Point) -> Spot {
+    fn position_of(&self, point: &MeetingPoint) -> PositionInPolygon {
         let side = |(operand, ends): &(usize, [VertexId; 2])| {
             let is_it = |i: &usize| {
                 let [a, b] = [self.vertices[*i], self.vertices[(i + 1) % 3]];
@@ -292,13 +299,13 @@ impl Face<'_> {
             (0..3).find(is_it).filter(|_| *operand == self.operand)
         };
         let side = match point {
-            Point::Corner(at) => {
+            MeetingPoint::Corner(at) => {
                 let corner = self.corners.iter().position(|c| c == at);
-                return corner.map_or(Spot::Inside, Spot::Corner);
+                return corner.map_or(PositionInPolygon::Inside, PositionInPolygon::Corner);
             }
-            Point::Through(edge, _) => side(edge),
-            Point::Edges(edges) => edges.iter().find_map(side),
+            MeetingPoint::Through(edge, _) => side(edge),
+            MeetingPoint::Edges(edges) => edges.iter().find_map(side),
         };
-        side.map_or(Spot::Inside, Spot::Side)
+        side.map_or(PositionInPolygon::Inside, PositionInPolygon::Side)
     }
 }

@@ -10,14 +10,14 @@ use crate::merge::rule::Rule;
 #[derive(Debug)]
 pub(super) enum KeepRule {
     /// For two operands: a face of one stays by the winding numbers of the other.
-    Pair(Pair),
+    Pair(PairTable),
     /// For a mesh united with itself: a face stays by the mesh's own winding numbers.
     Single(Rule),
 }
 
 /// A table of which faces of two operands stay, and in which orientation.
 #[derive(Debug)]
-pub(super) struct Pair {
+pub(super) struct PairTable {
     /// The orientation in which a face stays, by its operand, by whether its front is inside the other
     /// operand, and by whether its back is. Of coinciding faces of both operands, only one stays.
     of: [[[Option<Orientation>; 2]; 2]; 2],
@@ -25,7 +25,7 @@ pub(super) struct Pair {
     outside: bool,
 }
 
-impl Pair {
+impl PairTable {
     fn of(expression: &Expression) -> Self {
         let mut scratch = Vec::new();
         let mut value = |inside: [bool; 2]| expression.value(|k| inside[k as usize], &mut scratch);
@@ -39,7 +39,7 @@ impl Pair {
             let word = |inside: [bool; 2], k: u32| u64::from(inside[k as usize]);
             let owners = expression.owners(|k| word(behind, k), |k| word(in_front, k));
             let owns = owners.iter().any(|(k, _)| *k as usize == operand);
-            between(value(in_front), value(behind)).filter(|_| owns)
+            orientation_between(value(in_front), value(behind)).filter(|_| owns)
         };
         let of = [0, 1].map(|operand| {
             [false, true].map(|front| [false, true].map(|behind| stays(operand, front, behind)))
@@ -58,14 +58,14 @@ impl Pair {
 
 /// Returns the orientation in which a face bounds the result, given whether the result is inside in front of
 /// the face and behind it; `None` if both are equal.
-fn between(in_front: bool, behind: bool) -> Option<Orientation> {
+fn orientation_between(in_front: bool, behind: bool) -> Option<Orientation> {
     (behind != in_front).then(|| Orientation::turned_around(in_front))
 }
 
 impl KeepRule {
     /// Makes the rule for an expression over two operands.
     pub(super) fn of(expression: &Expression) -> Self {
-        Self::Pair(Pair::of(expression))
+        Self::Pair(PairTable::of(expression))
     }
 
     /// Returns whether points far outside all meshes are inside the result.
@@ -79,7 +79,7 @@ impl KeepRule {
     /// Returns true if it depends on winding numbers whether a face of this operand stays.
     pub(super) fn is_divided(&self, operand: usize) -> bool {
         match self {
-            Self::Pair(Pair { of, .. }) => {
+            Self::Pair(PairTable { of, .. }) => {
                 let first = of[operand][0][0];
                 of[operand].as_flattened().iter().any(|k| *k != first)
             }
@@ -99,7 +99,10 @@ impl KeepRule {
     ) -> Result<Option<Orientation>, Declined> {
         match self {
             Self::Pair(pair) => pair.at(operand, [in_front; 2]),
-            Self::Single(rule) => Ok(between(rule.inside(in_front), rule.inside(in_front + 1))),
+            Self::Single(rule) => Ok(orientation_between(
+                rule.inside(in_front),
+                rule.inside(in_front + 1),
+            )),
         }
     }
 
@@ -120,7 +123,7 @@ impl KeepRule {
             Self::Pair(_) if cell.covers > 1 => Err(Declined::Overlap(1 - operand)),
             Self::Pair(pair) => pair.at(operand, [in_front, behind]),
             Self::Single(rule) => {
-                let stays = between(rule.inside(in_front), rule.inside(behind + 1));
+                let stays = orientation_between(rule.inside(in_front), rule.inside(behind + 1));
                 Ok(stays.filter(|_| !cell.is_of_earlier))
             }
         }

@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;
 
 use super::candidates::Operand;
-use super::faces::{counted_in_face, Arrangement};
+use super::faces::{count_in_face, Arrangement};
 use super::windings::{Probe, Windings};
 use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;
@@ -58,7 +58,7 @@ impl<'a> Labels<'a> {
     /// Returns the root of a vertex's class, and the winding number at the vertex minus the number at the
     /// root.
     fn root(&mut self, vertex: VertexId) -> (usize, i32) {
-        let (mut at, mut sum) = (vertex.place(), 0);
+        let (mut at, mut sum) = (vertex.index(), 0);
         loop {
             let parent = self.parents[at] as usize;
             if parent == at {
@@ -108,7 +108,7 @@ impl<'a> Labels<'a> {
 
     /// Returns true if a vertex lies on another face, where the winding number is undefined.
     pub(super) fn is_touching(&self, vertex: VertexId) -> bool {
-        self.touching.get(vertex.place()).is_some_and(|t| *t)
+        self.touching.get(vertex.index()).is_some_and(|t| *t)
     }
 
     /// Records the differences between the winding numbers at the corners of a divided face.
@@ -128,27 +128,27 @@ impl<'a> Labels<'a> {
     /// # Errors
     /// `Thin` if all corners lie on other faces, and all cells are too thin to count the number at a point
     /// inside.
-    pub(super) fn in_front_of(&mut self, face: &mut Arrangement) -> Result<i32, Declined> {
+    pub(super) fn number_in_front(&mut self, face: &mut Arrangement) -> Result<i32, Declined> {
         let mut corners = (0..).zip(face.face.vertices);
         match corners.find(|(_, v)| !self.is_touching(*v)) {
-            Some((i, vertex)) => Ok(self.at(vertex) - face.at_corner(i)),
-            None => self.counted(face),
+            Some((i, vertex)) => Ok(self.number_at(vertex) - face.at_corner(i)),
+            None => self.count_in_front(face),
         }
     }
 
     /// Returns the winding number in front of the first cell of a divided face, counted along a ray.
-    fn counted(&mut self, face: &mut Arrangement) -> Result<i32, Declined> {
+    fn count_in_front(&mut self, face: &mut Arrangement) -> Result<i32, Declined> {
         let plane = face.face.plane;
-        let count = |probe: &Probe| self.windings.in_front(plane, probe);
-        let (cell, number) = face.counted(count).ok_or(Declined::Thin)?;
+        let count = |probe: &Probe| self.windings.winding_number_in_front(plane, probe);
+        let (cell, number) = face.count_in_cell(count).ok_or(Declined::Thin)?;
         Ok(number - face.cells[cell].in_front)
     }
 
     /// Returns the winding number at the corners of an undivided face; `None` if all corners lie on other
     /// faces.
-    pub(super) fn at_corners(&mut self, corners: [VertexId; 3]) -> Option<i32> {
+    pub(super) fn number_at_corners(&mut self, corners: [VertexId; 3]) -> Option<i32> {
         let free = corners.into_iter().find(|v| !self.is_touching(*v));
-        free.map(|vertex| self.at(vertex))
+        free.map(|vertex| self.number_at(vertex))
     }
 
     /// Joins the classes of two vertices, each given by its root and the difference to it; `more` is the
@@ -178,10 +178,10 @@ impl<'a> Labels<'a> {
     }
 
     /// Records that the winding number is zero at vertices outside the other operand's box.
-    pub(super) fn note_beyond(&mut self) {
-        for (vertex, place) in VertexId::all().zip(&self.of.mesh.vertices) {
+    pub(super) fn record_zero_outside(&mut self) {
+        for (vertex, point) in VertexId::all().zip(&self.of.mesh.vertices) {
             poll();
-            if self.windings.are_zero_at(place) && !self.is_touching(vertex) {
+            if self.windings.is_outside_bounds(point) && !self.is_touching(vertex) {
                 let (root, above) = self.root(vertex);
                 self.known[root].get_or_insert(-above);
             }
@@ -189,12 +189,14 @@ impl<'a> Labels<'a> {
     }
 
     /// Returns the winding number at a vertex; counts it if the number of no vertex of its class is known.
-    pub(super) fn at(&mut self, vertex: VertexId) -> i32 {
+    pub(super) fn number_at(&mut self, vertex: VertexId) -> i32 {
         let (root, above) = self.root(vertex);
         if let Some(known) = self.known[root] {
             return known + above;
         }
-        let number = self.windings.around(&self.of.mesh.vertices[vertex.place()]);
+        let number = self
+            .windings
+            .winding_number_at(&self.of.mesh.vertices[vertex.index()]);
         self.known[root] = Some(number - above);
         number
     }
@@ -203,20 +205,22 @@ impl<'a> Labels<'a> {
     ///
     /// # Errors
     /// `Thin` if the widest face of a class is too thin for this.
-    pub(super) fn note_widest<'b>(
+    pub(super) fn count_at_widest_faces<'b>(
         &mut self,
         arranged: &mut [Arrangement],
         others: impl Iterator<Item = &'b FaceId>,
     ) -> Result<(), Declined> {
-        let mut widest: HashMap<usize, (f64, Widest)> = HashMap::default();
+        let mut widest: HashMap<usize, (f64, WidestFace)> = HashMap::default();
         let divided = arranged.iter().map(|a| a.face.vertices);
-        let divided = divided.enumerate().map(|(i, v)| (Widest::Divided(i), v));
+        let divided = divided
+            .enumerate()
+            .map(|(i, v)| (WidestFace::Divided(i), v));
         let mesh = self.of.mesh;
-        let whole = others.map(|id| (Widest::Whole(*id), mesh.vertices_of(*id)));
+        let whole = others.map(|id| (WidestFace::Whole(*id), mesh.vertices_of(*id)));
         for (face, corners) in whole.chain(divided) {
             poll();
             if let Some(free) = corners.into_iter().find(|v| !self.is_touching(*v)) {
-                let width = width(&corners.map(|v| mesh.vertices[v.place()].map(as_double)));
+                let width = width(&corners.map(|v| mesh.vertices[v.index()].map(as_double)));
                 let (root, _) = self.root(free);
                 let known = widest.entry(root).or_insert((width, face));
                 if width > known.0 {
@@ -226,13 +230,16 @@ impl<'a> Labels<'a> {
         }
         for (root, (_, face)) in widest {
             let (corner, number) = match face {
-                Widest::Whole(id) => (mesh.vertices_of(id), self.in_front_of_whole(id)?),
-                Widest::Divided(i) => (arranged[i].face.vertices, self.counted(&mut arranged[i])?),
+                WidestFace::Whole(id) => (mesh.vertices_of(id), self.number_in_front_of_whole(id)?),
+                WidestFace::Divided(i) => (
+                    arranged[i].face.vertices,
+                    self.count_in_front(&mut arranged[i])?,
+                ),
             };
             let free = (0..3).find(|i| !self.is_touching(corner[*i])).unwrap_or(0);
             let more = match face {
-                Widest::Whole(_) => 0,
-                Widest::Divided(i) => arranged[i].at_corner(as_number(free)),
+                WidestFace::Whole(_) => 0,
+                WidestFace::Divided(i) => arranged[i].at_corner(as_number(free)),
             };
             let (_, above) = self.root(corner[free]);
             self.known[root] = Some(number + more - above);
@@ -241,16 +248,16 @@ impl<'a> Labels<'a> {
     }
 
     /// Returns the winding number in front of an undivided face, counted along a ray.
-    fn in_front_of_whole(&mut self, face: FaceId) -> Result<i32, Declined> {
+    fn number_in_front_of_whole(&mut self, face: FaceId) -> Result<i32, Declined> {
         let plane = self.of.source.plane(face);
-        let count = |probe: &Probe| self.windings.in_front(&plane, probe);
-        counted_in_face(&self.of.mesh.corners(face), &plane, count).ok_or(Declined::Thin)
+        let count = |probe: &Probe| self.windings.winding_number_in_front(&plane, probe);
+        count_in_face(&self.of.mesh.corners(face), &plane, count).ok_or(Declined::Thin)
     }
 }
 
 /// The widest face of a class of vertices: an undivided face, or the index of a divided one.
 #[derive(Clone, Copy)]
-enum Widest {
+enum WidestFace {
     Whole(FaceId),
     Divided(usize),
 }

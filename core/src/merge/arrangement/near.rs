@@ -10,7 +10,7 @@ use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::Point;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
-use crate::merge::pairs::{pairs_of_many, shift_of, Boxed, Part, Swept};
+use crate::merge::pairs::{pairs, shift_of, BoundedElement, BoxedElement, ElementsInBox};
 use crate::mesh::faces::Faces;
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::Source;
@@ -27,7 +27,7 @@ const PAIRS_PER_BATCH: usize = 8 * CHUNK;
 const PAIRS_IN_FIRST_BATCH: usize = 256;
 
 /// A mesh prepared for quick tests of pairs of its faces.
-pub(super) struct View<'a> {
+pub(super) struct PreparedMesh<'a> {
     mesh: &'a TriangleMesh,
     /// For each vertex, whether surfaces may cross there although no two faces cross.
     irregular: &'a [bool],
@@ -50,7 +50,7 @@ pub(super) enum Pairs {
     Overlap,
 }
 
-impl<'a> View<'a> {
+impl<'a> PreparedMesh<'a> {
     /// Prepares a mesh; `None` if the source is not a mesh, or has no vertices.
     pub(super) fn new(source: &'a Source, irregular: &'a [bool]) -> Option<Self> {
         let mesh = source.mesh()?;
@@ -78,11 +78,11 @@ impl<'a> View<'a> {
 
     fn search(&self, faces: &[FaceId], until_overlap: bool) -> Pairs {
         let mut sorted = faces.to_vec();
-        sorted.sort_unstable_by_key(|f| (self.party(*f), *f));
+        sorted.sort_unstable_by_key(|f| (self.group_of(*f), *f));
         let boxed = |(number, face): (usize, &FaceId)| {
             let [low, high] = self.box_of(*face);
-            let party = self.party(*face);
-            Boxed::new(party, as_number(number), [&low, &high], self.shift)
+            let group = self.group_of(*face);
+            BoxedElement::new(group, as_number(number), [&low, &high], self.shift)
         };
         let boxes = sorted.iter().enumerate().map(boxed).collect();
         let mut search = Search {
@@ -98,9 +98,9 @@ impl<'a> View<'a> {
             overlap: false,
         };
         let face = |number: u32| sorted[number as usize];
-        let swept = |number: u32| self.swept(face(number));
+        let bounded = |number: u32| self.bounded(face(number));
         let add = |a: u32, b: u32| search.add([face(a), face(b)]);
-        let all = pairs_of_many(Part::of(boxes, self.shift), swept, add);
+        let all = pairs(ElementsInBox::of(boxes, self.shift), bounded, add);
         if all.and_then(|()| search.test_waiting()).is_none() {
             return if search.overlap {
                 Pairs::Overlap
@@ -114,18 +114,18 @@ impl<'a> View<'a> {
     }
 }
 
-impl View<'_> {
+impl PreparedMesh<'_> {
     /// Prepares a face for quick tests.
     fn of(&self, face: FaceId) -> PreparedFace {
-        let terrain = self.terrains[face.place()];
+        let terrain = self.terrains[face.index()];
         PreparedFace::at(self.mesh, face, self.irregular, terrain)
     }
 
     /// Returns a number that is equal for two faces only if they belong to one terrain, so that they need not
     /// be compared.
-    fn party(&self, face: FaceId) -> usize {
-        match self.terrains[face.place()] {
-            NONE => self.mesh.faces.len() + face.place(),
+    fn group_of(&self, face: FaceId) -> usize {
+        match self.terrains[face.index()] {
+            NONE => self.mesh.faces.len() + face.index(),
             terrain => terrain as usize,
         }
     }
@@ -136,11 +136,11 @@ impl View<'_> {
         [low, high].map(|end| each_axis(|i| end[i] - self.origin[i]))
     }
 
-    fn swept(&self, face: FaceId) -> Swept {
+    fn bounded(&self, face: FaceId) -> BoundedElement {
         let [low, high] = self.box_of(face);
         let corners = self.mesh.corners(face);
-        Swept {
-            operand: self.party(face),
+        BoundedElement {
+            operand: self.group_of(face),
             low,
             high,
             corners: Some(corners.map(|c| each_axis(|i| as_double(c[i] - self.origin[i])))),
@@ -150,7 +150,7 @@ impl View<'_> {
 
 /// A running search for the pairs of faces that may overlap.
 struct Search<'a> {
-    view: &'a View<'a>,
+    view: &'a PreparedMesh<'a>,
     until_overlap: bool,
     /// The number of pairs that are tested together; small at first if the search may end early.
     batch: usize,
@@ -176,7 +176,7 @@ impl Search<'_> {
     /// Tests the waiting pairs of faces; `None` if the search ends because two faces overlap or pairs are too
     /// many.
     fn test_waiting(&mut self) -> Option<()> {
-        let found = each_chunk(&self.waiting, |_, pairs| unclear(self.view, pairs));
+        let found = each_chunk(&self.waiting, |_, pairs| pairs_not_clear(self.view, pairs));
         self.waiting.clear();
         let found: Vec<[FaceId; 2]> = found.into_iter().flatten().collect();
         let overlap = |[a, b]: &[FaceId; 2]| self.view.of(*a).overlaps(&self.view.of(*b));
@@ -206,10 +206,10 @@ fn all_terrains(source: &Source, mesh: &TriangleMesh) -> Vec<u32> {
 }
 
 /// Returns the pairs of faces that a quick test does not prove to share only corners and edges.
-fn unclear(view: &View, pairs: &[[FaceId; 2]]) -> Vec<[FaceId; 2]> {
+fn pairs_not_clear(view: &PreparedMesh, pairs: &[[FaceId; 2]]) -> Vec<[FaceId; 2]> {
     let mut prepared = PreparedFaces {
         view,
-        places: HashMap::default(),
+        indices: HashMap::default(),
         faces: Vec::new(),
     };
     let is_unclear = |pair: &&[FaceId; 2]| {
@@ -222,15 +222,15 @@ fn unclear(view: &View, pairs: &[[FaceId; 2]]) -> Vec<[FaceId; 2]> {
 
 /// Faces already prepared for quick tests, so that a face of several pairs is prepared once.
 struct PreparedFaces<'a> {
-    view: &'a View<'a>,
-    places: HashMap<FaceId, usize>,
+    view: &'a PreparedMesh<'a>,
+    indices: HashMap<FaceId, usize>,
     faces: Vec<PreparedFace>,
 }
 
 impl PreparedFaces<'_> {
     /// Returns the index of a face in `faces`, and prepares it first if it is new.
     fn at(&mut self, face: FaceId) -> usize {
-        *self.places.entry(face).or_insert_with(|| {
+        *self.indices.entry(face).or_insert_with(|| {
             self.faces.push(self.view.of(face));
             self.faces.len() - 1
         })
@@ -249,7 +249,7 @@ mod tests {
         let source = solid.sources().get(Slot(0));
         let irregular = vec![false; source.mesh()?.vertices.len()];
         let faces: Vec<FaceId> = source.mesh()?.face_ids().collect();
-        let view = View::new(source, &irregular)?;
+        let view = PreparedMesh::new(source, &irregular)?;
         let overlap = !matches!(view.pairs_unless_overlapping(&faces), Pairs::Few(_));
         match view.pairs(&faces) {
             Pairs::Few(pairs) => {

@@ -1,7 +1,7 @@
 //! A coarse grid that marks the cells into which a mesh's faces reach: faces of two meshes can meet only in
 //! cells that both meshes mark.
 
-use super::boxes::Bounds;
+use super::boxes::RoundedBox;
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::{Point, Triangle};
 use crate::interrupt::poll;
@@ -47,7 +47,7 @@ impl Occupancy {
     /// meshes, which the work must suit.
     pub(super) fn of(
         window: &[Point; 2],
-        boxes: &[Bounds],
+        boxes: &[RoundedBox],
         triangle: impl Fn(usize) -> Triangle,
         faces: usize,
     ) -> Self {
@@ -99,7 +99,7 @@ impl Occupancy {
             for j in y[0]..=y[1] {
                 let met = plane
                     .as_ref()
-                    .map_or(Some(x), |plane| self.met(plane, x, [j, k]));
+                    .map_or(Some(x), |plane| self.cells_met_in_row(plane, x, [j, k]));
                 if let Some(met) = met {
                     self.rows[self.cells * k + j] |= mask(met);
                 }
@@ -110,7 +110,7 @@ impl Occupancy {
     /// Returns the first and the last cell of a row that a plane may meet, between `first` and `last`; `None`
     /// if it meets none. The plane meets a cell only if the cell's centre is no farther from it than a corner
     /// is from the centre, along the normal.
-    fn met(
+    fn cells_met_in_row(
         &self,
         plane: &Plane,
         [first, last]: [usize; 2],
@@ -139,7 +139,7 @@ impl Occupancy {
     }
 
     /// Returns true if a box may reach into a marked cell.
-    pub(super) fn meets(&self, bounds: &Bounds) -> bool {
+    pub(super) fn meets(&self, bounds: &RoundedBox) -> bool {
         if self.rows.is_empty() {
             return true;
         }
@@ -156,7 +156,7 @@ impl Occupancy {
     ///
     /// All numbers are mapped to cells by the same rounding, which keeps their order; so boxes that meet
     /// share a cell.
-    fn cells(&self, bounds: &Bounds) -> Cells {
+    fn cells(&self, bounds: &RoundedBox) -> Cells {
         let cell = |x: f32, i: usize| self.clamped((f64::from(x) - self.low[i]) * self.scale[i]);
         each_axis(|i| [cell(bounds.low[i], i), cell(bounds.high[i], i)])
     }
@@ -217,7 +217,7 @@ mod tests {
     fn faces_that_meet_share_a_cell() {
         for k in 0..3000 {
             let [large, small] = [triangle(k, 1.0), triangle(k + 5000, 0.02)];
-            let bounds = Bounds::around(&large);
+            let bounds = RoundedBox::around(&large);
             let cells = Occupancy::of(&WINDOW, &[bounds], |_| large, 10_000);
             // Corners of the triangle, and points inside it, by their barycentric coordinates.
             for [s, t] in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.3, 0.3], [0.1, 0.7]] {
@@ -225,11 +225,11 @@ mod tests {
                 let p = each_axis(|i| a[i] + s * (b[i] - a[i]) + t * (c[i] - a[i]));
                 let inside = (0..3).all(|i| (WINDOW[0][i]..=WINDOW[1][i]).contains(&p[i]));
                 assert!(
-                    !inside || cells.meets(&Bounds::between(&p, &p)),
+                    !inside || cells.meets(&RoundedBox::between(&p, &p)),
                     "{k} {p:?}"
                 );
             }
-            let bounds = Bounds::around(&small);
+            let bounds = RoundedBox::around(&small);
             let far = Occupancy::of(&WINDOW, &[bounds], |_| small, 10_000);
             assert!(far.meets(&bounds));
         }
@@ -238,7 +238,12 @@ mod tests {
     #[test]
     fn large_faces_reach_into_few_cells() {
         let slanted = [[0.0, 0.0, 0.0], [100.0, 0.0, 1e6], [0.0, 7.0, 1e6]];
-        let cells = Occupancy::of(&WINDOW, &[Bounds::around(&slanted)], |_| slanted, 10_000);
+        let cells = Occupancy::of(
+            &WINDOW,
+            &[RoundedBox::around(&slanted)],
+            |_| slanted,
+            10_000,
+        );
         let count: u32 = cells.rows.iter().map(|row| row.count_ones()).sum();
         assert!(count < 6 * 64 * 64, "{count}");
     }

@@ -1,6 +1,6 @@
 //! Evaluates an expression over two meshes as they were imported, by comparing their faces.
 
-use super::candidates::{Candidates, Operand, Within};
+use super::candidates::{Candidates, FacesInWindow, Operand};
 use super::keep_rule::KeepRule;
 use super::occupancy::Occupancy;
 use super::sample::sample;
@@ -15,7 +15,7 @@ use crate::geometry::plane::Lattice;
 use crate::merge::expression::Expression;
 use crate::merge::lists::list::Sources;
 use crate::merge::profile::{Declined, Profile};
-use crate::mesh::tasks::{both, Worth};
+use crate::mesh::tasks::{both, WorkSize};
 use crate::tree::node::{Branch, Node};
 use crate::tree::solid::Solid;
 
@@ -41,17 +41,17 @@ pub fn arranged(
     let operands = operands(expression, solids, sources).ok_or(Declined::Operands)?;
     let window = window(operands.each_ref().map(|o| o.bounds)).ok_or(Declined::Apart)?;
     let faces: usize = operands.iter().map(|o| o.mesh.faces.len()).sum();
-    let worth = Worth::pool_if(faces >= MIN_FACES_FOR_POOL);
-    let count = |found: &Result<Near, Declined>| found.as_ref().map_or(0, Near::len);
-    let near = profile.timed("candidates", || near(&operands, &window, worth), count)?;
-    let Near {
+    let work_size = WorkSize::pool_if(faces >= MIN_FACES_FOR_POOL);
+    let count = |found: &Result<NearFaces, Declined>| found.as_ref().map_or(0, NearFaces::len);
+    let near = profile.timed("candidates", || near(&operands, &window, work_size), count)?;
+    let NearFaces {
         within,
         mut candidates,
     } = near;
     let faces = candidates.each_mut().map(|c| std::mem::take(&mut c.faces));
     let surfaces = Surfaces::new(operands.into(), faces.into());
     let count = |found: &Result<Contacts, Declined>| found.as_ref().map_or(0, Contacts::len);
-    let search = || contacts_of(&surfaces, &candidates, worth);
+    let search = || contacts_of(&surfaces, &candidates, work_size);
     let found = profile.timed("contacts", search, count)?;
     let compared = within.iter().map(|w| w.faces.len()).sum();
     let scene = Scene {
@@ -59,7 +59,7 @@ pub fn arranged(
         near: within.map(|w| w.faces).into(),
         cell: solids[0].root().cell.join(&solids[1].root().cell),
         kept: KeepRule::of(expression),
-        worth,
+        work_size,
     };
     let root = profile.timed("faces", || scene.root(&found), leaf_len)?;
     Ok(Arranged { root, compared })
@@ -75,34 +75,38 @@ pub(super) fn leaf_len(root: &Result<Branch, Declined>) -> usize {
 
 /// For each mesh, the faces in the window (the intersection of both bounding boxes), and the candidates:
 /// faces that may meet faces of the other mesh.
-struct Near {
-    within: [Within; 2],
+struct NearFaces {
+    within: [FacesInWindow; 2],
     candidates: [Candidates; 2],
 }
 
-impl Near {
+impl NearFaces {
     fn len(&self) -> usize {
         self.candidates.iter().map(|c| c.faces.len()).sum()
     }
 }
 
-fn near(operands: &[Operand; 2], window: &[Point; 2], worth: Worth) -> Result<Near, Declined> {
-    let within = for_both(worth, |k| operands[k].within(window));
+fn near(
+    operands: &[Operand; 2],
+    window: &[Point; 2],
+    work_size: WorkSize,
+) -> Result<NearFaces, Declined> {
+    let within = for_both_operands(work_size, |k| operands[k].faces_in_window(window));
     sample(operands, &within)?;
     let compared = within.iter().map(|w| w.faces.len()).sum();
-    let occupied = for_both(worth, |k| {
+    let occupied = for_both_operands(work_size, |k| {
         let triangle = |i: usize| operands[k].triangle(within[k].faces[i]);
         Occupancy::of(window, &within[k].boxes, triangle, compared)
     });
-    let candidates = for_both(worth, |k| {
+    let candidates = for_both_operands(work_size, |k| {
         operands[k].candidates(&within[k], &occupied[1 - k], &window[0])
     });
-    Ok(Near { within, candidates })
+    Ok(NearFaces { within, candidates })
 }
 
-/// Computes a value for operand 0 and one for operand 1, in parallel if `worth` says so.
-fn for_both<T: Send>(worth: Worth, value: impl Fn(usize) -> T + Sync) -> [T; 2] {
-    both(worth, || value(0), || value(1)).into()
+/// Computes a value for operand 0 and one for operand 1, in parallel if `work_size` says so.
+fn for_both_operands<T: Send>(work_size: WorkSize, value: impl Fn(usize) -> T + Sync) -> [T; 2] {
+    both(work_size, || value(0), || value(1)).into()
 }
 
 /// Returns the operands if they are two different meshes as they were imported, and the expression depends on

@@ -48,7 +48,7 @@ impl PreparedFace {
             vertices: mesh.vertices_of(face),
             low,
             high,
-            irregular: mesh.vertices_of(face).map(|v| irregular[v.place()]),
+            irregular: mesh.vertices_of(face).map(|v| irregular[v.index()]),
             normal,
             size,
             has_area: longest(&normal) > 16.0 * f64::EPSILON * size || !has_no_area(&corners),

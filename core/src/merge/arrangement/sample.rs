@@ -3,7 +3,7 @@
 //! Copies and revisions of a mesh touch it nearly everywhere, and in bundles of needles nearly all boxes
 //! meet. Without the sample the arrangement would detect this only after most of its work.
 
-use super::candidates::{Operand, Within};
+use super::candidates::{FacesInWindow, Operand};
 use super::contact::{contact, Contact};
 use crate::geometry::doubles::Facing;
 use crate::interrupt::spend;
@@ -23,7 +23,7 @@ const CROWDED_FROM: usize = 128;
 ///
 /// # Errors
 /// `AllOver` if a sampled face touches a face without crossing it, `Crowded` if too many boxes meet.
-pub(super) fn sample(operands: &[Operand; 2], within: &[Within; 2]) -> Result<(), Declined> {
+pub(super) fn sample(operands: &[Operand; 2], within: &[FacesInWindow; 2]) -> Result<(), Declined> {
     let [first, second] = within;
     if first.faces.len().min(second.faces.len()) < SAMPLED_FROM {
         return Ok(());

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::candidates::Operand;
-use super::faces::{Arrangement, CellNumbers, Face, Planes, Shared};
+use super::faces::{Arrangement, CellNumbers, Face, Planes, SharedGeometry};
 use super::keep_rule::KeepRule;
 use super::labels::Labels;
-use super::segments::{Contacts, Cover, Edge, Point as CommonPoint, Segment};
+use super::segments::{Contacts, Cover, Edge, MeetingPoint, Segment};
 use super::surfaces::Surfaces;
 use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
@@ -17,8 +17,8 @@ use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::merge::profile::Declined;
 use crate::mesh::handle::{FaceId, VertexId};
-use crate::mesh::tasks::{each, Worth};
-use crate::tree::node::{Branch, Deferred, Group, Node, Part, PartElement};
+use crate::mesh::tasks::{each, WorkSize};
+use crate::tree::node::{Branch, DeferredLeaf, FaceGroup, Node, Part, PartElement};
 
 /// The number of faces or points in a task for another thread.
 const ITEMS_PER_TASK: usize = 32;
@@ -32,10 +32,10 @@ pub(super) struct Scene<'a> {
     /// The cell of the resulting leaf.
     pub(super) cell: Cell,
     pub(super) kept: KeepRule,
-    pub(super) worth: Worth,
+    pub(super) work_size: WorkSize,
 }
 
-/// Whether a face is left out, whole or cut in the result.
+/// Whether a face is absent, whole or cut in the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
     Gone,
@@ -59,7 +59,7 @@ impl Fate {
 
 /// The parts of a divided face that bound the result: none or the whole face in one orientation, or a part in
 /// each orientation.
-enum Remainder {
+enum RemainingParts {
     Whole(Option<Orientation>),
     Parts([Option<PartElement>; 2]),
 }
@@ -72,13 +72,15 @@ impl<'a> Scene<'a> {
     /// The reason why the contacts do not determine the result.
     pub(super) fn root(&self, found: &Contacts) -> Result<Branch, Declined> {
         let shared = self.shared(found);
-        let mut leaf = Deferred {
+        let mut leaf = DeferredLeaf {
             corner: i32::from(self.kept.outside()),
-            worked: true,
-            ..Deferred::default()
+            by_kernel: true,
+            ..DeferredLeaf::default()
         };
         let operands = (0..self.surfaces.operands.len()).collect();
-        for left in each(self.worth, operands, |k| self.remainder(k, found, &shared)) {
+        for left in each(self.work_size, operands, |k| {
+            self.remaining_faces(k, found, &shared)
+        }) {
             let (groups, parts) = left?;
             leaf.groups.extend(groups);
             leaf.parts.extend(parts);
@@ -95,14 +97,14 @@ impl<'a> Scene<'a> {
     }
 
     /// Computes the exact points of all contacts, and the planes of the faces that meet others.
-    fn shared<'b>(&'b self, found: &'b Contacts) -> Shared<'b> {
+    fn shared<'b>(&'b self, found: &'b Contacts) -> SharedGeometry<'b> {
         let planes = self.planes(found);
         let blocks = found.points.chunks(ITEMS_PER_TASK).collect();
-        let vertices = each(self.worth, blocks, |block: &[CommonPoint]| {
-            let vertex = |point: &CommonPoint| Arc::new(self.vertex(point, &planes));
+        let vertices = each(self.work_size, blocks, |block: &[MeetingPoint]| {
+            let vertex = |point: &MeetingPoint| Arc::new(self.vertex(point, &planes));
             block.iter().map(vertex).collect::<Vec<_>>()
         });
-        Shared {
+        SharedGeometry {
             surfaces: &self.surfaces,
             points: &found.points,
             vertices: vertices.concat(),
@@ -114,7 +116,7 @@ impl<'a> Scene<'a> {
     fn planes(&self, found: &Contacts) -> Planes {
         let faces = self.arranged_faces(found);
         let planes = each(
-            self.worth,
+            self.work_size,
             faces.chunks(ITEMS_PER_TASK).collect(),
             |block: &[u32]| {
                 let planes = block
@@ -135,7 +137,7 @@ impl<'a> Scene<'a> {
         faces.dedup();
         let operands = 0..self.surfaces.operands.len();
         for k in operands.filter(|k| !found.touching[*k].is_empty()) {
-            let touches = |v: &VertexId| found.touching[k][v.place()];
+            let touches = |v: &VertexId| found.touching[k][v.index()];
             let of_operand = self.surfaces.of_operand(k);
             faces.extend(of_operand.filter(|f| self.surfaces.vertices(*f).iter().all(touches)));
         }
@@ -144,17 +146,17 @@ impl<'a> Scene<'a> {
         faces
     }
 
-    fn vertex(&self, point: &CommonPoint, planes: &Planes) -> Vertex {
+    fn vertex(&self, point: &MeetingPoint, planes: &Planes) -> Vertex {
         let edge = |(operand, ends): &Edge| {
-            let places = &self.surfaces.operands[*operand].mesh.vertices;
-            let [from, to] = ends.map(|v| places[v.place()]);
+            let points = &self.surfaces.operands[*operand].mesh.vertices;
+            let [from, to] = ends.map(|v| points[v.index()]);
             LatticeEdge::new(from, to)
         };
         match point {
-            CommonPoint::Corner(place) => Vertex::lattice(*place),
-            CommonPoint::Through(through, face) => Vertex::on_edge(&edge(through), &planes[face])
+            MeetingPoint::Corner(point) => Vertex::lattice(*point),
+            MeetingPoint::Through(through, face) => Vertex::on_edge(&edge(through), &planes[face])
                 .expect("an edge with ends on both sides of a plane meets it"),
-            CommonPoint::Edges([first, second]) => crossing(&edge(first), &edge(second)),
+            MeetingPoint::Edges([first, second]) => crossing(&edge(first), &edge(second)),
         }
     }
 
@@ -163,7 +165,7 @@ impl<'a> Scene<'a> {
         &self,
         operand: usize,
         found: &'b Contacts,
-        shared: &'b Shared,
+        shared: &'b SharedGeometry,
     ) -> Result<Vec<Arrangement<'b>>, Declined> {
         let mut faces: Vec<u32> = shared.planes.keys().copied().collect();
         faces.retain(|f| self.surfaces.operand_of(*f) == operand);
@@ -175,13 +177,13 @@ impl<'a> Scene<'a> {
                 corners: self.surfaces.corners(number),
                 vertices: self.surfaces.vertices(number),
                 plane: &shared.planes[&number],
-                segments: run(&found.segments, number, |s: &Segment| s.face),
-                covers: run(&found.covers, number, |c: &Cover| c.face),
+                segments: rows_of_face(&found.segments, number, |s: &Segment| s.face),
+                covers: rows_of_face(&found.covers, number, |c: &Cover| c.face),
             };
             Arrangement::new(face, shared)
         };
         let found = each(
-            self.worth,
+            self.work_size,
             faces.chunks(ITEMS_PER_TASK).collect(),
             |block: &[u32]| {
                 let block = block.iter().map(|number| arranged(*number));
@@ -194,27 +196,27 @@ impl<'a> Scene<'a> {
 
     /// Returns the faces of an operand that bound the result: groups of whole faces, and parts of divided
     /// faces.
-    fn remainder(
+    fn remaining_faces(
         &self,
         operand: usize,
         found: &Contacts,
-        shared: &Shared,
-    ) -> Result<(Vec<Group>, Vec<PartElement>), Declined> {
+        shared: &SharedGeometry,
+    ) -> Result<(Vec<FaceGroup>, Vec<PartElement>), Declined> {
         let count = self.surfaces.operands[operand].mesh.faces.len();
         let mut fates = vec![Fate::of(self.kept.at(operand, 0)?, false); count];
         let mut parts = Vec::new();
         if self.kept.is_divided(operand) {
             let mut arranged = self.arrangements(operand, found, shared)?;
             for arrangement in &arranged {
-                fates[self.surfaces.id(arrangement.face.number).place()] = Fate::Cut;
+                fates[self.surfaces.id(arrangement.face.number).index()] = Fate::Cut;
             }
             let mut labels = self.labels(operand, &mut arranged, &fates, found)?;
-            let firsts = arranged.iter_mut().map(|a| labels.in_front_of(a));
+            let firsts = arranged.iter_mut().map(|a| labels.number_in_front(a));
             let firsts = firsts.collect::<Result<Vec<i32>, Declined>>()?;
             self.decide(operand, &mut labels, &mut fates)?;
             for face in &found.touched {
                 if self.surfaces.operand_of(*face) == operand {
-                    fates[self.surfaces.id(*face).place()].touch();
+                    fates[self.surfaces.id(*face).index()].touch();
                 }
             }
             parts = self.parts(operand, arranged, firsts, &mut fates)?;
@@ -232,11 +234,11 @@ impl<'a> Scene<'a> {
         let mesh = self.surfaces.operands[operand].mesh;
         for id in &self.near[operand] {
             poll();
-            if fates[id.place()] != Fate::Cut {
+            if fates[id.index()] != Fate::Cut {
                 let number = labels
-                    .at_corners(mesh.vertices_of(*id))
+                    .number_at_corners(mesh.vertices_of(*id))
                     .ok_or(Declined::Thin)?;
-                fates[id.place()] = Fate::of(self.kept.at(operand, number)?, false);
+                fates[id.index()] = Fate::of(self.kept.at(operand, number)?, false);
             }
         }
         Ok(())
@@ -264,24 +266,24 @@ impl<'a> Scene<'a> {
         let others = || {
             self.near[operand]
                 .iter()
-                .filter(|id| fates[id.place()] != Fate::Cut)
+                .filter(|id| fates[id.index()] != Fate::Cut)
         };
         for id in others() {
             poll();
             labels.join_corners(of.mesh.vertices_of(*id))?;
         }
         match self.kept {
-            KeepRule::Pair(_) => labels.note_beyond(),
-            KeepRule::Single(_) => labels.note_widest(arranged, others())?,
+            KeepRule::Pair(_) => labels.record_zero_outside(),
+            KeepRule::Single(_) => labels.count_at_widest_faces(arranged, others())?,
         }
         Ok(labels)
     }
 
     /// Returns the faces of an operand that stay whole, grouped by orientation and by whether others touch
     /// them.
-    fn groups(&self, operand: usize, fates: &[Fate]) -> Vec<Group> {
+    fn groups(&self, operand: usize, fates: &[Fate]) -> Vec<FaceGroup> {
         let Operand { mesh, source, .. } = self.surfaces.operands[operand];
-        let group = |(touching, orientation)| Group {
+        let group = |(touching, orientation)| FaceGroup {
             touching,
             source: Arc::clone(source),
             orientation,
@@ -321,21 +323,21 @@ impl<'a> Scene<'a> {
         let ids: Vec<FaceId> = all.iter().map(|(id, ..)| *id).collect();
         let blocks = all.chunks_mut(ITEMS_PER_TASK).collect();
         let found = each(
-            self.worth,
+            self.work_size,
             blocks,
             |block: &mut [(FaceId, &mut Arrangement, i32)]| {
                 let left = block
                     .iter_mut()
-                    .map(|(_, a, first)| self.left_of(operand, a, *first));
+                    .map(|(_, a, first)| self.remaining_parts(operand, a, *first));
                 left.collect::<Result<Vec<_>, Declined>>()
             },
         );
-        let found: Vec<Vec<Remainder>> = found.into_iter().collect::<Result<_, _>>()?;
+        let found: Vec<Vec<RemainingParts>> = found.into_iter().collect::<Result<_, _>>()?;
         let mut parts = [Vec::new(), Vec::new()];
         for (id, left) in ids.into_iter().zip(found.into_iter().flatten()) {
             match left {
-                Remainder::Whole(stays) => fates[id.place()] = Fate::of(stays, true),
-                Remainder::Parts(of_face) => {
+                RemainingParts::Whole(stays) => fates[id.index()] = Fate::of(stays, true),
+                RemainingParts::Parts(of_face) => {
                     for (all, part) in parts.iter_mut().zip(of_face) {
                         all.extend(part);
                     }
@@ -347,12 +349,12 @@ impl<'a> Scene<'a> {
 
     /// Returns the parts of a divided face that bound the result, given the winding number in front of its
     /// first cell.
-    fn left_of(
+    fn remaining_parts(
         &self,
         operand: usize,
         arrangement: &mut Arrangement,
         first: i32,
-    ) -> Result<Remainder, Declined> {
+    ) -> Result<RemainingParts, Declined> {
         let stays = |cell: &CellNumbers| self.kept.of_cell(operand, cell, first);
         let all = arrangement
             .cells
@@ -360,7 +362,7 @@ impl<'a> Scene<'a> {
             .map(stays)
             .collect::<Result<Vec<_>, Declined>>()?;
         if all.iter().all(|s| *s == all[0]) {
-            return Ok(Remainder::Whole(all[0]));
+            return Ok(RemainingParts::Whole(all[0]));
         }
         let id = self.surfaces.id(arrangement.face.number);
         let mut part = |orientation: Orientation| {
@@ -371,12 +373,12 @@ impl<'a> Scene<'a> {
                 PartElement { part, orientation }
             })
         };
-        Ok(Remainder::Parts(Orientation::BOTH.map(&mut part)))
+        Ok(RemainingParts::Parts(Orientation::BOTH.map(&mut part)))
     }
 }
 
-/// Returns the rows that belong to a face, among rows sorted by face; `of` returns the face of a row.
-fn run<T>(rows: &[T], face: u32, of: impl Fn(&T) -> u32) -> &[T] {
+/// Returns the rows of a table, sorted by face, that belong to one face; `of` returns the face of a row.
+fn rows_of_face<T>(rows: &[T], face: u32, of: impl Fn(&T) -> u32) -> &[T] {
     let first = rows.partition_point(|row| of(row) < face);
     let count = rows[first..]
         .iter()
@@ -388,8 +390,8 @@ fn run<T>(rows: &[T], face: u32, of: impl Fn(&T) -> u32) -> &[T] {
 /// Returns the point in which two edges of one plane cross.
 fn crossing(first: &LatticeEdge, second: &LatticeEdge) -> Vertex {
     let ((a, b), (c, d)) = (first.ends(), second.ends());
-    let place = each_axis(|i| a[i] + d[i] - c[i]);
-    let normal = normal(a, b, &place);
+    let point = each_axis(|i| a[i] + d[i] - c[i]);
+    let normal = normal(a, b, &point);
     let axis = (0..3).max_by_key(|i| normal[*i].abs()).unwrap_or(0);
     let plane = Arc::new(Plane::beside_edge(c, d, axis));
     Vertex::on_edge(first, &plane).expect("edges that cross have different directions")

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rustc_hash::FxHashMap as HashMap;
 
 use super::candidates::Candidates;
-use super::contact::{contact, Contact, End, Spot, Touching};
+use super::contact::{contact, CommonPoint, Contact, PiercingPoint, Touching};
 use super::surfaces::Surfaces;
 use super::MAX_PAIRS_PER_FACE;
 use crate::arith::convert::as_number;
@@ -15,7 +15,7 @@ use crate::geometry::side::Side;
 use crate::interrupt::{poll, spend};
 use crate::merge::profile::Declined;
 use crate::mesh::handle::{FaceId, VertexId};
-use crate::mesh::tasks::{each, Worth};
+use crate::mesh::tasks::{each, WorkSize};
 
 /// The number of pairs of faces of one mesh that are intersected in one task.
 const PAIRS_PER_BLOCK: usize = 1 << 9;
@@ -25,7 +25,7 @@ pub(super) type Edge = (usize, [VertexId; 2]);
 
 /// A point in which faces meet, named by the corner, the edge and face, or the edges that define it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Point {
+pub(super) enum MeetingPoint {
     /// A corner of a face, at this lattice point.
     Corner(Lattice),
     /// The point in which an edge passes through the inside of a face, given by its joint number.
@@ -80,7 +80,7 @@ pub(super) struct Cover {
 #[derive(Debug, Default)]
 pub(super) struct Contacts {
     /// The points in which faces meet; each name occurs once.
-    pub(super) points: Vec<Point>,
+    pub(super) points: Vec<MeetingPoint>,
     /// The segments, sorted by face; a segment is listed once for each face that it divides.
     pub(super) segments: Vec<Segment>,
     /// The pairs of coplanar faces with a common area, ascending, each in both orders.
@@ -90,7 +90,7 @@ pub(super) struct Contacts {
     /// For each operand and each of its vertices, whether a face without this vertex may reach its point;
     /// empty if no vertex is reached.
     pub(super) touching: [Vec<bool>; 2],
-    numbers: HashMap<Point, u32>,
+    numbers: HashMap<MeetingPoint, u32>,
 }
 
 /// Two faces that meet, by their joint numbers, and how they meet.
@@ -100,7 +100,7 @@ struct MeetingFaces {
 }
 
 enum MeetingKind {
-    Crossing([End; 2]),
+    Crossing([PiercingPoint; 2]),
     Touching(Box<Touching>),
 }
 
@@ -111,7 +111,7 @@ enum MeetingKind {
 pub(super) fn contacts_of(
     surfaces: &Surfaces,
     candidates: &[Candidates; 2],
-    worth: Worth,
+    work_size: WorkSize,
 ) -> Result<Contacts, Declined> {
     let [first, second] = candidates;
     let left =
@@ -121,24 +121,32 @@ pub(super) fn contacts_of(
         left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take)
             .map_err(|_| Declined::Crowded)?;
         let triangle = |k: usize| move |face: u32| candidates[k].triangles[face as usize];
-        Ok(met([&triangle(0), &triangle(1)], block, surfaces.second))
+        Ok(meeting_faces(
+            [&triangle(0), &triangle(1)],
+            block,
+            surfaces.second,
+        ))
     };
-    let met = first.tree.each_block(&second.tree, worth, visit)?;
+    let met = first.tree.each_block(&second.tree, work_size, visit)?;
     Ok(Contacts::new(surfaces, met))
 }
 
 /// Finds the contacts of the given pairs of faces of one mesh.
-pub(super) fn contacts_among(surfaces: &Surfaces, pairs: &[[u32; 2]], worth: Worth) -> Contacts {
+pub(super) fn contacts_among(
+    surfaces: &Surfaces,
+    pairs: &[[u32; 2]],
+    work_size: WorkSize,
+) -> Contacts {
     let blocks = pairs.chunks(PAIRS_PER_BLOCK).collect();
     let operand = &surfaces.operands[0];
     let triangle = |face: u32| operand.triangle(FaceId(face));
-    let met = each(worth, blocks, |block: &[[u32; 2]]| {
-        met([&triangle, &triangle], block, 0)
+    let met = each(work_size, blocks, |block: &[[u32; 2]]| {
+        meeting_faces([&triangle, &triangle], block, 0)
     });
     Contacts::new(surfaces, met)
 }
 
-fn met(
+fn meeting_faces(
     [ours, theirs]: [&dyn Fn(u32) -> Triangle; 2],
     pairs: &[[u32; 2]],
     second: u32,
@@ -167,10 +175,10 @@ impl Contacts {
         self.segments.len()
     }
 
-    /// Marks the vertices of the first operand for which `some` is true as reached by other faces.
-    pub(super) fn touching_at(mut self, some: &[bool]) -> Self {
-        self.touching[0].resize(some.len(), false);
-        for (touches, more) in self.touching[0].iter_mut().zip(some) {
+    /// Marks the vertices of the first operand for which `touching` is true as reached by other faces.
+    pub(super) fn with_touching_vertices(mut self, touching: &[bool]) -> Self {
+        self.touching[0].resize(touching.len(), false);
+        for (touches, more) in self.touching[0].iter_mut().zip(touching) {
             *touches |= more;
         }
         self
@@ -194,8 +202,8 @@ impl Contacts {
         contacts
     }
 
-    fn cross(&mut self, surfaces: &Surfaces, pair: [u32; 2], ends: [End; 2]) {
-        let [from, to] = ends.map(|end| self.point(surfaces, pair, Spot::Through(end)));
+    fn cross(&mut self, surfaces: &Surfaces, pair: [u32; 2], ends: [PiercingPoint; 2]) {
+        let [from, to] = ends.map(|end| self.point(surfaces, pair, CommonPoint::Through(end)));
         for (k, ends) in [[from, to], [to, from]].into_iter().enumerate() {
             self.segments.push(Segment {
                 face: pair[k],
@@ -208,27 +216,29 @@ impl Contacts {
 
     fn touch(&mut self, surfaces: &Surfaces, pair: [u32; 2], touching: &Touching) {
         let are_neighbours = || {
-            let is_common = |spot: &Spot| is_common_vertex(surfaces, pair, *spot);
-            touching.spots.iter().all(is_common)
+            let is_common = |common: &CommonPoint| is_common_vertex(surfaces, pair, *common);
+            touching.points.iter().all(is_common)
         };
         if !touching.overlap && are_neighbours() {
             return;
         }
         self.touched.extend(pair);
-        for spot in &touching.spots {
-            self.note_corners(surfaces, pair, *spot);
+        for common in &touching.points {
+            self.mark_corners(surfaces, pair, *common);
         }
         let is_beside = !touching.overlap && touching.sides[0].iter().all(|s| *s == Side::On);
         if is_beside {
             return;
         }
-        for stretch in &touching.stretches {
-            let ends = stretch.ends.map(|spot| self.point(surfaces, pair, spot));
+        for segment in &touching.segments {
+            let ends = segment
+                .ends
+                .map(|common| self.point(surfaces, pair, common));
             for (k, (face, other)) in [(pair[0], pair[1]), (pair[1], pair[0])]
                 .into_iter()
                 .enumerate()
             {
-                let line = match stretch.along {
+                let line = match segment.along {
                     Some((of, edge)) if of != k => Line::Edge(edge),
                     Some(_) => continue,
                     None => line(&touching.sides[k], &touching.sides[1 - k]),
@@ -254,37 +264,41 @@ impl Contacts {
     }
 
     /// Marks the vertices of both faces at a common corner as reached by other faces.
-    fn note_corners(&mut self, surfaces: &Surfaces, pair: [u32; 2], spot: Spot) {
-        let Spot::Corner(of, corner) = spot else {
+    fn mark_corners(&mut self, surfaces: &Surfaces, pair: [u32; 2], common: CommonPoint) {
+        let CommonPoint::Corner(of, corner) = common else {
             return;
         };
-        let place = surfaces.place(pair[of], corner);
+        let point = surfaces.corner(pair[of], corner);
         for face in pair {
-            if let Some(corner) = surfaces.corners(face).iter().position(|p| *p == place) {
+            if let Some(corner) = surfaces.corners(face).iter().position(|p| *p == point) {
                 let operand = surfaces.operand_of(face);
                 let touching = &mut self.touching[operand];
                 touching.resize(surfaces.operands[operand].mesh.vertices.len(), false);
-                touching[surfaces.vertices(face)[corner].place()] = true;
+                touching[surfaces.vertices(face)[corner].index()] = true;
             }
         }
     }
 
     /// Returns the index of a common point of two faces, the same for all pairs of faces for which it has the
     /// same name.
-    fn point(&mut self, surfaces: &Surfaces, pair: [u32; 2], spot: Spot) -> u32 {
+    fn point(&mut self, surfaces: &Surfaces, pair: [u32; 2], common: CommonPoint) -> u32 {
         let edge = |of: usize, ends: [usize; 2]| {
             let corners = surfaces.vertices(pair[of]);
             let [a, b] = ends.map(|i| corners[i]);
             (surfaces.operand_of(pair[of]), [a.min(b), a.max(b)])
         };
         let edge_from = |of: usize, i: usize| edge(of, [i, (i + 1) % 3]);
-        let point = match spot {
-            Spot::Corner(of, corner) => Point::Corner(surfaces.place(pair[of], corner)),
-            Spot::Through(end) => Point::Through(edge(end.of, end.edge), pair[1 - end.of]),
-            Spot::Edges(first, second) => {
+        let point = match common {
+            CommonPoint::Corner(of, corner) => {
+                MeetingPoint::Corner(surfaces.corner(pair[of], corner))
+            }
+            CommonPoint::Through(end) => {
+                MeetingPoint::Through(edge(end.of, end.edge), pair[1 - end.of])
+            }
+            CommonPoint::Edges(first, second) => {
                 let mut edges = [edge_from(0, first), edge_from(1, second)];
                 edges.sort_unstable();
-                Point::Edges(edges)
+                MeetingPoint::Edges(edges)
             }
         };
         *self.numbers.entry(point).or_insert_with(|| {
@@ -304,8 +318,8 @@ impl Contacts {
 
 /// Returns true if a common point of two faces of one mesh is a vertex that both share by number, so that the
 /// faces are connected there.
-fn is_common_vertex(surfaces: &Surfaces, pair: [u32; 2], spot: Spot) -> bool {
-    let Spot::Corner(of, corner) = spot else {
+fn is_common_vertex(surfaces: &Surfaces, pair: [u32; 2], common: CommonPoint) -> bool {
+    let CommonPoint::Corner(of, corner) = common else {
         return false;
     };
     let [ours, others] = [pair[of], pair[1 - of]];

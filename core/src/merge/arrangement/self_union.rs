@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::candidates::Operand;
 use super::keep_rule::KeepRule;
-use super::near::{Pairs, View};
+use super::near::{Pairs, PreparedMesh};
 use super::scene::Scene;
 use super::segments::{contacts_among, Contacts};
 use super::shells::{distinct, is_outward, shells, Shell};
@@ -16,7 +16,7 @@ use crate::geometry::side::Orientation;
 use crate::merge::rule::Rule;
 use crate::mesh::handle::{FaceId, Slot};
 use crate::mesh::source::Source;
-use crate::mesh::tasks::Worth;
+use crate::mesh::tasks::WorkSize;
 use crate::tree::node::{Branch, Node};
 use crate::tree::solid::Solid;
 
@@ -68,7 +68,7 @@ pub fn united(solid: &Solid, rule: Rule) -> Option<United> {
         Pairs::Overlap
     } else {
         comparison
-            .view
+            .prepared_mesh
             .pairs_unless_overlapping(&comparison.scene.near[0])
     };
     match found {
@@ -91,7 +91,7 @@ pub fn is_simple_mesh(solid: &Solid) -> Option<bool> {
     let irregular = irregular(operand.source);
     let comparison = SelfComparison::new(operand, solid.root().cell, Rule::Positive, &irregular)?;
     match comparison
-        .view
+        .prepared_mesh
         .pairs_unless_overlapping(&comparison.scene.near[0])
     {
         Pairs::Overlap => Some(false),
@@ -113,7 +113,7 @@ fn is_star(operand: &Operand) -> bool {
 /// The data for comparing the faces of a mesh with each other.
 struct SelfComparison<'a> {
     scene: Scene<'a>,
-    view: View<'a>,
+    prepared_mesh: PreparedMesh<'a>,
     irregular: &'a [bool],
 }
 
@@ -121,19 +121,19 @@ impl<'a> SelfComparison<'a> {
     fn new(operand: Operand<'a>, cell: Cell, rule: Rule, irregular: &'a [bool]) -> Option<Self> {
         Some(Self {
             scene: Scene::of_one(operand, cell, rule),
-            view: View::new(operand.source, irregular)?,
+            prepared_mesh: PreparedMesh::new(operand.source, irregular)?,
             irregular,
         })
     }
 
     fn pairs(&self) -> Pairs {
-        self.view.pairs(&self.scene.near[0])
+        self.prepared_mesh.pairs(&self.scene.near[0])
     }
 
     /// Unites the mesh with itself, given the pairs of its faces that may overlap; `None` if these are too
     /// many, or if faces do not determine the result.
     fn united(&self, pairs: Pairs) -> Option<United> {
-        let found = self.contacts(pairs)?.touching_at(self.irregular);
+        let found = self.contacts(pairs)?.with_touching_vertices(self.irregular);
         let root = self.scene.root(&found).ok()?;
         Some(
             if is_all_of(&root, self.scene.surfaces.operands[0].source) {
@@ -150,9 +150,11 @@ impl<'a> SelfComparison<'a> {
             return None;
         };
         let Scene {
-            surfaces, worth, ..
+            surfaces,
+            work_size,
+            ..
         } = &self.scene;
-        Some(contacts_among(surfaces, &pairs, *worth))
+        Some(contacts_among(surfaces, &pairs, *work_size))
     }
 
     /// Returns true if each shell has its inside behind its faces and certainly does not overlap itself.
@@ -162,7 +164,7 @@ impl<'a> SelfComparison<'a> {
         let is_simple = |shell: &Shell| {
             is_outward(mesh, &shell.faces)
                 && self
-                    .contacts(self.view.pairs(&shell.faces))
+                    .contacts(self.prepared_mesh.pairs(&shell.faces))
                     .is_some_and(|found| found.divide_nothing())
         };
         is_closed && shells.iter().all(is_simple)
@@ -174,7 +176,7 @@ impl<'a> Scene<'a> {
     fn of_one(operand: Operand<'a>, cell: Cell, rule: Rule) -> Self {
         let all: Vec<FaceId> = operand.mesh.face_ids().collect();
         Self {
-            worth: Worth::pool_if(all.len() >= MIN_FACES_FOR_POOL),
+            work_size: WorkSize::pool_if(all.len() >= MIN_FACES_FOR_POOL),
             surfaces: Surfaces::new(vec![operand], vec![all.clone()]),
             near: vec![all],
             cell,
@@ -193,7 +195,7 @@ fn irregular(source: &Source) -> Vec<bool> {
         .iter()
         .chain(source.open_vertices())
     {
-        irregular[vertex.place()] = true;
+        irregular[vertex.index()] = true;
     }
     irregular
 }

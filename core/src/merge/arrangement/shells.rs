@@ -13,7 +13,7 @@ use crate::interrupt::poll;
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::Source;
 use crate::mesh::triangles::TriangleMesh;
-use crate::tree::node::{Branch, Deferred, Group, Node};
+use crate::tree::node::{Branch, DeferredLeaf, FaceGroup, Node};
 
 /// The ascending numbers of faces that are connected by common vertices.
 #[derive(Debug, Default)]
@@ -26,15 +26,15 @@ impl Shell {
     pub(super) fn branch(self, source: &Arc<Source>) -> Branch {
         let around = source.box_around(&self.faces);
         let cell = around.map_or(Cell::UNIVERSE, |(low, high)| Cell::around(&low, &high));
-        let group = Group {
+        let group = FaceGroup {
             touching: false,
             source: Arc::clone(source),
             orientation: Orientation::Same,
             faces: self.faces,
         };
-        let leaf = Deferred {
+        let leaf = DeferredLeaf {
             groups: vec![group],
-            ..Deferred::default()
+            ..DeferredLeaf::default()
         };
         Branch::of_node(cell, Node::Deferred(leaf))
     }
@@ -47,7 +47,7 @@ pub(super) fn shells(mesh: &TriangleMesh) -> Vec<Shell> {
         poll();
         let [a, b, c] = mesh
             .vertices_of(face)
-            .map(|v| root(&mut parents, v.place()));
+            .map(|v| root(&mut parents, v.index()));
         let first = a.min(b).min(c);
         for other in [a, b, c] {
             parents[other] = first;
@@ -56,7 +56,7 @@ pub(super) fn shells(mesh: &TriangleMesh) -> Vec<Shell> {
     let mut numbers: HashMap<usize, usize> = HashMap::default();
     let mut shells: Vec<Shell> = Vec::new();
     for face in mesh.face_ids() {
-        let root = root(&mut parents, mesh.vertices_of(face)[0].place());
+        let root = root(&mut parents, mesh.vertices_of(face)[0].index());
         let number = *numbers.entry(root).or_insert_with(|| {
             shells.push(Shell::default());
             shells.len() - 1

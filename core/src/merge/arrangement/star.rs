@@ -14,7 +14,7 @@
 //! Mehlhorn, Näher, Seel, Seidel, Schilz, Schirra, Uhrig: *Checking geometric programs or
 //! verification of geometric structures*, 1999. The ray distinguishes one covering from several.
 
-use crate::arith::bounds::REACH;
+use crate::arith::bounds::MAX_COORDINATE;
 use crate::arith::Sign;
 use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
@@ -31,7 +31,7 @@ pub fn is_star_shaped(mesh: &TriangleMesh) -> bool {
     let ray = Segment {
         from: eye.map(|c| 2 * c),
         axis: 0,
-        to: 2 * REACH,
+        to: 2 * MAX_COORDINATE,
     };
     let mut change = 0;
     for face in mesh.face_ids() {
@@ -138,7 +138,7 @@ mod tests {
         let ray = Segment {
             from: [0; 3],
             axis: 0,
-            to: 2 * REACH,
+            to: 2 * MAX_COORDINATE,
         };
         for n in 0..3i64.pow(9) {
             let corners = [0, 3, 6].map(|k| [0, 1, 2].map(|i| digit(n, k + i)));

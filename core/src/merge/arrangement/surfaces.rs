@@ -37,7 +37,7 @@ impl<'a> Surfaces<'a> {
     }
 
     /// Returns the index of a face, given by its joint number, among the listed faces of its operand.
-    fn local(&self, face: u32) -> usize {
+    fn index_in_operand(&self, face: u32) -> usize {
         (if face < self.second {
             face
         } else {
@@ -52,7 +52,7 @@ impl<'a> Surfaces<'a> {
 
     /// Returns the number in its mesh of the face with this joint number.
     pub(super) fn id(&self, face: u32) -> FaceId {
-        self.faces[self.operand_of(face)][self.local(face)]
+        self.faces[self.operand_of(face)][self.index_in_operand(face)]
     }
 
     /// Returns the vertex numbers of the face with this joint number.
@@ -66,7 +66,7 @@ impl<'a> Surfaces<'a> {
     }
 
     /// Returns one corner, as a lattice point, of the face with this joint number.
-    pub(super) fn place(&self, face: u32, corner: usize) -> Lattice {
-        self.operand(face).mesh.vertices[self.vertices(face)[corner].place()]
+    pub(super) fn corner(&self, face: u32, corner: usize) -> Lattice {
+        self.operand(face).mesh.vertices[self.vertices(face)[corner].index()]
     }
 }

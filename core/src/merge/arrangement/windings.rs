@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::boxes::Bounds;
+use super::boxes::RoundedBox;
 use super::candidates::{Candidates, Operand};
 use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
@@ -24,7 +24,7 @@ impl Probe {
     /// Returns the point of a plane that has the coordinates `doubled`, in half lattice steps, on the two
     /// axes other than the plane's main axis; `None` if the plane is parallel to the main axis, which never
     /// happens.
-    pub(super) fn above(doubled: [i64; 2], plane: &Arc<Plane>) -> Option<Self> {
+    pub(super) fn at_coordinates(doubled: [i64; 2], plane: &Arc<Plane>) -> Option<Self> {
         let axis = plane.main_axis();
         let cut = |i: usize| Arc::new(Plane::axis_cut((axis + i) % 3, doubled[i - 1]));
         let point = Arc::new(Vertex::meet(plane, &cut(1), &cut(2))?);
@@ -48,21 +48,21 @@ impl<'a> Windings<'a> {
     }
 
     /// Returns true if a point lies outside the bounding box of the mesh, so that the winding number is zero.
-    pub(super) fn are_zero_at(&self, place: &Lattice) -> bool {
+    pub(super) fn is_outside_bounds(&self, point: &Lattice) -> bool {
         let [low, high] = &self.operand.bounds;
-        (0..3).any(|i| place[i] < low[i] || place[i] > high[i])
+        (0..3).any(|i| point[i] < low[i] || point[i] > high[i])
     }
 
     /// Returns the winding number of the mesh around a lattice point, which must lie on no face.
-    pub(super) fn around(&mut self, place: &Lattice) -> i32 {
+    pub(super) fn winding_number_at(&mut self, point: &Lattice) -> i32 {
         let Operand { mesh, bounds, .. } = self.operand;
         let way = Segment {
-            from: place.map(|x| 2 * x),
+            from: point.map(|x| 2 * x),
             axis: 0,
             to: 2 * bounds[1][0] + 2,
         };
         let faces = self.faces.get_or_insert_with(|| self.operand.tree());
-        let from: Point = place.map(as_double);
+        let from: Point = point.map(as_double);
         let to = each_axis(|i| {
             if i == 0 {
                 as_double(bounds[1][0])
@@ -71,15 +71,17 @@ impl<'a> Windings<'a> {
             }
         });
         let mut change = 0;
-        faces.tree.each_meeting(&Bounds::between(&from, &to), |i| {
-            change += triangle_change(&mesh.corners(faces.faces[i]), &way);
-        });
+        faces
+            .tree
+            .each_meeting(&RoundedBox::between(&from, &to), |i| {
+                change += triangle_change(&mesh.corners(faces.faces[i]), &way);
+            });
         -change
     }
 
     /// Returns the winding number of the mesh just in front of a plane at a point of it; `None` if a face in
     /// another plane contains this point.
-    pub(super) fn in_front(&mut self, plane: &Plane, probe: &Probe) -> Option<i32> {
+    pub(super) fn winding_number_in_front(&mut self, plane: &Plane, probe: &Probe) -> Option<i32> {
         let Probe { point, doubled } = probe;
         let Operand { mesh, bounds, .. } = self.operand;
         let axis = plane.main_axis();
@@ -95,29 +97,31 @@ impl<'a> Windings<'a> {
         let low = each_axis(|i| reach(i, low[i], bounds[0][i]));
         let high = each_axis(|i| reach(i, high[i], bounds[1][i]));
         let (mut number, mut touches) = (0, false);
-        faces.tree.each_meeting(&Bounds::between(&low, &high), |i| {
-            let corners = mesh.corners(faces.faces[i]);
-            let change = triangle_change(&corners, &way);
-            if change == 0 {
-                return;
-            }
-            let [a, b, c] = &corners;
-            let Some(other) = Plane::through(a, b, c) else {
-                return;
-            };
-            // On a ray upwards, the winding number increases where the ray passes from in front of a face to
-            // behind it.
-            let is_above = match point.side_of(&other) {
-                Side::On => {
-                    touches |= other.coincides(plane).is_none();
+        faces
+            .tree
+            .each_meeting(&RoundedBox::between(&low, &high), |i| {
+                let corners = mesh.corners(faces.faces[i]);
+                let change = triangle_change(&corners, &way);
+                if change == 0 {
                     return;
                 }
-                side => (side == Side::Plus) == (change > 0),
-            };
-            if is_above == is_up {
-                number += if is_up { -change } else { change };
-            }
-        });
+                let [a, b, c] = &corners;
+                let Some(other) = Plane::through(a, b, c) else {
+                    return;
+                };
+                // On a ray upwards, the winding number increases where the ray passes from in front of a face
+                // to behind it.
+                let is_above = match point.side_of(&other) {
+                    Side::On => {
+                        touches |= other.coincides(plane).is_none();
+                        return;
+                    }
+                    side => (side == Side::Plus) == (change > 0),
+                };
+                if is_above == is_up {
+                    number += if is_up { -change } else { change };
+                }
+            });
         (!touches).then_some(number)
     }
 }

@@ -1,6 +1,6 @@
 //! Decides which cells of the descent a kernel solves, and which are halved.
 
-use super::state::{within, State, States};
+use super::state::{clipped_to_cell, State, States};
 use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
@@ -11,53 +11,55 @@ use crate::merge::kernels::general::MAX_OPERANDS;
 /// trees is the square of this number; smaller cells cost more halvings and cut faces.
 pub const MAX_ELEMENTS_PER_LEAF: usize = 32;
 
-/// The most elements of a cell for which the kernel for general position is asked. With a larger number the
-/// next operation has to process larger leaves again; with a smaller one, cell walls cut more faces.
+/// The most elements (faces or parts of faces) of a cell for which the kernel for general position is asked.
+/// With a larger number the next operation has to process larger leaves again; with a smaller one, cell walls
+/// cut more faces.
 const MAX_ELEMENTS_GENERAL: usize = 64;
 
-/// The most elements of a cell for which the kernel for general position is asked if no operand is the result
-/// of an operation; then there may be no next operation, either.
+/// The most elements (faces or parts of faces) of a cell for which the kernel for general position is asked
+/// if no operand is the result of an operation; then there may be no next operation, either.
 ///
 /// Cells with more elements are halved, so that threads share the work.
 const MAX_ELEMENTS_FRESH: usize = 1 << 13;
 
-/// The most elements of a cell for which the kernel for general position is asked if the operands are results
-/// of groups of overlapping operands. No later step divides these results again. If their cells had been
-/// halved before, faces cut at the same walls would meet in degenerate positions.
+/// The most elements (faces or parts of faces) of a cell for which the kernel for general position is asked
+/// if the operands are results of groups of overlapping operands. No later step divides these results again.
+/// If their cells had been halved before, faces cut at the same walls would meet in degenerate positions.
 const MAX_ELEMENTS_OF_GROUPS: usize = 1 << 13;
 
-/// The most elements for each operand of a cell that the orthogonal kernel solves, if all faces are
-/// perpendicular to axes.
+/// The most elements (faces or parts of faces) for each operand of a cell that the orthogonal kernel solves,
+/// if all faces are perpendicular to axes.
 ///
 /// An expression of few operands is usually a step of a chain, and the next step cuts the leaf again; so its
 /// leaves should be small.
 pub const MAX_ORTHOGONAL_PER_OPERAND: usize = 32;
 
-/// The most elements of a cell for which the orthogonal kernel is asked, whatever the number of operands;
-/// larger cells are halved, so that threads share the work.
+/// The most elements (faces or parts of faces) of a cell for which the orthogonal kernel is asked, whatever
+/// the number of operands; larger cells are halved, so that threads share the work.
 pub const MAX_ELEMENTS_ORTHOGONAL: usize = 512;
 
 /// The number of halvings in a round: one for each axis.
 const HALVINGS_PER_ROUND: u32 = 3;
 
-/// The most eighths of the elements that a round of three halvings may leave in one part; if more are left,
-/// halving separates too little.
+/// The most eighths of the elements (faces or parts of faces) that a round of three halvings may leave in one
+/// part; if more are left, halving separates too little.
 ///
 /// A round leaves a quarter of a surface, and half of the elements along a line. Layers thinner than the cell
 /// stay together: halving would list each of them in ever more cells, until a cell is as small as the layers
 /// are thin.
 const MAX_EIGHTHS_LEFT: usize = 5;
 
-/// The most elements of a cell that kernels solve because halving no longer separates them. The kernel's
-/// memory grows with the square of their number, to a gigabyte for two fans of needles around one corner.
+/// The most elements (faces or parts of faces) of a cell that kernels solve because halving no longer
+/// separates them. The kernel's memory grows with the square of their number, to a gigabyte for two fans of
+/// needles around one corner.
 ///
 /// Nearly all of many needles near a line run through each of the small cells along it, so halving costs far
 /// more than the kernel.
 pub const MAX_ELEMENTS_STUCK: usize = 1 << 14;
 
 /// After the kernel for general position refused a cell, it is asked again when one in this many of the
-/// elements is left. So from `MAX_ELEMENTS_FRESH` down to `MAX_ELEMENTS_PER_LEAF` elements at most three
-/// requests are in vain.
+/// elements (faces or parts of faces) is left. So from `MAX_ELEMENTS_FRESH` down to `MAX_ELEMENTS_PER_LEAF`
+/// elements at most three requests are in vain.
 const RETRIED_IF_ONE_IN: usize = 8;
 
 /// The least number of operands that can be evaluated in groups, if no kernel solves all of them at once.
@@ -71,14 +73,15 @@ pub const MAX_OPERANDS_AT_ONCE: usize = 8;
 /// the boundary of a group's result is smaller than the operands' boundaries, which all cross each other.
 const GROUPS_FROM: usize = 16;
 
-/// The progress of halving: how well the current and the last round of three halvings separate elements, and
-/// which kernels have refused.
+/// The progress of halving cells: how well the current and the last round of three halvings separate elements
+/// (faces or parts of faces), and which kernels have refused.
 #[derive(Clone, Copy)]
 pub struct Round {
     depth: u32,
     start: usize,
     stuck: bool,
-    /// The number of elements of the last cell that the kernel for general position refused.
+    /// The number of elements (faces or parts of faces) of the last cell that the kernel for general position
+    /// refused.
     refused: usize,
     /// True if the operands are results of groups, and the kernel for general position has not refused them
     /// yet.
@@ -104,7 +107,8 @@ impl Round {
         ..Self::START
     };
 
-    /// Returns the progress after one more halving, of a cell with `total` elements.
+    /// Returns the progress after one more halving, of a cell with `total` elements (faces or parts of
+    /// faces).
     #[must_use]
     pub fn next(self, total: usize) -> Self {
         if self.depth + 1 < HALVINGS_PER_ROUND {
@@ -123,12 +127,12 @@ impl Round {
         }
     }
 
-    /// Returns the progress after a halving of `cell`, with `total` elements, that only cut off empty space.
-    /// The halving counts only if the elements' box, whose longest side is `extent`, spans half of the cell
-    /// or is a point: otherwise smaller cells may still separate them.
+    /// Returns the progress after a halving of `cell`, with `total` elements (faces or parts of faces), that
+    /// only cut off empty space. The halving counts only if the elements' box, whose longest side is
+    /// `extent`, spans half of the cell or is a point: otherwise smaller cells may still separate them.
     #[must_use]
     pub fn next_with_empty_sibling(self, cell: &Cell, extent: i64, total: usize) -> Self {
-        let round = if fills(extent, cell) {
+        let round = if fills_half_of(extent, cell) {
             self.next(total)
         } else {
             self
@@ -145,20 +149,20 @@ impl Round {
     }
 
     /// Returns true if the last full round of three halvings left more than `MAX_EIGHTHS_LEFT` eighths of the
-    /// elements in one part.
-    pub fn kept_most(&self) -> bool {
+    /// elements (faces or parts of faces) in one part.
+    pub fn separates_badly(&self) -> bool {
         self.stuck
     }
 
-    /// Performs the halvings from `cell` to `inner`, which contains all elements, and ends early at a cell in
-    /// which halving seems stuck. Returns the last cell and the progress. The cell has `total` elements in a
-    /// box whose longest side is `extent`.
-    pub fn inward(self, cell: Cell, inner: &Cell, extent: i64, total: usize) -> (Cell, Self) {
+    /// Performs the halvings from `cell` to `inner`, which contains all elements (faces or parts of faces),
+    /// and ends early at a cell in which halving seems stuck. Returns the last cell and the progress. The
+    /// cell has `total` elements in a box whose longest side is `extent`.
+    pub fn halved_to(self, cell: Cell, inner: &Cell, extent: i64, total: usize) -> (Cell, Self) {
         let (mut cell, mut round) = (cell, self);
         while let Some(cut) = cell.cut().filter(|_| cell != *inner) {
             round = round.next_with_empty_sibling(&cell, extent, total);
             let lower = cell.half(cut, Half::Minus);
-            cell = if lower.holds(inner) {
+            cell = if lower.contains(inner) {
                 lower
             } else {
                 cell.half(cut, Half::Plus)
@@ -177,8 +181,9 @@ impl Round {
         )
     }
 
-    /// Records that the kernel for general position refused a cell with `total` elements.
-    pub fn refused(&mut self, total: usize) {
+    /// Records that the kernel for general position refused a cell with `total` elements (faces or parts of
+    /// faces).
+    pub fn record_refusal(&mut self, total: usize) {
         if self.groups && total > MAX_ELEMENTS_GENERAL {
             self.groups = false;
         } else {
@@ -186,20 +191,21 @@ impl Round {
         }
     }
 
-    /// Returns true if halving no longer separates elements: the last round left most of them in one part,
-    /// and more than 7/8 of the `total` reach out of the cell, as around a vertex of many faces.
+    /// Returns true if halving no longer separates elements (faces or parts of faces): the last round left
+    /// most of them in one part, and more than 7/8 of the `total` reach out of the cell, as around a vertex
+    /// of many faces.
     pub fn is_stuck(&self, cell: &Cell, states: &States, total: usize) -> bool {
         let reaching = |s: &(u32, State)| match &s.1 {
-            State::List(list) => list.reaching_out(cell),
+            State::List(list) => list.count_reaching_out(cell),
             State::Constant(_) | State::Tree(_) | State::Bins(_) => 0,
         };
         self.stuck && states.iter().map(reaching).sum::<usize>() * 8 > total * 7
     }
 
-    /// Returns true if the kernel for general position should be asked about a cell with `total` elements: it
-    /// has at most `MAX_OPERANDS` operands, at most `MAX_ELEMENTS_FRESH`, `MAX_ELEMENTS_OF_GROUPS` or
-    /// `MAX_ELEMENTS_GENERAL` elements, depending on where the operands come from, and few enough since the
-    /// kernel last refused.
+    /// Returns true if the kernel for general position should be asked about a cell with `total` elements
+    /// (faces or parts of faces): it has at most `MAX_OPERANDS` operands, at most `MAX_ELEMENTS_FRESH`,
+    /// `MAX_ELEMENTS_OF_GROUPS` or `MAX_ELEMENTS_GENERAL` elements, depending on where the operands come
+    /// from, and few enough since the kernel last refused.
     pub fn suits_general_position(&self, states: &States, total: usize) -> bool {
         if states.len() > MAX_OPERANDS || total > self.refused / RETRIED_IF_ONE_IN {
             return false;
@@ -218,7 +224,7 @@ impl Round {
 /// if no operand has surface there.
 pub fn extent(cell: &Cell, states: &States) -> Option<i64> {
     let present = states.iter().filter(|s| s.1.has_surface());
-    let boxes = present.map(|s| within(cell, s.1.bounds(cell)));
+    let boxes = present.map(|s| clipped_to_cell(cell, s.1.bounds(cell)));
     let joined = |[low, high]: [Lattice; 2], [least, most]: [Lattice; 2]| {
         [
             each_axis(|i| low[i].min(least[i])),
@@ -230,7 +236,7 @@ pub fn extent(cell: &Cell, states: &States) -> Option<i64> {
 
 /// Returns true if a box whose longest side is `extent` spans at least half of the longest side of its cell,
 /// or is a single lattice point.
-pub fn fills(extent: i64, cell: &Cell) -> bool {
+pub fn fills_half_of(extent: i64, cell: &Cell) -> bool {
     extent == 0 || 2 * extent >= longest([*cell.low(), cell.high()])
 }
 
@@ -252,7 +258,9 @@ pub fn is_crowded(cell: &Cell, states: &States) -> bool {
         return false;
     }
     let some = states.iter().step_by(states.len().div_ceil(MAX_OPERANDS));
-    let boxes: Vec<[Lattice; 2]> = some.map(|s| within(cell, s.1.bounds(cell))).collect();
+    let boxes: Vec<[Lattice; 2]> = some
+        .map(|s| clipped_to_cell(cell, s.1.bounds(cell)))
+        .collect();
     let overlap =
         |[a, b]: &[Lattice; 2], [c, d]: &[Lattice; 2]| (0..3).all(|i| a[i] <= d[i] && c[i] <= b[i]);
     let partners = |i: usize| boxes[..i].iter().filter(|b| overlap(b, &boxes[i])).count();
@@ -285,7 +293,7 @@ mod tests {
         let states: States = vec![(0, State::Tree(cuboid([0; 3], [8; 3]).root().clone()))];
         let filled = |low: i64, high: i64| {
             let cell = Cell::around(&[low; 3], &[high; 3]);
-            extent(&cell, &states).is_some_and(|extent| fills(extent, &cell))
+            extent(&cell, &states).is_some_and(|extent| fills_half_of(extent, &cell))
         };
         assert!(filled(0, 15));
         assert!(!filled(0, 63));
@@ -310,7 +318,7 @@ mod tests {
         let suits = |round: Round| round.suits_general_position(&states, 8);
         let mut round = Round::START;
         assert!(suits(round));
-        round.refused(8);
+        round.record_refusal(8);
         assert!(!suits(round));
     }
 }

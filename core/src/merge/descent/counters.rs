@@ -66,7 +66,7 @@ impl Counters {
         Self { profile, ..self }
     }
 
-    /// Adds one cell solved by a kernel, with this number of elements.
+    /// Adds one cell solved by a kernel, with this number of elements (faces or parts of faces).
     pub(in crate::merge) fn count_leaf(&self, elements: usize) {
         self.leaves.fetch_add(1, Ordering::Relaxed);
         self.leaf_elements
@@ -74,12 +74,12 @@ impl Counters {
     }
 
     /// Returns the number of elements (faces or parts of faces) in cells solved by kernels.
-    pub fn taken(&self) -> u64 {
+    pub fn elements_solved(&self) -> u64 {
         self.leaf_elements.load(Ordering::Relaxed)
     }
 
     /// Returns the number of cells that the descent visited.
-    pub(in crate::merge) fn visited(&self) -> usize {
+    pub(in crate::merge) fn cells_visited(&self) -> usize {
         usize::try_from(self.cells.load(Ordering::Relaxed)).unwrap_or(usize::MAX)
     }
 

@@ -15,7 +15,9 @@ use super::choice::{
 };
 use super::counters::Counters;
 use super::join;
-use super::state::{find, has_constant, has_surface, nested, worth, State, States, BINS_FROM};
+use super::state::{
+    find, has_constant, has_surface, smaller_cell, work_size, State, States, BINS_FROM,
+};
 use super::twins::{self, TwinTable};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
@@ -24,16 +26,16 @@ use crate::interrupt::{carried, poll};
 use crate::merge::expression::Expression;
 use crate::merge::kernels::general::GeneralPosition;
 use crate::merge::kernels::orthogonal::Orthogonal;
-use crate::merge::kernels::problem::{CellProblem, Kernel, Listed};
+use crate::merge::kernels::problem::{CellProblem, Kernel, ListedOperand};
 use crate::merge::kernels::ALL;
 use crate::merge::lists::list::Sources;
 use crate::merge::residual::Residual;
 use crate::merge::rule::Rule;
-use crate::mesh::tasks::{both, in_pool, Worth};
+use crate::mesh::tasks::{both, in_pool, WorkSize};
 use crate::tree::node::Branch;
 
 /// The reason why a descent ended before all cells were visited.
-pub(super) enum End {
+pub(super) enum DescentEnd {
     /// An error occurred.
     Failed(Error),
     /// The operand with this index overlaps itself and has to be united with itself first.
@@ -42,22 +44,22 @@ pub(super) enum End {
     Cancelled,
 }
 
-impl From<Error> for End {
+impl From<Error> for DescentEnd {
     fn from(error: Error) -> Self {
         Self::Failed(error)
     }
 }
 
 /// The result in a cell, or the reason why the descent ended.
-pub(super) type Visited = std::result::Result<Branch, End>;
+pub(super) type CellResult = std::result::Result<Branch, DescentEnd>;
 
-/// Computes two results, in parallel if `worth` says so; the second is cancelled if the first ends the
+/// Computes two results, in parallel if `work_size` says so; the second is cancelled if the first ends the
 /// descent before the second begins.
 pub(super) fn both_in_turn(
-    worth: Worth,
-    first: impl FnOnce() -> Visited + Send,
-    second: impl FnOnce() -> Visited + Send,
-) -> std::result::Result<(Branch, Branch), End> {
+    work_size: WorkSize,
+    first: impl FnOnce() -> CellResult + Send,
+    second: impl FnOnce() -> CellResult + Send,
+) -> std::result::Result<(Branch, Branch), DescentEnd> {
     let ended = AtomicBool::new(false);
     let first = || {
         let visited = first();
@@ -66,11 +68,11 @@ pub(super) fn both_in_turn(
     };
     let second = || {
         if ended.load(Ordering::Relaxed) {
-            return Err(End::Cancelled);
+            return Err(DescentEnd::Cancelled);
         }
         second()
     };
-    let (first, second) = both(worth, first, second);
+    let (first, second) = both(work_size, first, second);
     Ok((first?, second?))
 }
 
@@ -83,7 +85,7 @@ pub struct Descent<'a> {
     pub rule: Rule,
     /// True if a cell in which one operand alone matters takes its boundary unchanged; false if every cell
     /// with surface is solved, to unite a solid with itself.
-    pub share: bool,
+    pub shares_boundaries: bool,
     /// Counts of the cells visited, faces sorted and cells solved by kernels.
     pub counters: Counters,
     /// For each operand, whether a visited cell showed that it, or the result of a group of operands with it,
@@ -93,31 +95,31 @@ pub struct Descent<'a> {
     /// unites it with itself and evaluates the expression again.
     pub doubted: Vec<usize>,
     /// True if the first doubted operand that turns out to overlap itself ends the descent.
-    impatient: bool,
+    ends_at_first: bool,
 }
 
 impl<'a> Descent<'a> {
-    /// Makes a descent over this many operands; `share` says whether a single operand's boundary is taken
-    /// unchanged.
-    pub fn new(sources: &'a Sources, rule: Rule, share: bool, operands: usize) -> Self {
+    /// Makes a descent over this many operands; `shares_boundaries` says whether a single operand's boundary
+    /// is taken unchanged.
+    pub fn new(sources: &'a Sources, rule: Rule, shares_boundaries: bool, operands: usize) -> Self {
         Self {
             sources,
             rule,
-            share,
+            shares_boundaries,
             counters: Counters::default(),
             overlaps: (0..operands).map(|_| AtomicBool::new(false)).collect(),
             doubted: Vec::new(),
-            impatient: false,
+            ends_at_first: false,
         }
     }
 
-    /// Sets the operands not known to be free of self-overlaps; if `impatient` is true, the first of them, in
-    /// the order of cells, that turns out to overlap itself ends the descent.
+    /// Sets the operands not known to be free of self-overlaps; if `ends_at_first` is true, the first of
+    /// them, in the order of cells, that turns out to overlap itself ends the descent.
     #[must_use]
-    pub fn doubting(self, doubted: Vec<usize>, impatient: bool) -> Self {
+    pub fn with_doubted(self, doubted: Vec<usize>, ends_at_first: bool) -> Self {
         Self {
             doubted,
-            impatient,
+            ends_at_first,
             ..self
         }
     }
@@ -128,7 +130,7 @@ impl<'a> Descent<'a> {
         let seen = |k: &usize| self.overlaps[*k].load(Ordering::Relaxed);
         // An impatient descent needs the first such operand in the order of cells, whatever other threads
         // found.
-        !self.impatient && !self.doubted.is_empty() && self.doubted.iter().all(seen)
+        !self.ends_at_first && !self.doubted.is_empty() && self.doubted.iter().all(seen)
     }
 
     /// Returns the indices of the operands that overlap themselves in a visited cell, or that are in a group
@@ -155,26 +157,28 @@ impl<'a> Descent<'a> {
             state.settle(&cell);
         }
         let round = Round::START;
-        let residual = if self.share || has_constant(&states) {
+        let residual = if self.shares_boundaries || has_constant(&states) {
             self.residual(&expression, &states)
         } else {
             Residual::Open(Arc::new(expression))
         };
         let branch = match self.resolve(cell, residual, states, round) {
             Ok(branch) => branch,
-            Err(End::Failed(error)) => return Err(error),
-            Err(End::Overlap(operand)) => return Ok(self.ended_by(operand, cell)),
-            Err(End::Cancelled) => return Err(Error::internal("an end with nothing before it")),
+            Err(DescentEnd::Failed(error)) => return Err(error),
+            Err(DescentEnd::Overlap(operand)) => return Ok(self.placeholder_for(operand, cell)),
+            Err(DescentEnd::Cancelled) => {
+                return Err(Error::internal("an end with nothing before it"))
+            }
         };
         Ok(match branch.constant() {
             Some(w) => Branch::uniform(branch.cell, w),
-            None => join::around(cell, branch, i32::from(outside)),
+            None => join::surround_cell(cell, branch, i32::from(outside)),
         })
     }
 
     /// Returns a placeholder for the result of a descent that `operand` ended; marks only this operand as
     /// overlapping, because what other threads found depends on timing.
-    fn ended_by(&self, operand: u32, cell: Cell) -> Branch {
+    fn placeholder_for(&self, operand: u32, cell: Cell) -> Branch {
         for (k, seen) in (0..).zip(&self.overlaps) {
             seen.store(k == operand, Ordering::Relaxed);
         }
@@ -189,13 +193,13 @@ impl<'a> Descent<'a> {
     }
 
     /// Visits a half of a cell in which several operands matter, and returns the result there.
-    pub(super) fn cell(
+    pub(super) fn visit_cell(
         &self,
         cell: Cell,
         expression: Arc<Expression>,
         mut states: States,
         round: Round,
-    ) -> Visited {
+    ) -> CellResult {
         poll();
         if self.is_moot() {
             return Ok(Branch::uniform(cell, 0));
@@ -218,9 +222,9 @@ impl<'a> Descent<'a> {
         residual: Residual,
         mut states: States,
         round: Round,
-    ) -> Visited {
+    ) -> CellResult {
         let residual = match residual {
-            Residual::Open(open) => match self.twins(|| twins::of_one_node(&states)) {
+            Residual::Open(open) => match self.twins_if_shared(|| twins::of_one_node(&states)) {
                 Some(firsts) => open.where_equal(|k| firsts.of(k)),
                 None => Residual::Open(open),
             },
@@ -228,7 +232,7 @@ impl<'a> Descent<'a> {
         };
         match residual {
             Residual::Constant(v) => Ok(Branch::uniform(cell, i32::from(v))),
-            Residual::Literal(k, negate) if self.share => {
+            Residual::Literal(k, negate) if self.shares_boundaries => {
                 let at = states.iter().position(|s| s.0 == k).unwrap_or(0);
                 Ok(states.swap_remove(at).1.shared(cell, negate, self.sources))
             }
@@ -245,8 +249,8 @@ impl<'a> Descent<'a> {
 
     /// Returns the operands that are equal in a cell, if a single operand's boundary may be taken unchanged;
     /// otherwise `None`.
-    fn twins(&self, found: impl FnOnce() -> Option<TwinTable>) -> Option<TwinTable> {
-        self.share.then(found).flatten()
+    fn twins_if_shared(&self, found: impl FnOnce() -> Option<TwinTable>) -> Option<TwinTable> {
+        self.shares_boundaries.then(found).flatten()
     }
 
     /// Solves or divides a cell in which the expression depends on several operands.
@@ -256,31 +260,32 @@ impl<'a> Descent<'a> {
         expression: Arc<Expression>,
         states: States,
         round: Round,
-    ) -> Visited {
-        if let Some(inner) = nested(&cell, &states, round.has_empty_sibling()) {
-            return self.jump(cell, inner, expression, states, round);
+    ) -> CellResult {
+        if let Some(inner) = smaller_cell(&cell, &states, round.has_empty_sibling()) {
+            return self.visit_inner_cell(cell, inner, expression, states, round);
         }
         let opening: usize = states.iter().map(|s| s.1.len_to_open(&cell)).sum();
-        let states = self.opened(&cell, states, opening);
-        self.note_corners(&states)?;
+        let states = self.with_open_leaves(&cell, states, opening);
+        self.record_overlaps_at_corner(&states)?;
         let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
         let mut round = round;
         let stuck = round.is_stuck(&cell, &states, total);
         let listed = states.iter().all(|s| matches!(s.1, State::List(_)));
         let small = total <= MAX_ELEMENTS_PER_LEAF || stuck && total <= MAX_ELEMENTS_STUCK;
         let Some(cut) = cell.cut().filter(|_| !(listed && small)) else {
-            let solved = self.solved(cell, &expression, &states, total, &ALL)?;
+            let solved = self.solve_with(cell, &expression, &states, total, &ALL)?;
             return Ok(solved.ok_or_else(|| Error::internal("a small cell that no kernel takes"))?);
         };
         let flat = || states.iter().all(|s| s.1.is_orthogonal(self.sources));
         if total <= (MAX_ORTHOGONAL_PER_OPERAND * states.len()).min(MAX_ELEMENTS_ORTHOGONAL)
             && flat()
-            && let Some(branch) = self.solved(cell, &expression, &states, total, &[&Orthogonal])?
+            && let Some(branch) =
+                self.solve_with(cell, &expression, &states, total, &[&Orthogonal])?
         {
             return Ok(branch);
         }
         if is_overcrowded(&cell, &states)
-            && let Some(parted) = self.parted(&expression)
+            && let Some(parted) = self.split(&expression)
         {
             return self.grouped(cell, parted, states, 0);
         }
@@ -288,48 +293,48 @@ impl<'a> Descent<'a> {
         let long = listed && opening >= BINS_FROM;
         if long || listed && stuck || round.suits_general_position(&states, total) {
             if let Some(branch) =
-                self.solved(cell, &expression, &states, total, &[&GeneralPosition])?
+                self.solve_with(cell, &expression, &states, total, &[&GeneralPosition])?
             {
                 return Ok(branch);
             }
-            round.refused(total);
+            round.record_refusal(total);
             if is_crowded(&cell, &states)
-                && let Some(parted) = self.parted(&expression)
+                && let Some(parted) = self.split(&expression)
             {
                 return self.grouped(cell, parted, states, 0);
             }
         }
-        self.halves(cell, cut, &expression, states, round, total)
+        self.visit_halves(cell, cut, &expression, states, round, total)
     }
 
     /// Returns the result in a cell by visiting the smaller cell `inner`, which contains all operands'
     /// boundaries.
-    fn jump(
+    fn visit_inner_cell(
         &self,
         cell: Cell,
         mut inner: Cell,
         expression: Arc<Expression>,
         mut states: States,
         mut round: Round,
-    ) -> Visited {
+    ) -> CellResult {
         if let Some(extent) = extent(&cell, &states).filter(|_| round.has_empty_sibling()) {
             let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
-            (inner, round) = round.inward(cell, &inner, extent, total);
+            (inner, round) = round.halved_to(cell, &inner, extent, total);
         }
-        let outside = self.value_beside(&cell, &inner, &expression, &states);
+        let outside = self.value_outside(&cell, &inner, &expression, &states);
         for (_, state) in &mut states {
             state.shrink(&inner, self.sources);
         }
-        let branch = self.cell(inner, expression, states, round)?;
+        let branch = self.visit_cell(inner, expression, states, round)?;
         Ok(match branch.constant() {
             Some(w) if (w > 0) == outside => Branch::uniform(cell, w),
-            _ => join::around(inner, branch, i32::from(outside)),
+            _ => join::surround_cell(inner, branch, i32::from(outside)),
         })
     }
 
     /// Returns whether the expression's value is inside in `cell` outside the smaller cell `inner`, which
     /// contains all operands' boundaries.
-    fn value_beside(
+    fn value_outside(
         &self,
         cell: &Cell,
         inner: &Cell,
@@ -338,37 +343,40 @@ impl<'a> Descent<'a> {
     ) -> bool {
         let outside = |k: u32| match find(states, k) {
             Some(State::Tree(branch)) => self.rule.inside(branch.outside),
-            Some(State::List(list)) => self.rule.inside(list.beside(cell, inner, self.sources)),
+            Some(State::List(list)) => {
+                self.rule
+                    .inside(list.winding_number_outside(cell, inner, self.sources))
+            }
             _ => false,
         };
         expression.value(outside, &mut Vec::new())
     }
 
     /// Records that operands overlap themselves; if the descent is impatient, the first doubted one ends it.
-    pub(super) fn note_overlaps(&self, operands: &[u32]) -> std::result::Result<(), End> {
+    pub(super) fn record_overlaps(&self, operands: &[u32]) -> std::result::Result<(), DescentEnd> {
         for k in operands {
             self.overlaps[*k as usize].store(true, Ordering::Relaxed);
         }
         let is_doubted = |k: &&u32| self.doubted.contains(&(**k as usize));
         match operands.iter().find(is_doubted) {
-            Some(k) if self.impatient => Err(End::Overlap(*k)),
+            Some(k) if self.ends_at_first => Err(DescentEnd::Overlap(*k)),
             _ => Ok(()),
         }
     }
 
     /// Records as overlapping the operands whose winding number at the cell's corner is neither 0 nor 1.
-    fn note_corners(&self, states: &States) -> std::result::Result<(), End> {
+    fn record_overlaps_at_corner(&self, states: &States) -> std::result::Result<(), DescentEnd> {
         let winds = |s: &&(u32, State)| match &s.1 {
             State::List(list) => !(0..=1).contains(&list.corner),
             State::Constant(_) | State::Tree(_) | State::Bins(_) => false,
         };
         let found: Vec<u32> = states.iter().filter(winds).map(|s| s.0).collect();
-        self.note_overlaps(&found)
+        self.record_overlaps(&found)
     }
 
     /// Opens each operand's deferred leaf of exactly this cell as a list or as bins; `opening` is the number
-    /// of elements in these leaves.
-    fn opened(&self, cell: &Cell, states: States, opening: usize) -> States {
+    /// of elements (faces or parts of faces) in these leaves.
+    fn with_open_leaves(&self, cell: &Cell, states: States, opening: usize) -> States {
         let open =
             |(k, state): (u32, State)| (k, state.opened(cell, self.sources, &self.counters.binned));
         if in_pool() && opening >= 8 * BINS_FROM {
@@ -377,7 +385,7 @@ impl<'a> Descent<'a> {
         states.into_iter().map(open).collect()
     }
 
-    fn halves(
+    fn visit_halves(
         &self,
         cell: Cell,
         cut: Cut,
@@ -385,8 +393,8 @@ impl<'a> Descent<'a> {
         states: States,
         round: Round,
         total: usize,
-    ) -> Visited {
-        let halved = states.iter().map(|s| s.1.listed()).sum::<usize>();
+    ) -> CellResult {
+        let halved = states.iter().map(|s| s.1.listed_len()).sum::<usize>();
         self.counters
             .halved
             .fetch_add(halved as u64, Ordering::Relaxed);
@@ -407,40 +415,42 @@ impl<'a> Descent<'a> {
             |extent| round.next_with_empty_sibling(&cell, extent, total),
         );
         let visit = |half: Half, states: States| {
-            self.cell(cell.half(cut, half), Arc::clone(expression), states, round)
+            self.visit_cell(cell.half(cut, half), Arc::clone(expression), states, round)
         };
         let (minus, plus) = both_in_turn(
-            worth(total),
+            work_size(total),
             || visit(Half::Minus, below),
             || visit(Half::Plus, above),
         )?;
         Ok(join::branch(cell, cut, minus, plus, self.sources))
     }
 
-    /// Lists the elements of all operands in the cell; `None` if an operand's elements cannot be listed.
-    fn listed<'s>(&self, cell: &Cell, states: &'s States) -> Option<Vec<Listed<'s>>> {
+    /// Lists the elements (faces or parts of faces) of all operands in the cell; `None` if an operand's
+    /// elements cannot be listed.
+    fn list_operands<'s>(&self, cell: &Cell, states: &'s States) -> Option<Vec<ListedOperand<'s>>> {
         let listed = |(number, state): &'s (u32, State)| {
             let (number, list) = (*number, state.list_in(cell, self.sources)?);
-            Some(Listed { number, list })
+            Some(ListedOperand { number, list })
         };
         states.iter().map(listed).collect()
     }
 
     /// Returns the result of the first kernel that does not refuse the cell, after equal operands became one.
-    /// `None` if all kernels refuse, or if an operand's elements cannot be listed.
-    fn solved(
+    /// `None` if all kernels refuse, or if an operand's elements (faces or parts of faces) cannot be listed.
+    fn solve_with(
         &self,
         cell: Cell,
         expression: &Expression,
         states: &States,
         total: usize,
         kernels: &[&dyn Kernel],
-    ) -> std::result::Result<Option<Branch>, End> {
-        let Some(mut operands) = self.listed(&cell, states) else {
+    ) -> std::result::Result<Option<Branch>, DescentEnd> {
+        let Some(mut operands) = self.list_operands(&cell, states) else {
             return Ok(None);
         };
-        let Some(firsts) = self.twins(|| twins::of_one_boundary(&operands, self.sources)) else {
-            return self.solved_by(kernels, cell, expression, operands, total);
+        let Some(firsts) = self.twins_if_shared(|| twins::of_one_boundary(&operands, self.sources))
+        else {
+            return self.run_kernels(kernels, cell, expression, operands, total);
         };
         match expression.where_equal(|k| firsts.of(k)) {
             Residual::Constant(v) => Ok(Some(Branch::uniform(cell, i32::from(v)))),
@@ -451,21 +461,21 @@ impl<'a> Descent<'a> {
             Residual::Open(left) => {
                 let support = left.operands();
                 operands.retain(|l| support.binary_search(&l.number).is_ok());
-                self.solved_by(kernels, cell, &left, operands, total)
+                self.run_kernels(kernels, cell, &left, operands, total)
             }
         }
     }
 
     /// Returns the result, for listed operands, of the first kernel that does not refuse the cell; `None` if
     /// all do.
-    fn solved_by(
+    fn run_kernels(
         &self,
         kernels: &[&dyn Kernel],
         cell: Cell,
         expression: &Expression,
-        operands: Vec<Listed>,
+        operands: Vec<ListedOperand>,
         total: usize,
-    ) -> std::result::Result<Option<Branch>, End> {
+    ) -> std::result::Result<Option<Branch>, DescentEnd> {
         let problem = CellProblem {
             cell: &cell,
             expression,
@@ -475,7 +485,7 @@ impl<'a> Descent<'a> {
         };
         let mut overlapping = Vec::new();
         let node = problem.solve_by(kernels, &mut overlapping);
-        self.note_overlaps(&overlapping)?;
+        self.record_overlaps(&overlapping)?;
         Ok(node.map(|node| {
             self.counters.count_leaf(total);
             Branch::of_node(cell, node)
@@ -554,7 +564,8 @@ mod tests {
         let solids = [row(0), row(1)];
         let sources = Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect());
         let cells = |doubted: Vec<usize>| {
-            let descent = Descent::new(&sources, Rule::Positive, true, 2).doubting(doubted, false);
+            let descent =
+                Descent::new(&sources, Rule::Positive, true, 2).with_doubted(doubted, false);
             let roots = solids.iter().map(|s| s.root().clone()).collect();
             descent.run(both(Term::Or), roots).expect("not stopped");
             assert_eq!(descent.overlapping(), [0, 1]);
@@ -566,15 +577,15 @@ mod tests {
     #[test]
     fn the_first_that_overlaps_itself_ends_an_impatient_descent() {
         // No faces of nested boxes meet, so the winding number at a corner of a cell reveals the overlap.
-        let nested = |first: i64| {
+        let smaller_cell = |first: i64| {
             let shells = (0..8).map(move |i| [[first + i; 3], [first + 99 - i; 3]]);
             cuboids(shells)
         };
-        let solids = [nested(0), nested(50)];
+        let solids = [smaller_cell(0), smaller_cell(50)];
         let sources = Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect());
         let seen = || {
             let descent = Descent::new(&sources, Rule::Positive, true, 2);
-            let descent = descent.doubting(vec![0, 1], true);
+            let descent = descent.with_doubted(vec![0, 1], true);
             let roots = solids.iter().map(|s| s.root().clone()).collect();
             let root = descent.run(both(Term::Or), roots).expect("not stopped");
             assert_eq!(root.constant(), Some(0));

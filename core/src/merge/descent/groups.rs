@@ -5,11 +5,11 @@ use std::sync::atomic::Ordering;
 use std::sync::Arc;
 
 use super::choice::{Round, MAX_OPERANDS_AT_ONCE};
-use super::descend::{both_in_turn, Descent, Visited};
-use super::state::{worth, State, States};
+use super::descend::{both_in_turn, CellResult, Descent};
+use super::state::{work_size, State, States};
 use crate::geometry::cell::Cell;
 use crate::interrupt::poll;
-use crate::merge::expression::{Expression, Parted};
+use crate::merge::expression::{Expression, SplitExpression};
 use crate::tree::node::Branch;
 
 /// The most nested levels of groups: 32 for halving 2³² operands, and 32 for changes of the operation.
@@ -18,8 +18,8 @@ const MAX_DEPTH: u32 = 64;
 impl Descent<'_> {
     /// Splits the expression into two groups of operands; `None` if it cannot be split, or if this descent
     /// unites a solid with itself.
-    pub(super) fn parted(&self, expression: &Expression) -> Option<Parted> {
-        expression.parted().filter(|_| self.share)
+    pub(super) fn split(&self, expression: &Expression) -> Option<SplitExpression> {
+        expression.split().filter(|_| self.shares_boundaries)
     }
 
     /// Returns the result in a cell by evaluating two groups of operands and combining their results; `depth`
@@ -27,10 +27,10 @@ impl Descent<'_> {
     pub(super) fn grouped(
         &self,
         cell: Cell,
-        parted: Parted,
+        parted: SplitExpression,
         states: States,
         depth: u32,
-    ) -> Visited {
+    ) -> CellResult {
         poll();
         if parted.takes_one_by_one() {
             return self.folded(cell, parted, states, depth);
@@ -40,7 +40,7 @@ impl Descent<'_> {
         let [first, second] = parted.divide(states);
         let [left, right] = parted.halves;
         let results = both_in_turn(
-            worth(total),
+            work_size(total),
             || self.group(cell, &left, first, depth),
             || self.group(cell, &right, second, depth),
         )?;
@@ -50,7 +50,13 @@ impl Descent<'_> {
 
     /// Returns the result of a symmetric difference in a cell by adding its operands one after another; a
     /// loop, because there may be too many for recursion.
-    fn folded(&self, cell: Cell, mut parted: Parted, states: States, depth: u32) -> Visited {
+    fn folded(
+        &self,
+        cell: Cell,
+        mut parted: SplitExpression,
+        states: States,
+        depth: u32,
+    ) -> CellResult {
         let mut first = states;
         let mut steps = Vec::new();
         let left = loop {
@@ -59,7 +65,7 @@ impl Descent<'_> {
             [first, last] = parted.divide(first);
             let [left, right] = parted.halves;
             steps.push((right, last, parted.whole));
-            let next = left.parted().filter(Parted::takes_one_by_one);
+            let next = left.split().filter(SplitExpression::takes_one_by_one);
             match next.filter(|_| first.len() > MAX_OPERANDS_AT_ONCE) {
                 Some(next) => parted = next,
                 None => break left,
@@ -84,14 +90,19 @@ impl Descent<'_> {
         whole: Expression,
         results: [Branch; 2],
         operands: [&[u32]; 2],
-    ) -> Visited {
+    ) -> CellResult {
         let states: States = (0..).zip(results.map(State::Tree)).collect();
-        let pair = Self::new(self.sources, self.rule, self.share, states.len());
-        let result = pair.cell(cell, Arc::new(whole), states, Round::OF_GROUPS);
+        let pair = Self::new(
+            self.sources,
+            self.rule,
+            self.shares_boundaries,
+            states.len(),
+        );
+        let result = pair.visit_cell(cell, Arc::new(whole), states, Round::OF_GROUPS);
         self.counters.add(&pair.counters);
         for (group, overlaps) in operands.iter().zip(&pair.overlaps) {
             if overlaps.load(Ordering::Relaxed) {
-                self.note_overlaps(group)?;
+                self.record_overlaps(group)?;
             }
         }
         result
@@ -99,10 +110,10 @@ impl Descent<'_> {
 
     /// Returns the result of one group of operands in a cell; splits it further if it has more than
     /// `MAX_OPERANDS_AT_ONCE` operands.
-    fn group(&self, cell: Cell, expression: &Expression, states: States, depth: u32) -> Visited {
+    fn group(&self, cell: Cell, expression: &Expression, states: States, depth: u32) -> CellResult {
         if states.len() > MAX_OPERANDS_AT_ONCE
             && depth < MAX_DEPTH
-            && let Some(parted) = expression.parted()
+            && let Some(parted) = expression.split()
         {
             return self.grouped(cell, parted, states, depth + 1);
         }

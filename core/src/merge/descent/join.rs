@@ -12,12 +12,12 @@ use crate::merge::lists::list::Sources;
 use crate::mesh::cached::Cached;
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::{Shape, Source};
-use crate::tree::node::{Branch, Deferred, Group, Node};
+use crate::tree::node::{Branch, DeferredLeaf, FaceGroup, Node};
 
 /// The most faces that two deferred leaves together may list in order to become one leaf.
 ///
-/// This is half the number of elements of a cell that a kernel solves, so that a joined leaf is not split
-/// again at once.
+/// This is half the number of elements (faces or parts of faces) of a cell that a kernel solves, so that a
+/// joined leaf is not split again at once.
 pub const MAX_FACES_JOINED: usize = 16;
 
 /// Returns the branch for a cell from the branches of its two halves.
@@ -47,7 +47,7 @@ pub fn branch(cell: Cell, cut: Cut, minus: Branch, plus: Branch, sources: &Sourc
 ///
 /// Usually `branch` has the same value around its own cell. It differs if an unbounded surface crosses the
 /// border of both cells; then the result is a cut.
-pub fn around(cell: Cell, branch: Branch, outside: i32) -> Branch {
+pub fn surround_cell(cell: Cell, branch: Branch, outside: i32) -> Branch {
     let cut = cell
         .cut()
         .filter(|_| branch.cell != cell && !is_same(branch.outside, outside));
@@ -56,7 +56,7 @@ pub fn around(cell: Cell, branch: Branch, outside: i32) -> Branch {
     };
     let [minus, plus] = Half::BOTH.map(|half| {
         let half = cell.half(cut, half);
-        if half.holds(&branch.cell) {
+        if half.contains(&branch.cell) {
             branch.clone()
         } else {
             Branch::uniform(half, branch.outside)
@@ -90,8 +90,8 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Source
     if a.len() + b.len() > 2 * MAX_FACES_JOINED {
         return None;
     }
-    let mut faces = listed(minus, a);
-    for element in listed(plus, b) {
+    let mut faces = listed_faces(minus, a);
+    for element in listed_faces(plus, b) {
         poll();
         match faces.iter_mut().find(|f| f.same_as(&element)) {
             Some(known) => known.touching |= element.touching,
@@ -108,10 +108,10 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Source
     let mut held = Vec::with_capacity(faces.len());
     for face in faces {
         poll();
-        match face.extent_in(cell, &halves) {
-            Extent::All => held.push(face),
-            Extent::Nothing => {}
-            Extent::Some => return None,
+        match face.share_in_cell(cell, &halves) {
+            ShareInCell::All => held.push(face),
+            ShareInCell::Nothing => {}
+            ShareInCell::Part => return None,
         }
     }
     let mut faces = held;
@@ -121,17 +121,17 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Source
     if plus_corner != corner + change_along_edge(&faces, cell, cut) {
         return None;
     }
-    Some(Node::Deferred(Deferred {
+    Some(Node::Deferred(DeferredLeaf {
         groups: grouped(faces),
         parts: Vec::new(),
         corner,
-        worked: a.worked || b.worked,
+        by_kernel: a.by_kernel || b.by_kernel,
         share: Cached::new(),
     }))
 }
 
 /// Returns the winding number at the low corner of `cell`, in which the branch lies.
-fn corner_of(branch: &Branch, leaf: &Deferred, cell: &Cell) -> i32 {
+fn corner_of(branch: &Branch, leaf: &DeferredLeaf, cell: &Cell) -> i32 {
     if branch.cell.low() == cell.low() {
         branch.oriented(leaf.corner)
     } else {
@@ -156,7 +156,7 @@ fn change_along_edge(faces: &[ListedFace], cell: &Cell, cut: Cut) -> i32 {
     faces.iter().map(|f| f.orientation.signed(across(f))).sum()
 }
 
-fn small_leaf(branch: &Branch) -> Option<&Deferred> {
+fn small_leaf(branch: &Branch) -> Option<&DeferredLeaf> {
     match &*branch.node {
         Node::Deferred(leaf) if leaf.parts.is_empty() && leaf.len() <= MAX_FACES_JOINED => {
             Some(leaf)
@@ -172,8 +172,8 @@ struct ListedFace {
     face: FaceId,
 }
 
-fn listed(branch: &Branch, leaf: &Deferred) -> Vec<ListedFace> {
-    let entry = |g: &Group, face: &FaceId| ListedFace {
+fn listed_faces(branch: &Branch, leaf: &DeferredLeaf) -> Vec<ListedFace> {
+    let entry = |g: &FaceGroup, face: &FaceId| ListedFace {
         touching: g.touching,
         source: Arc::clone(&g.source),
         orientation: g.orientation.turned_if(branch.complement),
@@ -192,7 +192,7 @@ impl ListedFace {
             && Arc::ptr_eq(&self.source, &other.source)
     }
 
-    fn is_in(&self, branch: &Branch, leaf: &Deferred) -> bool {
+    fn is_in(&self, branch: &Branch, leaf: &DeferredLeaf) -> bool {
         leaf.groups.iter().any(|g| {
             g.orientation.turned_if(branch.complement) == self.orientation
                 && Arc::ptr_eq(&g.source, &self.source)
@@ -201,41 +201,45 @@ impl ListedFace {
     }
 
     /// Returns how much of the face's part inside `cell` is listed as surface in the two halves.
-    fn extent_in(&self, cell: &Cell, halves: &[(&Branch, &Deferred, Cell); 2]) -> Extent {
+    fn share_in_cell(
+        &self,
+        cell: &Cell,
+        halves: &[(&Branch, &DeferredLeaf, Cell); 2],
+    ) -> ShareInCell {
         let (low, high) = self.source.face_box(self.face);
         let holders: Vec<_> = halves
             .iter()
             .filter(|(branch, leaf, _)| self.is_in(branch, leaf))
             .collect();
-        let enclosed = holders.iter().any(|h| h.0.cell.holds_box(&low, &high));
+        let enclosed = holders.iter().any(|h| h.0.cell.contains_box(&low, &high));
         if enclosed || holders.iter().filter(|h| h.0.cell == h.2).count() == 2 {
-            return Extent::All;
+            return ShareInCell::All;
         }
         let clipped = holders
             .iter()
             .filter_map(|h| self.source.clip(self.face, &h.0.cell));
         let edges: Vec<OutlineEdge> = clipped
-            .flat_map(|p| OutlineEdge::all_of(&p).collect::<Vec<_>>())
+            .flat_map(|p| OutlineEdge::edges_of(&p).collect::<Vec<_>>())
             .collect();
         if edges.is_empty() {
-            Extent::Nothing
+            ShareInCell::Nothing
         } else if is_whole(&cancel(edges), &self.source, self.face, cell) {
-            Extent::All
+            ShareInCell::All
         } else {
-            Extent::Some
+            ShareInCell::Part
         }
     }
 }
 
 /// The share of a face inside a cell that bounds the solid: all, a part, or nothing.
-enum Extent {
+enum ShareInCell {
     All,
-    Some,
+    Part,
     Nothing,
 }
 
-fn grouped(faces: Vec<ListedFace>) -> Vec<Group> {
-    let mut groups: Vec<Group> = Vec::new();
+fn grouped(faces: Vec<ListedFace>) -> Vec<FaceGroup> {
+    let mut groups: Vec<FaceGroup> = Vec::new();
     for f in faces {
         poll();
         match groups.last_mut() {
@@ -246,7 +250,7 @@ fn grouped(faces: Vec<ListedFace>) -> Vec<Group> {
             {
                 g.faces.push(f.face);
             }
-            _ => groups.push(Group {
+            _ => groups.push(FaceGroup {
                 touching: f.touching,
                 source: f.source,
                 orientation: f.orientation,

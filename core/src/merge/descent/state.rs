@@ -9,24 +9,25 @@ use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Half;
 use crate::merge::lists::bins::Bins;
-use crate::merge::lists::list::{List, PartRecord, Record, Sources};
-use crate::mesh::tasks::Worth;
+use crate::merge::lists::list::{FaceRecord, List, PartRecord, Sources};
+use crate::mesh::tasks::WorkSize;
 use crate::tree::node::{Branch, Node};
 
-/// The least number of elements of a cell that is worth a task of its own: a kernel takes about 20 µs for
-/// half as many, and a task costs less than 1 µs.
+/// The least number of elements (faces or parts of faces) of a cell that is worth a task of its own: a kernel
+/// takes about 20 µs for half as many, and a task costs less than 1 µs.
 const MIN_ELEMENTS_PER_TASK: usize = 64;
 
-/// The least number of elements of a cell that is worth waking the thread pool, which takes about 50 µs:
-/// kernels alone take ten times as long.
+/// The least number of elements (faces or parts of faces) of a cell that is worth waking the thread pool,
+/// which takes about 50 µs: kernels alone take ten times as long.
 const MIN_ELEMENTS_FOR_POOL: usize = 256;
 
-/// Returns how far the work in a cell with this number of elements is worth sharing among threads.
-pub const fn worth(elements: usize) -> Worth {
+/// Returns how far the work in a cell with this number of elements (faces or parts of faces) is worth sharing
+/// among threads.
+pub const fn work_size(elements: usize) -> WorkSize {
     match elements {
-        ..MIN_ELEMENTS_PER_TASK => Worth::Nothing,
-        MIN_ELEMENTS_PER_TASK..MIN_ELEMENTS_FOR_POOL => Worth::Task,
-        MIN_ELEMENTS_FOR_POOL.. => Worth::Pool,
+        ..MIN_ELEMENTS_PER_TASK => WorkSize::Nothing,
+        MIN_ELEMENTS_PER_TASK..MIN_ELEMENTS_FOR_POOL => WorkSize::Task,
+        MIN_ELEMENTS_FOR_POOL.. => WorkSize::Pool,
     }
 }
 
@@ -61,13 +62,13 @@ pub fn find(states: &States, operand: u32) -> Option<&State> {
 /// Returns the smallest cell around all operands' boundaries, if it is smaller than `cell`; `None` if it is
 /// not, or if an operand's boundary is not known to lie in a smaller cell. Lists are examined, element by
 /// element, only if `lists` is true.
-pub fn nested(cell: &Cell, states: &States, lists: bool) -> Option<Cell> {
+pub fn smaller_cell(cell: &Cell, states: &States, lists: bool) -> Option<Cell> {
     let mut inner: Option<Cell> = None;
     for (_, state) in states {
         let home = match state {
             State::Tree(branch) if branch.cell != *cell => branch.cell,
             State::List(list) if lists => {
-                let [low, high] = within(cell, list.bounds());
+                let [low, high] = clipped_to_cell(cell, list.bounds());
                 Cell::around(&low, &high)
             }
             _ => return None,
@@ -78,7 +79,7 @@ pub fn nested(cell: &Cell, states: &States, lists: bool) -> Option<Cell> {
 }
 
 /// Returns the intersection of a box with a cell, as low and high corner.
-pub fn within(cell: &Cell, [low, high]: [Lattice; 2]) -> [Lattice; 2] {
+pub fn clipped_to_cell(cell: &Cell, [low, high]: [Lattice; 2]) -> [Lattice; 2] {
     let (least, most) = (cell.low(), cell.high());
     let low = each_axis(|i| low[i].max(least[i]));
     [low, each_axis(|i| high[i].min(most[i]))]
@@ -128,16 +129,17 @@ impl State {
         }
     }
 
-    /// Returns true if the operand's elements in the cell are listed, and no kernel made them.
+    /// Returns true if the operand's elements (faces or parts of faces) in the cell are listed, and no kernel
+    /// made them.
     pub fn is_given(&self) -> bool {
         match self {
             Self::Constant(_) => false,
             Self::Tree(branch) => match &*branch.node {
-                Node::Deferred(leaf) => !leaf.worked,
+                Node::Deferred(leaf) => !leaf.by_kernel,
                 Node::Leaf(_) | Node::Cut(_) => false,
             },
-            Self::List(list) => !list.is_worked(),
-            Self::Bins(bins) => !bins.is_worked(),
+            Self::List(list) => !list.is_by_kernel(),
+            Self::Bins(bins) => !bins.is_by_kernel(),
         }
     }
 
@@ -150,8 +152,8 @@ impl State {
         }
     }
 
-    /// Returns the number of elements of the operand's deferred leaf, if that has exactly this cell;
-    /// otherwise 0.
+    /// Returns the number of elements (faces or parts of faces) of the operand's deferred leaf, if that has
+    /// exactly this cell; otherwise 0.
     pub fn len_to_open(&self, cell: &Cell) -> usize {
         match self {
             Self::Tree(branch) if branch.cell == *cell => match &*branch.node {
@@ -162,19 +164,21 @@ impl State {
         }
     }
 
-    /// Returns the number of listed elements, each of which a halving of the cell visits.
-    pub fn listed(&self) -> usize {
+    /// Returns the number of listed elements (faces or parts of faces), each of which a halving of the cell
+    /// visits.
+    pub fn listed_len(&self) -> usize {
         match self {
             Self::List(list) => list.len(),
             Self::Constant(_) | Self::Tree(_) | Self::Bins(_) => 0,
         }
     }
 
-    /// Returns true if all of the operand's elements are listed, and their planes are perpendicular to axes.
+    /// Returns true if all of the operand's elements (faces or parts of faces) are listed, and their planes
+    /// are perpendicular to axes.
     pub fn is_orthogonal(&self, sources: &Sources) -> bool {
         match self {
             Self::List(list) => {
-                let flat = |r: &Record| sources.get(r.slot()).is_orthogonal(r.face);
+                let flat = |r: &FaceRecord| sources.get(r.slot()).is_orthogonal(r.face);
                 let part =
                     |p: &PartRecord| p.element.part.source.is_orthogonal(p.element.part.face);
                 list.records.iter().all(flat) && list.parts.iter().all(part)
@@ -187,13 +191,15 @@ impl State {
         }
     }
 
-    /// Returns the operand's elements as a list of the cell; `None` if they cannot be listed, or if one
-    /// extends out of the smaller cell in which it is known to be surface.
+    /// Returns the operand's elements (faces or parts of faces) as a list of the cell; `None` if they cannot
+    /// be listed, or if one extends out of the smaller cell in which it is known to be surface.
     pub fn list_in(&self, cell: &Cell, sources: &Sources) -> Option<Cow<'_, List>> {
         match self {
             Self::List(list) => Some(Cow::Borrowed(list)),
-            Self::Tree(branch) => List::lifted(branch, cell, sources).map(Cow::Owned),
-            Self::Bins(bins) => List::lifted(&bins.branch_in(cell), cell, sources).map(Cow::Owned),
+            Self::Tree(branch) => List::of_larger_cell(branch, cell, sources).map(Cow::Owned),
+            Self::Bins(bins) => {
+                List::of_larger_cell(&bins.branch_in(cell), cell, sources).map(Cow::Owned)
+            }
             Self::Constant(_) => None,
         }
     }
@@ -303,7 +309,7 @@ fn divide_tree(branch: Branch, cell: &Cell, cut: Cut) -> (State, State) {
         );
     }
     let around = State::Constant(branch.outside);
-    if cell.half(cut, Half::Minus).holds(&branch.cell) {
+    if cell.half(cut, Half::Minus).contains(&branch.cell) {
         (State::Tree(branch), around)
     } else {
         (around, State::Tree(branch))
@@ -354,7 +360,7 @@ mod tests {
         let tree = |s: &crate::tree::solid::Solid| State::Tree(s.root().clone());
         let states: States = (0..).zip(solids.iter().map(tree)).collect();
         assert!(find(&states, 1).is_some() && find(&states, 2).is_none());
-        let inner = nested(&Cell::UNIVERSE, &states, false);
+        let inner = smaller_cell(&Cell::UNIVERSE, &states, false);
         assert_eq!(inner, Some(Cell::around(&[0; 3], &[15; 3])));
     }
 }

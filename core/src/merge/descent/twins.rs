@@ -11,8 +11,8 @@ use smallvec::SmallVec;
 use super::state::{State, States};
 use crate::geometry::plane::Lattice;
 use crate::interrupt::spend;
-use crate::merge::kernels::problem::Listed;
-use crate::merge::lists::list::{List, PartRecord, Record, Sources};
+use crate::merge::kernels::problem::ListedOperand;
+use crate::merge::lists::list::{FaceRecord, List, PartRecord, Sources};
 use crate::merge::residual::Twin;
 use crate::tree::node::Part;
 
@@ -23,7 +23,7 @@ impl TwinTable {
     /// Returns the first operand that is equal to this one; itself if there is no earlier one.
     pub fn of(&self, operand: u32) -> Twin {
         let at = self.0.binary_search_by_key(&operand, |pair| pair.0);
-        at.map_or(itself(operand), |at| self.0[at].1)
+        at.map_or(its_own_twin(operand), |at| self.0[at].1)
     }
 
     /// Makes a table of operands and their twins; `None` if no operand equals an earlier one.
@@ -34,7 +34,7 @@ impl TwinTable {
 }
 
 /// Returns the operand as its own twin.
-fn itself(operand: u32) -> Twin {
+fn its_own_twin(operand: u32) -> Twin {
     Twin {
         first: operand,
         is_same_source: true,
@@ -64,18 +64,21 @@ pub fn of_one_node(states: &States) -> Option<TwinTable> {
             }
             State::Constant(_) | State::List(_) | State::Bins(_) => *number,
         };
-        (*number, itself(first))
+        (*number, its_own_twin(first))
     };
     TwinTable::found(states.iter().map(pair).collect())
 }
 
-/// Finds operands whose lists have the same elements, in any order, and the same winding number at the cell's
-/// corner; `None` if there are none.
+/// Finds operands whose lists have the same elements (faces or parts of faces), in any order, and the same
+/// winding number at the cell's corner; `None` if there are none.
 ///
 /// # Cost
 /// One pass over lists of equal length, and a sort of lists with equal hashes.
-pub fn of_one_boundary<'a>(operands: &'a [Listed<'a>], sources: &Sources) -> Option<TwinTable> {
-    let size = |listed: &Listed| (listed.list.len(), listed.list.corner);
+pub fn of_one_boundary<'a>(
+    operands: &'a [ListedOperand<'a>],
+    sources: &Sources,
+) -> Option<TwinTable> {
+    let size = |listed: &ListedOperand| (listed.list.len(), listed.list.corner);
     let mut sizes: SmallVec<[_; 8]> = operands.iter().map(size).collect();
     sizes.sort_unstable();
     if sizes.is_sorted_by(|a, b| a < b) {
@@ -85,12 +88,12 @@ pub fn of_one_boundary<'a>(operands: &'a [Listed<'a>], sources: &Sources) -> Opt
         let next = sizes.partition_point(|other| *other < size(listed)) + 1;
         sizes.get(next) != Some(&size(listed))
     };
-    let mut known: HashMap<_, &'a Listed<'a>> = HashMap::default();
-    let mut first = |listed: &'a Listed<'a>| {
+    let mut known: HashMap<_, &'a ListedOperand<'a>> = HashMap::default();
+    let mut first = |listed: &'a ListedOperand<'a>| {
         if has_unique_size(listed) {
             return None;
         }
-        let mark = mark(&listed.list, sources)?;
+        let mark = content_hash(&listed.list, sources)?;
         let other = *known.entry((size(listed), mark)).or_insert(listed);
         if other.number == listed.number {
             return None;
@@ -101,31 +104,40 @@ pub fn of_one_boundary<'a>(operands: &'a [Listed<'a>], sources: &Sources) -> Opt
         })
     };
     let own = operands.iter().map(|listed| listed.number);
-    let pair = |(number, listed)| (number, first(listed).unwrap_or_else(|| itself(number)));
+    let pair = |(number, listed)| {
+        (
+            number,
+            first(listed).unwrap_or_else(|| its_own_twin(number)),
+        )
+    };
     TwinTable::found(own.zip(operands).map(pair).collect())
 }
 
-/// Returns a hash that is the same for lists of the same elements in any order; `None` if a face is not a
-/// triangle.
-fn mark(list: &List, sources: &Sources) -> Option<u64> {
+/// Returns a hash that is the same for lists of the same elements (faces or parts of faces) in any order;
+/// `None` if a face is not a triangle.
+fn content_hash(list: &List, sources: &Sources) -> Option<u64> {
     spend(list.len());
     let mut sum = 0u64;
     for record in &list.records {
         sum = sum.wrapping_add(FxBuildHasher.hash_one(corners(record, sources)?));
     }
-    let parts = list.parts.iter().map(|p| FxBuildHasher.hash_one(key(p)));
+    let parts = list
+        .parts
+        .iter()
+        .map(|p| FxBuildHasher.hash_one(address_of(p)));
     Some(parts.fold(sum, u64::wrapping_add))
 }
 
-/// Returns true if two lists have the same elements in any order; faces are the same if their keys are equal.
-fn are_equal<K: Ord>(a: &List, b: &List, key_of: impl Fn(&Record) -> K) -> bool {
+/// Returns true if two lists have the same elements (faces or parts of faces) in any order; faces are the
+/// same if their keys are equal.
+fn are_equal<K: Ord>(a: &List, b: &List, key_of: impl Fn(&FaceRecord) -> K) -> bool {
     let faces = |list: &List| {
         let mut faces: Vec<K> = list.records.iter().map(&key_of).collect();
         faces.sort_unstable();
         faces
     };
     let parts = |list: &List| {
-        let mut parts: Vec<_> = list.parts.iter().map(key).collect();
+        let mut parts: Vec<_> = list.parts.iter().map(address_of).collect();
         parts.sort_unstable();
         parts
     };
@@ -134,7 +146,7 @@ fn are_equal<K: Ord>(a: &List, b: &List, key_of: impl Fn(&Record) -> K) -> bool 
 
 /// Returns the corners of a face in the order of its orientation, beginning with the least; `None` if it is
 /// not a triangle.
-fn corners(record: &Record, sources: &Sources) -> Option<[Lattice; 3]> {
+fn corners(record: &FaceRecord, sources: &Sources) -> Option<[Lattice; 3]> {
     let mesh = sources.get(record.slot()).mesh()?;
     let [a, b, c] = mesh.corners(record.face);
     let [a, b, c] = if record.orientation().is_opposite() {
@@ -153,7 +165,7 @@ fn corners(record: &Record, sources: &Sources) -> Option<[Lattice; 3]> {
 
 /// Returns the identity of a part by its address, which steps of a chain share; equal parts made separately
 /// have different keys.
-fn key(part: &PartRecord) -> (*const Part, bool) {
+fn address_of(part: &PartRecord) -> (*const Part, bool) {
     let element = &part.element;
     (
         Arc::as_ptr(&element.part),

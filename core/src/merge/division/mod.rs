@@ -21,7 +21,7 @@ pub use triangulation::{Defect, Triangulation, NONE};
 
 /// What is known in advance about the position of a point in a polygon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Spot {
+pub enum PositionInPolygon {
     /// The point is the corner with this index.
     Corner(usize),
     /// The point lies between the ends of the side with this index.
@@ -74,34 +74,37 @@ impl Division {
     ///
     /// # Errors
     /// If a point lies outside the polygon.
-    pub fn insert(&mut self, points: &[(&Arc<Vertex>, Spot)]) -> Result<Vec<u32>, Defect> {
-        let mut places = vec![NONE; points.len()];
+    pub fn insert(
+        &mut self,
+        points: &[(&Arc<Vertex>, PositionInPolygon)],
+    ) -> Result<Vec<u32>, Defect> {
+        let mut numbers = vec![NONE; points.len()];
         let mut on_border: SmallVec<[(usize, usize); 16]> = SmallVec::new();
-        for (i, (_, spot)) in points.iter().enumerate() {
-            match spot {
-                Spot::Corner(corner) => places[i] = as_number(*corner),
-                Spot::Side(side) => on_border.push((*side, i)),
-                Spot::Inside => {}
+        for (i, (_, position)) in points.iter().enumerate() {
+            match position {
+                PositionInPolygon::Corner(corner) => numbers[i] = as_number(*corner),
+                PositionInPolygon::Side(side) => on_border.push((*side, i)),
+                PositionInPolygon::Inside => {}
             }
         }
         on_border.sort_unstable();
         for on_side in on_border.chunk_by_mut(|p, q| p.0 == q.0) {
-            self.insert_on_side(on_side, points, &mut places);
+            self.insert_on_side(on_side, points, &mut numbers);
         }
-        for (place, (point, _)) in places.iter_mut().zip(points) {
-            if *place == NONE {
-                *place = self.triangulation.insert(Arc::clone(point))?;
+        for (number, (point, _)) in numbers.iter_mut().zip(points) {
+            if *number == NONE {
+                *number = self.triangulation.insert(Arc::clone(point))?;
             }
         }
-        Ok(places)
+        Ok(numbers)
     }
 
     /// Inserts the points of one side of the polygon, in their order along it.
     fn insert_on_side(
         &mut self,
         on_side: &mut [(usize, usize)],
-        points: &[(&Arc<Vertex>, Spot)],
-        places: &mut [u32],
+        points: &[(&Arc<Vertex>, PositionInPolygon)],
+        numbers: &mut [u32],
     ) {
         let side = on_side[0].0;
         let (mut last, end) = (as_number(side), as_number((side + 1) % self.sides.len()));
@@ -120,13 +123,13 @@ impl Division {
         let mut before: Option<&Arc<Vertex>> = None;
         for (_, point) in on_side {
             let vertex = vertex(*point);
-            if !before.is_some_and(|b| b.same(vertex)) {
+            if !before.is_some_and(|b| b.equals(vertex)) {
                 last = self
                     .triangulation
                     .divide_border([last, end], Arc::clone(vertex));
             }
             before = Some(vertex);
-            places[*point] = last;
+            numbers[*point] = last;
         }
     }
 
@@ -152,33 +155,37 @@ impl Division {
         &mut self.triangulation
     }
 
-    /// Returns for each neighbour of a cell the edge across which it lies, and its number.
-    pub fn mates(&self, cell: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let mates = self.triangulation.cells()[cell].mates.iter().enumerate();
-        let mates = mates.filter(|(_, mate)| **mate != NONE);
-        mates.map(|(edge, mate)| (edge, *mate as usize))
+    /// Returns for each neighbour of a triangle of the division the edge across which it lies, and its
+    /// number.
+    pub fn neighbours(&self, cell: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let neighbours = self.triangulation.cells()[cell]
+            .neighbours
+            .iter()
+            .enumerate();
+        let neighbours = neighbours.filter(|(_, neighbour)| **neighbour != NONE);
+        neighbours.map(|(edge, neighbour)| (edge, *neighbour as usize))
     }
 
-    /// Returns the corners of a cell, counterclockwise.
+    /// Returns the corners of a triangle of the division, counterclockwise.
     pub fn corners_of(&self, cell: usize) -> [&Vertex; 3] {
         let corners = self.triangulation.cells()[cell].corners;
         corners.map(|c| &**self.triangulation.vertex(c))
     }
 
-    /// Returns the number of a cell at a corner of the polygon.
+    /// Returns the number of a triangle of the division at a corner of the polygon.
     pub fn cell_at_corner(&self, corner: usize) -> usize {
         self.triangulation.cell_at(as_number(corner)) as usize
     }
 
-    /// Returns the segments that run along an edge of a cell, each with whether it has the direction of the
-    /// edge.
+    /// Returns the segments that run along an edge of a triangle of the division, each with whether it has
+    /// the direction of the edge.
     pub fn along_edge(&self, cell: usize, edge: usize) -> impl Iterator<Item = (usize, bool)> + '_ {
         let along = self.triangulation.along_edge(as_number(cell), edge);
         along.map(|(segment, is_along)| (segment as usize, is_along))
     }
 
-    /// Computes a value for each cell: the first cell has `first`, and `across` returns the value of a
-    /// neighbour from the value of a cell, the cell and the edge.
+    /// Computes a value for each triangle of the division: the first has `first`, and `across` returns the
+    /// value of a neighbour from the value of a triangle, the triangle and the edge.
     pub fn spread<T: Copy>(&self, first: T, across: impl Fn(T, usize, usize) -> T) -> Vec<T> {
         let cells = self.triangulation.cells();
         let mut values = vec![first; cells.len()];
@@ -186,27 +193,28 @@ impl Division {
         is_known[0] = true;
         let mut open = vec![0];
         while let Some(at) = open.pop() {
-            for (edge, mate) in cells[at].mates.into_iter().enumerate() {
-                if mate != NONE && !std::mem::replace(&mut is_known[mate as usize], true) {
-                    values[mate as usize] = across(values[at], at, edge);
-                    open.push(mate as usize);
+            for (edge, neighbour) in cells[at].neighbours.into_iter().enumerate() {
+                if neighbour != NONE && !std::mem::replace(&mut is_known[neighbour as usize], true)
+                {
+                    values[neighbour as usize] = across(values[at], at, edge);
+                    open.push(neighbour as usize);
                 }
             }
         }
         values
     }
 
-    /// Returns the border of the cells for which `holds` is true, as closed loops; collinear edges are
-    /// merged.
-    pub fn outline(&mut self, holds: &[bool]) -> Vec<BareEdge> {
+    /// Returns the border of the triangles of the division for which `is_kept` is true, as closed loops;
+    /// collinear edges are merged.
+    pub fn outline(&mut self, is_kept: &[bool]) -> Vec<BareEdge> {
         let is_border = |this: &Self, (cell, edge): (u32, usize)| {
-            let mate = this.triangulation.cells()[cell as usize].mates[edge];
-            mate == NONE || !holds[mate as usize]
+            let neighbour = this.triangulation.cells()[cell as usize].neighbours[edge];
+            neighbour == NONE || !is_kept[neighbour as usize]
         };
-        let mut is_done = vec![[false; 3]; holds.len()];
+        let mut is_done = vec![[false; 3]; is_kept.len()];
         let mut edges = Vec::new();
-        for start in (0..as_number(holds.len())).flat_map(|c| [(c, 0), (c, 1), (c, 2)]) {
-            if !holds[start.0 as usize]
+        for start in (0..as_number(is_kept.len())).flat_map(|c| [(c, 0), (c, 1), (c, 2)]) {
+            if !is_kept[start.0 as usize]
                 || is_done[start.0 as usize][start.1]
                 || !is_border(self, start)
             {
@@ -254,7 +262,7 @@ impl Division {
         }
     }
 
-    /// Returns true if two edges of cells certainly lie in the plane of one segment.
+    /// Returns true if two edges of triangles certainly lie in the plane of one dividing segment.
     fn have_one_cut(&self, first: (u32, usize), second: (u32, usize)) -> bool {
         let cut = |(cell, edge)| self.triangulation.along_edge(cell, edge).next();
         let cuts = cut(first).zip(cut(second));
@@ -266,7 +274,7 @@ impl Division {
 
     fn carrier(&self, (cell, edge): (u32, usize)) -> Carrier {
         let ends = self.triangulation.ends((cell, edge));
-        if self.triangulation.cells()[cell as usize].mates[edge] == NONE {
+        if self.triangulation.cells()[cell as usize].neighbours[edge] == NONE {
             return self.sides[self.triangulation.side(ends.into()) as usize].clone();
         }
         let mut along = self.triangulation.along_edge(cell, edge);
@@ -313,7 +321,7 @@ mod tests {
         let mut made = division(&SQUARE).expect("a convex polygon");
         let at = |x, y| Arc::new(Vertex::lattice([x, y, 0]));
         let points = [at(3, 0), at(3, 8), at(0, 2), at(8, 2)];
-        let spots = [0, 2, 3, 1].map(Spot::Side);
+        let spots = [0, 2, 3, 1].map(PositionInPolygon::Side);
         let points: Vec<_> = points.iter().zip(spots).collect();
         let ends = made.insert(&points).expect("inside");
         let cuts = [Plane::axis_cut(0, 6), Plane::axis_cut(1, 4).flipped()].map(Arc::new);
@@ -336,8 +344,8 @@ mod tests {
         assert_eq!(at_corners[1] ^ at_corners[3], 0b11);
         assert_eq!(at_corners[0] ^ at_corners[1], 0b01);
         for cell in 0..values.len() {
-            for (edge, mate) in made.mates(cell) {
-                assert_eq!(values[mate], values[cell] ^ bits(cell, edge));
+            for (edge, neighbour) in made.neighbours(cell) {
+                assert_eq!(values[neighbour], values[cell] ^ bits(cell, edge));
             }
         }
     }

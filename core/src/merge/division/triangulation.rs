@@ -34,25 +34,27 @@ pub struct Cell {
     /// The numbers of the points at the corners.
     pub corners: [u32; 3],
     /// For each edge the number of the triangle across it, or `NONE`.
-    pub mates: [u32; 3],
-    /// For each edge one more than the index of its last run (a segment along it), or 0 without a run. A
-    /// negative sign says that the runs' directions are given as seen from the triangle across the edge.
+    pub neighbours: [u32; 3],
+    /// For each edge one more than the index of the last segment recorded along it, or 0 without a segment. A
+    /// negative sign says that the directions of segments are given as seen from the triangle across the
+    /// edge.
     marks: [i32; 3],
 }
 
 /// A segment that runs along an edge of the triangulation.
 #[derive(Clone, Copy, Debug)]
-struct Run {
+struct EdgeSegment {
     segment: u32,
     /// True if the segment has the direction of the edge as seen from the triangle with the positive mark.
     is_forward: bool,
-    /// The mark of the edge before this run was added.
+    /// The mark of the edge before this segment was recorded: one more than the index of the previous
+    /// segment, or 0.
     before: i32,
 }
 
 /// A point of the triangulation, with its projection along an axis in doubles.
 #[derive(Clone, Debug)]
-struct Place {
+struct ProjectedPoint {
     at: [f64; 2],
     /// A bound on the error of each projected coordinate.
     error: f64,
@@ -66,11 +68,11 @@ struct Place {
 #[derive(Debug)]
 pub struct Triangulation {
     axes: [usize; 2],
-    places: Vec<Place>,
+    points: Vec<ProjectedPoint>,
     /// For each point the number of a triangle that has it as a corner.
     incident: Vec<u32>,
     cells: Vec<Cell>,
-    runs: Vec<Run>,
+    edge_segments: Vec<EdgeSegment>,
     last: u32,
     random: u32,
 }
@@ -82,10 +84,10 @@ impl Triangulation {
         let count = as_number(corners.len());
         let mut made = Self {
             axes,
-            places: Vec::with_capacity(corners.len() + 5),
+            points: Vec::with_capacity(corners.len() + 5),
             incident: Vec::with_capacity(corners.len() + 5),
             cells: Vec::with_capacity(corners.len() + 5),
-            runs: Vec::new(),
+            edge_segments: Vec::new(),
             last: 0,
             random: 1,
         };
@@ -98,7 +100,7 @@ impl Triangulation {
             let after = if k + 1 == count { NONE } else { k - 1 };
             let cell = Cell {
                 corners: [0, k - 1, k],
-                mates: [before, NONE, after],
+                neighbours: [before, NONE, after],
                 marks: [0; 3],
             };
             made.put(k - 2, cell);
@@ -112,13 +114,13 @@ impl Triangulation {
     }
 
     /// Returns the exact position of the point with this number.
-    pub fn vertex(&self, place: u32) -> &Arc<Vertex> {
-        &self.places[place as usize].vertex
+    pub fn vertex(&self, point: u32) -> &Arc<Vertex> {
+        &self.points[point as usize].vertex
     }
 
     /// Returns the number of a side of the polygon on which two border points lie.
     pub fn side(&self, ends: [u32; 2]) -> u32 {
-        let [a, b] = ends.map(|p| self.places[p as usize].sides);
+        let [a, b] = ends.map(|p| self.points[p as usize].sides);
         if b.contains(&a[0]) {
             a[0]
         } else {
@@ -134,20 +136,20 @@ impl Triangulation {
 
     /// Returns the triangle across an edge, or `NONE`, and the index of the same edge in it.
     pub fn across(&self, (cell, edge): (u32, usize)) -> (u32, usize) {
-        let mate = self.cells[cell as usize].mates[edge];
-        let back = if mate == NONE {
+        let neighbour = self.cells[cell as usize].neighbours[edge];
+        let back = if neighbour == NONE {
             0
         } else {
-            self.edge_to(mate, cell)
+            self.edge_to(neighbour, cell)
         };
-        (mate, back)
+        (neighbour, back)
     }
 
     /// Returns about twice the area of the projection of a triangle.
     pub fn size(&self, cell: u32) -> f64 {
         let [a, b, c] = self.cells[cell as usize]
             .corners
-            .map(|i| &self.places[i as usize]);
+            .map(|i| &self.points[i as usize]);
         let ([ux, uy], [vx, vy]) = (a.to(b), a.to(c));
         ux * vy - uy * vx
     }
@@ -157,7 +159,7 @@ impl Triangulation {
     pub fn mean(&self, cell: u32, weights: [f64; 3]) -> [i64; 2] {
         let corners = self.cells[cell as usize].corners;
         let at = |i: usize| {
-            let terms = (0..3).map(|k| weights[k] * self.places[corners[k] as usize].at[i]);
+            let terms = (0..3).map(|k| weights[k] * self.points[corners[k] as usize].at[i]);
             terms.sum::<f64>() / weights.iter().sum::<f64>()
         };
         let [u, v] = [0, 1].map(|i| as_whole((2.0 * at(i)).round()));
@@ -169,25 +171,26 @@ impl Triangulation {
     }
 
     /// Returns true if a point lies strictly inside a triangle.
-    pub fn holds(&mut self, cell: u32, vertex: Arc<Vertex>) -> bool {
+    pub fn contains(&mut self, cell: u32, vertex: Arc<Vertex>) -> bool {
         let [a, b, c] = self.cells[cell as usize].corners;
         let point = self.add(vertex, [NONE; 2]);
         let is_left = |(p, q)| self.turn([p, q, point]) == Sign::Positive;
         let is_inside = [(a, b), (b, c), (c, a)].into_iter().all(is_left);
-        self.places.pop();
+        self.points.pop();
         self.incident.pop();
         is_inside
     }
 
     /// Returns the number of a triangle that has the point with this number as a corner.
-    pub fn cell_at(&self, place: u32) -> u32 {
-        self.incident[place as usize]
+    pub fn cell_at(&self, point: u32) -> u32 {
+        self.incident[point as usize]
     }
 
     fn add(&mut self, vertex: Arc<Vertex>, sides: [u32; 2]) -> u32 {
-        self.places.push(Place::of(vertex, sides, self.axes));
+        self.points
+            .push(ProjectedPoint::of(vertex, sides, self.axes));
         self.incident.push(NONE);
-        as_number(self.places.len() - 1)
+        as_number(self.points.len() - 1)
     }
 
     fn put(&mut self, number: u32, cell: Cell) {
@@ -204,17 +207,17 @@ impl Triangulation {
     /// Replaces the neighbour `from` of a triangle by `to`.
     fn relink(&mut self, neighbour: u32, from: u32, to: u32) {
         if neighbour != NONE {
-            let mates = &mut self.cells[neighbour as usize].mates;
-            if let Some(mate) = mates.iter_mut().find(|m| **m == from) {
-                *mate = to;
+            let neighbours = &mut self.cells[neighbour as usize].neighbours;
+            if let Some(neighbour) = neighbours.iter_mut().find(|m| **m == from) {
+                *neighbour = to;
             }
         }
     }
 
-    /// Returns the index of the edge of a triangle across which the triangle `mate` lies.
-    fn edge_to(&self, cell: u32, mate: u32) -> usize {
-        let mates = &self.cells[cell as usize].mates;
-        mates.iter().position(|m| *m == mate).unwrap_or(0)
+    /// Returns the index of the edge of a triangle across which the triangle `neighbour` lies.
+    fn edge_to(&self, cell: u32, neighbour: u32) -> usize {
+        let neighbours = &self.cells[cell as usize].neighbours;
+        neighbours.iter().position(|m| *m == neighbour).unwrap_or(0)
     }
 
     /// Returns the exact sign of the turn along three projected points, positive to the left.
@@ -237,7 +240,7 @@ impl Triangulation {
     /// Returns the sign of the turn along three points, positive to the left, if doubles or a common side of
     /// the polygon decide it.
     fn near_turn(&self, points: [u32; 3]) -> Filtered<Sign> {
-        let [p, q, r] = points.map(|i| &self.places[i as usize]);
+        let [p, q, r] = points.map(|i| &self.points[i as usize]);
         let ([ux, uy], [vx, vy]) = (p.to(q), p.to(r));
         let (left, right) = (ux * vy, uy * vx);
         let (value, off) = (left - right, p.error + q.error + r.error);
@@ -259,13 +262,13 @@ impl Triangulation {
     #[cold]
     fn exact_turn(&mut self, points: [u32; 3]) -> Sign {
         for point in points {
-            let place = &mut self.places[point as usize];
-            let vertex = &place.vertex;
-            place
+            let projected = &mut self.points[point as usize];
+            let vertex = &projected.vertex;
+            projected
                 .exact
                 .get_or_insert_with(|| Box::new(vertex.coordinates()));
         }
-        let at = |i: usize| self.places[points[i] as usize].exact.as_deref();
+        let at = |i: usize| self.points[points[i] as usize].exact.as_deref();
         match (at(0), at(1), at(2)) {
             (Some(p), Some(q), Some(r)) => turn_of([p, q, r], self.axes),
             _ => Sign::Zero,
@@ -274,19 +277,20 @@ impl Triangulation {
 
     /// Returns the triangles at a point, each with the index of the point among its corners.
     fn fan(&self, point: u32) -> impl Iterator<Item = (u32, usize)> + '_ {
-        let place = move |cell: &Cell| cell.corners.iter().position(|c| *c == point).unwrap_or(0);
+        let corner_of =
+            move |cell: &Cell| cell.corners.iter().position(|c| *c == point).unwrap_or(0);
         let first = self.incident[point as usize];
         let (mut at, mut is_back) = (first, false);
         std::iter::from_fn(move || {
             if at == NONE && !is_back {
                 is_back = true;
                 let cell = self.cells.get(first as usize)?;
-                at = cell.mates[place(cell)];
+                at = cell.neighbours[corner_of(cell)];
             }
             let here = at;
             let cell = self.cells.get(here as usize)?;
-            let k = place(cell);
-            at = cell.mates[if is_back { k } else { (k + 2) % 3 }];
+            let k = corner_of(cell);
+            at = cell.neighbours[if is_back { k } else { (k + 2) % 3 }];
             if at == first {
                 (at, is_back) = (NONE, true);
             }
@@ -305,7 +309,7 @@ impl Triangulation {
     /// Returns the edge between two points, as seen from the triangles on its left and on its right, or on
     /// one side at the border; `None` if no edge connects the points.
     fn edges_between(&self, from: u32, to: u32) -> Option<[Option<(u32, usize)>; 2]> {
-        let across = |at| Some(self.across(at)).filter(|(mate, _)| *mate != NONE);
+        let across = |at| Some(self.across(at)).filter(|(neighbour, _)| *neighbour != NONE);
         if let Some(at) = self.edge_between(from, to) {
             return Some([Some(at), across(at)]);
         }
@@ -333,18 +337,22 @@ impl Triangulation {
         let point = self.add(vertex, [NONE; 2]);
         let (cell, on) = self.locate(point)?;
         self.last = cell;
-        let Cell { corners, mates, .. } = self.cells[cell as usize];
+        let Cell {
+            corners,
+            neighbours,
+            ..
+        } = self.cells[cell as usize];
         let changed = match on[..] {
             [] => self.split_cell(cell, point),
             [edge] => {
-                if mates[edge] == NONE {
+                if neighbours[edge] == NONE {
                     let side = self.side([corners[edge], corners[(edge + 1) % 3]]);
-                    self.places[point as usize].sides = [side; 2];
+                    self.points[point as usize].sides = [side; 2];
                 }
                 self.split_edge(cell, edge, point)
             }
             _ => {
-                self.places.pop();
+                self.points.pop();
                 self.incident.pop();
                 let is_end = |i: &usize| on.contains(i) && on.contains(&((i + 2) % 3));
                 return Ok(corners[(0..3).find(is_end).unwrap_or(0)]);
@@ -373,9 +381,9 @@ impl Triangulation {
                 let [a, b] = [cell.corners[i], cell.corners[(i + 1) % 3]];
                 match self.turn([a, b, point]) {
                     Sign::Positive => {}
-                    Sign::Negative if cell.mates[i] == NONE => return Err(Defect),
+                    Sign::Negative if cell.neighbours[i] == NONE => return Err(Defect),
                     Sign::Negative => {
-                        at = cell.mates[i];
+                        at = cell.neighbours[i];
                         continue 'walk;
                     }
                     Sign::Zero => on.push(i),
@@ -389,26 +397,35 @@ impl Triangulation {
     fn split_cell(&mut self, number: u32, m: u32) -> SmallVec<[u32; 4]> {
         let Cell {
             corners: [a, b, c],
-            mates,
+            neighbours,
             marks,
         } = self.cells[number as usize];
         let (second, third) = (as_number(self.cells.len()), as_number(self.cells.len() + 1));
-        let cell = |corners, mates, mark| Cell {
+        let cell = |corners, neighbours, mark| Cell {
             corners,
-            mates,
+            neighbours,
             marks: [mark, 0, 0],
         };
-        self.put(number, cell([a, b, m], [mates[0], second, third], marks[0]));
-        self.put(second, cell([b, c, m], [mates[1], third, number], marks[1]));
-        self.put(third, cell([c, a, m], [mates[2], number, second], marks[2]));
-        self.relink(mates[1], number, second);
-        self.relink(mates[2], number, third);
+        self.put(
+            number,
+            cell([a, b, m], [neighbours[0], second, third], marks[0]),
+        );
+        self.put(
+            second,
+            cell([b, c, m], [neighbours[1], third, number], marks[1]),
+        );
+        self.put(
+            third,
+            cell([c, a, m], [neighbours[2], number, second], marks[2]),
+        );
+        self.relink(neighbours[1], number, second);
+        self.relink(neighbours[2], number, third);
         SmallVec::from_slice(&[number, second, third])
     }
 
     /// Divides an edge, and the triangles on both sides, at a point; returns the triangles at this point.
     fn split_edge(&mut self, number: u32, edge: usize, m: u32) -> SmallVec<[u32; 4]> {
-        let across = self.cells[number as usize].mates[edge];
+        let across = self.cells[number as usize].neighbours[edge];
         let second = as_number(self.cells.len());
         let fourth = if across == NONE { NONE } else { second + 1 };
         let back = if across == NONE {
@@ -442,7 +459,7 @@ impl Triangulation {
             number,
             Cell {
                 corners: [a, m, apex],
-                mates: [first_mate, second, old.mates[last]],
+                neighbours: [first_mate, second, old.neighbours[last]],
                 marks: [old.marks[edge], 0, old.marks[last]],
             },
         );
@@ -450,17 +467,17 @@ impl Triangulation {
             second,
             Cell {
                 corners: [m, b, apex],
-                mates: [second_mate, old.mates[next], number],
+                neighbours: [second_mate, old.neighbours[next], number],
                 marks: [old.marks[edge], old.marks[next], 0],
             },
         );
-        self.relink(old.mates[next], number, second);
+        self.relink(old.neighbours[next], number, second);
     }
 
     /// Replaces an edge by the other diagonal of the quadrilateral of its two triangles.
     fn flip(&mut self, number: u32, edge: usize) {
         let t = self.cells[number as usize];
-        let across = t.mates[edge];
+        let across = t.neighbours[edge];
         let u = self.cells[across as usize];
         let back = self.edge_to(across, number);
         let [[t1, t2], [u1, u2]] = [edge, back].map(|i| [(i + 1) % 3, (i + 2) % 3]);
@@ -469,7 +486,7 @@ impl Triangulation {
             number,
             Cell {
                 corners: [apex, a, other],
-                mates: [t.mates[t2], u.mates[u1], across],
+                neighbours: [t.neighbours[t2], u.neighbours[u1], across],
                 marks: [t.marks[t2], u.marks[u1], 0],
             },
         );
@@ -477,12 +494,12 @@ impl Triangulation {
             across,
             Cell {
                 corners: [other, b, apex],
-                mates: [u.mates[u2], t.mates[t1], number],
+                neighbours: [u.neighbours[u2], t.neighbours[t1], number],
                 marks: [u.marks[u2], t.marks[t1], 0],
             },
         );
-        self.relink(u.mates[u1], across, number);
-        self.relink(t.mates[t1], number, across);
+        self.relink(u.neighbours[u1], across, number);
+        self.relink(t.neighbours[t1], number, across);
     }
 
     /// Flips edges opposite to a new point until the triangles at the point are locally Delaunay.
@@ -494,7 +511,7 @@ impl Triangulation {
                 continue;
             };
             let edge = (k + 1) % 3;
-            let across = cell.mates[edge];
+            let across = cell.neighbours[edge];
             let is_free = across != NONE && cell.marks[edge] == 0;
             if is_free && self.should_flip(number, edge) {
                 self.flip(number, edge);
@@ -512,7 +529,7 @@ impl Triangulation {
     /// sides.
     fn around(&self, number: u32, edge: usize) -> [u32; 4] {
         let t = &self.cells[number as usize];
-        let across = t.mates[edge];
+        let across = t.neighbours[edge];
         let back = self.edge_to(across, number);
         let other = self.cells[across as usize].corners[(back + 2) % 3];
         let corner = |i: usize| t.corners[(edge + i) % 3];
@@ -531,7 +548,7 @@ impl Triangulation {
         /// The relative margin from which a point is clearly inside: four points of a grid often lie on one
         /// circle, and rounding must not decide.
         const CLEAR: f64 = 1e-9;
-        let at = |i: u32| self.places[i as usize].at;
+        let at = |i: u32| self.points[i as usize].at;
         let origin = at(point);
         let [p, q, r] = corners.map(|i| {
             let (x, y) = (at(i)[0] - origin[0], at(i)[1] - origin[1]);
@@ -544,7 +561,7 @@ impl Triangulation {
     }
 }
 
-impl Place {
+impl ProjectedPoint {
     fn of(vertex: Arc<Vertex>, sides: [u32; 2], axes: [usize; 2]) -> Self {
         let near = vertex.approx();
         let at = axes.map(|i| near[i]);
@@ -591,8 +608,8 @@ mod tests {
         Triangulation::new([[0, 0], [64, 0], [0, 64]].map(vertex).into_iter(), [0, 1])
     }
 
-    pub(super) fn at(cells: &Triangulation, place: u32) -> [f64; 2] {
-        cells.places[place as usize].at
+    pub(super) fn at(cells: &Triangulation, point: u32) -> [f64; 2] {
+        cells.points[point as usize].at
     }
 
     /// Returns twice the area of all triangles; asserts that each is counterclockwise and agrees with its
@@ -602,11 +619,14 @@ mod tests {
         for (number, cell) in (0..).zip(cells.cells()) {
             assert!(cells.size(number) > 0.0);
             sum += cells.size(number);
-            for i in (0..3).filter(|i| cell.mates[*i] != NONE) {
-                let (mate, back) = cells.across((number, i));
+            for i in (0..3).filter(|i| cell.neighbours[*i] != NONE) {
+                let (neighbour, back) = cells.across((number, i));
                 let (from, to) = cells.ends((number, i));
-                assert_eq!(cells.ends((mate, back)), (to, from));
-                assert_eq!(cells.cells()[mate as usize].marks[back], -cell.marks[i]);
+                assert_eq!(cells.ends((neighbour, back)), (to, from));
+                assert_eq!(
+                    cells.cells()[neighbour as usize].marks[back],
+                    -cell.marks[i]
+                );
             }
         }
         sum

@@ -101,8 +101,8 @@ enum Step<S: Space> {
     },
 }
 
-/// The result for two trees that need not be divided: the operand on which it depends, how it depends on it,
-/// and why.
+/// The result for two trees that need not be divided: the operand on which it depends, how it depends on this
+/// operand, and why.
 struct Decided<'a, S: Space> {
     outcome: Outcome,
     operand: &'a PartitionTree<S>,

@@ -114,7 +114,7 @@ pub enum Joined {
 
 /// The root of a partition tree: a label, or the number of an inner node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Name {
+pub enum NodeName {
     /// A leaf: an undivided region with this label.
     Leaf(Label),
     /// The inner node of the first operand at this index in preorder, minus before plus.
@@ -130,9 +130,9 @@ pub enum MergeStep {
     /// Two trees of the same region are combined.
     Pair {
         /// The root of the first operand's tree in this region.
-        a: Name,
+        a: NodeName,
         /// The root of the second operand's tree in this region.
-        b: Name,
+        b: NodeName,
         /// How the two trees are combined.
         decision: Decision,
     },
@@ -140,21 +140,21 @@ pub enum MergeStep {
     /// divides.
     Split {
         /// The root of the subtree.
-        root: Name,
+        root: NodeName,
         /// The position of the splitting hyperplane relative to the subtree's root.
         case: SplitCase,
     },
     /// A subtree of the second operand has been split into two trees.
     Halves {
         /// The root of the tree on the minus side.
-        minus: Name,
+        minus: NodeName,
         /// The root of the tree on the plus side.
-        plus: Name,
+        plus: NodeName,
     },
     /// The two combined subtrees of a node of the first operand have been joined under it.
     Join {
         /// The number of that node in the first operand.
-        node: Name,
+        node: NodeName,
         /// The form that the node has in the result.
         joined: Joined,
     },
@@ -187,7 +187,7 @@ impl<S: Space> Journal<S> {
         self.steps
     }
 
-    fn note(&mut self, seen: &MergeEvent<S>) -> MergeStep {
+    fn record(&mut self, seen: &MergeEvent<S>) -> MergeStep {
         match seen {
             MergeEvent::Pair { a, b, decision } => MergeStep::Pair {
                 a: self.first_name(a),
@@ -196,7 +196,7 @@ impl<S: Space> Journal<S> {
             },
             MergeEvent::Split { root, case, parts } => {
                 let name = self.second_name(root);
-                if let (Name::Second(number), Some(parts)) = (name, parts) {
+                if let (NodeName::Second(number), Some(parts)) = (name, parts) {
                     let part = |p: &Arc<_>| (Arc::as_ptr(p), (number, Arc::clone(p)));
                     self.second.extend(parts.iter().map(part));
                 }
@@ -219,12 +219,12 @@ impl<S: Space> Journal<S> {
         }
     }
 
-    fn first_name(&self, root: &Root<S>) -> Name {
-        name(root, &self.first, Name::First)
+    fn first_name(&self, root: &Root<S>) -> NodeName {
+        name(root, &self.first, NodeName::First)
     }
 
-    fn second_name(&self, root: &Root<S>) -> Name {
-        name(root, &self.second, Name::Second)
+    fn second_name(&self, root: &Root<S>) -> NodeName {
+        name(root, &self.second, NodeName::Second)
     }
 }
 
@@ -232,14 +232,18 @@ impl<S: Space> Watcher<MergeEvent<S>> for Journal<S> {
     const LISTENS: bool = true;
 
     fn notify(&mut self, event: impl FnOnce() -> MergeEvent<S>) {
-        let step = self.note(&event());
+        let step = self.record(&event());
         self.steps.push(step);
     }
 }
 
-fn name<S: Space>(root: &Root<S>, numbers: &Numbers<S>, make: impl Fn(NodeId) -> Name) -> Name {
+fn name<S: Space>(
+    root: &Root<S>,
+    numbers: &Numbers<S>,
+    make: impl Fn(NodeId) -> NodeName,
+) -> NodeName {
     match root {
-        Root::Leaf(label) => Name::Leaf(*label),
+        Root::Leaf(label) => NodeName::Leaf(*label),
         // All sub-hyperplanes that can occur are numbered; an unknown one would get a number without a node.
         Root::Cut(sub_hyperplane) => make(
             numbers

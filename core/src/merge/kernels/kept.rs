@@ -15,12 +15,12 @@ use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
 use crate::mesh::handle::{FaceId, SourceFace};
 use crate::mesh::source::{Shape, Source};
-use crate::tree::node::{Deferred, Group, Node, Part, PartElement};
+use crate::tree::node::{DeferredLeaf, FaceGroup, Node, Part, PartElement};
 use crate::tree::pieces::pieces;
 
-/// The part of a face, or of a piece of a face, that bounds the result of a cell in one orientation.
+/// The part of a face that bounds the result of a cell in one orientation.
 #[derive(Debug)]
-pub struct Kept {
+pub struct KeptPart {
     face: SourceFace,
     orientation: Orientation,
     region: KeptRegion,
@@ -38,7 +38,7 @@ enum KeptRegion {
     Outline(Vec<BareEdge>),
 }
 
-impl Kept {
+impl KeptPart {
     /// Keeps all of a face that is in the cell.
     pub fn whole(face: SourceFace, orientation: Orientation) -> Self {
         let region = KeptRegion::Whole;
@@ -116,7 +116,7 @@ impl Kept {
 /// Joins the kept pieces of each face, and returns them as a deferred leaf made by a kernel. `corner` is the
 /// winding number at the cell's low corner, and `touching` says whether faces may touch each other anywhere.
 pub fn assemble(
-    mut kept: Vec<Kept>,
+    mut kept: Vec<KeptPart>,
     corner: i32,
     touching: bool,
     cell: &Cell,
@@ -126,10 +126,10 @@ pub fn assemble(
         return Node::Leaf(corner);
     }
     kept.sort_by_key(|k| (k.face.slot, k.orientation, k.face.id));
-    let mut leaf = Deferred {
+    let mut leaf = DeferredLeaf {
         corner,
-        worked: true,
-        ..Deferred::default()
+        by_kernel: true,
+        ..DeferredLeaf::default()
     };
     for run in kept.chunk_by_mut(|a, b| a.face == b.face && a.orientation == b.orientation) {
         poll();
@@ -137,14 +137,14 @@ pub fn assemble(
         let source = sources.get(slot);
         let orientation = run[0].orientation;
         match run {
-            [Kept {
+            [KeptPart {
                 region: KeptRegion::Whole,
                 ..
             }] => {
                 list_whole(&mut leaf.groups, source, face, orientation, touching);
                 continue;
             }
-            [Kept {
+            [KeptPart {
                 region: KeptRegion::Part(part),
                 ..
             }] => {
@@ -152,7 +152,7 @@ pub fn assemble(
                 leaf.parts.push(PartElement { part, orientation });
                 continue;
             }
-            [Kept {
+            [KeptPart {
                 region: KeptRegion::Outline(edges),
                 ..
             }] => {
@@ -175,24 +175,24 @@ pub fn assemble(
 
 /// Returns the outline of the part of a face that stays in one orientation; `None` if all of the face in the
 /// cell stays.
-fn outline(run: &[Kept], source: &Source, face: FaceId, cell: &Cell) -> Option<Vec<BareEdge>> {
+fn outline(run: &[KeptPart], source: &Source, face: FaceId, cell: &Cell) -> Option<Vec<BareEdge>> {
     let polygons: Vec<Cow<[Polygon]>> = run.iter().map(|k| k.polygons(source, cell)).collect();
     let polygons: Vec<&Polygon> = polygons.iter().flat_map(|p| p.iter()).collect();
-    let mut edges: Vec<BareEdge> = run.iter().flat_map(Kept::edges).cloned().collect();
+    let mut edges: Vec<BareEdge> = run.iter().flat_map(KeptPart::edges).cloned().collect();
     if let ([single], []) = (&polygons[..], &edges[..]) {
         // No edges of a convex piece cancel.
         if has_inner(single.edges(), source, face, cell) {
-            return Some(BareEdge::all_of(single).collect());
+            return Some(BareEdge::edges_of(single).collect());
         }
     }
-    edges.extend(polygons.iter().flat_map(|p| BareEdge::all_of(p)));
+    edges.extend(polygons.iter().flat_map(|p| BareEdge::edges_of(p)));
     let edges = cancel(OutlineEdge::keyed(edges, &source.plane_residues(face)));
     let whole = is_whole(&edges, source, face, cell);
     (!whole).then(|| edges.into_iter().map(BareEdge::from).collect())
 }
 
 fn list_whole(
-    groups: &mut Vec<Group>,
+    groups: &mut Vec<FaceGroup>,
     source: &Arc<Source>,
     face: FaceId,
     orientation: Orientation,
@@ -202,7 +202,7 @@ fn list_whole(
         Some(g) if Arc::ptr_eq(&g.source, source) && g.orientation == orientation => {
             g.faces.push(face);
         }
-        _ => groups.push(Group {
+        _ => groups.push(FaceGroup {
             touching,
             source: Arc::clone(source),
             orientation,
@@ -293,7 +293,7 @@ mod tests {
     use crate::merge::scenes::{counts, crossing, Shared};
     use crate::mesh::handle::Slot;
 
-    fn assembled(scene: &Shared, kept: Vec<Kept>) -> Node {
+    fn assembled(scene: &Shared, kept: Vec<KeptPart>) -> Node {
         assemble(kept, 1, false, &scene.cell, &scene.sources)
     }
 
@@ -305,7 +305,7 @@ mod tests {
     #[test]
     fn whole_faces_stand_in_groups_by_source_and_orientation() {
         let whole = |slot: u32, face: u32, orientation| {
-            Kept::whole(SourceFace::new(Slot(slot), FaceId(face)), orientation)
+            KeptPart::whole(SourceFace::new(Slot(slot), FaceId(face)), orientation)
         };
         let (same, turned) = (Orientation::Same, Orientation::Opposite);
         let kept = vec![
@@ -335,7 +335,8 @@ mod tests {
         let PolygonSplit::Both(minus, plus) = polygon.split(&cut) else {
             panic!("the plane crosses the face");
         };
-        let pieces = |some: &[Polygon]| vec![Kept::pieces(face, Orientation::Same, some.to_vec())];
+        let pieces =
+            |some: &[Polygon]| vec![KeptPart::pieces(face, Orientation::Same, some.to_vec())];
         let all = assembled(&scene, pieces(&[minus.clone(), plus]));
         assert_eq!(counts(&all), (1, 0));
         assert_eq!(counts(&assembled(&scene, pieces(&[minus]))), (0, 1));

@@ -18,14 +18,14 @@ pub struct CellProblem<'a> {
     /// The rule that says which winding numbers of an operand are inside.
     pub rule: Rule,
     /// The operands with boundary in the cell, in ascending order of their numbers.
-    pub operands: Vec<Listed<'a>>,
+    pub operands: Vec<ListedOperand<'a>>,
     /// The meshes and half-spaces of all operands.
     pub sources: &'a Sources,
 }
 
 /// An operand with its boundary in a cell.
 #[derive(Debug)]
-pub struct Listed<'a> {
+pub struct ListedOperand<'a> {
     /// The number of the operand in the expression.
     pub number: u32,
     /// The elements (faces and parts of faces) of the operand that meet the cell.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::kept::Kept;
+use super::kept::KeptPart;
 use crate::geometry::outline::BareEdge;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::side::Orientation;
@@ -10,32 +10,32 @@ use crate::interrupt::poll;
 use crate::mesh::handle::{Slot, SourceFace};
 use crate::tree::node::Part;
 
-/// The part of an element (a face or a convex piece of a part) that bounds the result in one orientation.
-pub enum Stays {
-    /// Nothing of the element.
+/// The part of a face, or of a convex piece of a cut face, that bounds the result in one orientation.
+pub enum StayingRegion {
+    /// Nothing of the face.
     Nothing,
-    /// All of the element in the cell.
+    /// All of the face in the cell.
     All,
-    /// These convex pieces of the element.
+    /// These convex pieces of the face.
     Pieces(Vec<Polygon>),
-    /// The region of the element inside an outline; no two consecutive edges lie on one line.
+    /// The region of the face inside an outline; no two consecutive edges lie on one line.
     Outline(Vec<BareEdge>),
 }
 
-/// The face or the part that an element comes from.
+/// Whether a face in a cell is an original face or a piece of a cut one.
 pub enum Owner {
-    /// The element is this whole face.
+    /// This whole face of a source.
     Face(SourceFace),
-    /// The element is a convex piece of the part with this number.
+    /// A convex piece of the part with this number.
     Part(usize),
 }
 
-/// An element that meets the cell: its number, the face or part that it comes from, and the parts of it that
-/// bound the result in the source's orientation and in the opposite one.
-pub type Settled = (usize, Owner, [Stays; 2]);
+/// A face, or convex piece of a cut face, that meets the cell: its number, the source face or part that it
+/// comes from, and its regions that bound the result in the source's orientation and in the opposite one.
+pub type StayingElement = (usize, Owner, [StayingRegion; 2]);
 
-impl Stays {
-    /// Makes the value for these convex pieces; `Nothing` if there are none.
+impl StayingRegion {
+    /// Makes the region of these convex pieces; `Nothing` if there are none.
     pub fn of(pieces: Vec<Polygon>) -> Self {
         if pieces.is_empty() {
             Self::Nothing
@@ -44,27 +44,27 @@ impl Stays {
         }
     }
 
-    fn kept(self, face: SourceFace, orientation: Orientation) -> Option<Kept> {
+    fn kept(self, face: SourceFace, orientation: Orientation) -> Option<KeptPart> {
         match self {
             Self::Nothing => None,
-            Self::All => Some(Kept::whole(face, orientation)),
-            Self::Pieces(polygons) => Some(Kept::pieces(face, orientation, polygons)),
-            Self::Outline(edges) => Some(Kept::outlined(face, orientation, edges)),
+            Self::All => Some(KeptPart::whole(face, orientation)),
+            Self::Pieces(polygons) => Some(KeptPart::pieces(face, orientation, polygons)),
+            Self::Outline(edges) => Some(KeptPart::outlined(face, orientation, edges)),
         }
     }
 }
 
-/// Returns the regions of all faces and parts that bound the result. `parts` has the parts with the slots of
-/// their sources, and `polygon` returns the element with a given number.
+/// Returns the regions of all faces and parts of faces that bound the result. `parts` has the parts with the
+/// slots of their sources, and `polygon` returns the face or piece with a given number.
 pub fn kept(
-    settled: impl Iterator<Item = Settled>,
+    elements: impl Iterator<Item = StayingElement>,
     parts: &[(&Arc<Part>, Slot)],
     polygon: impl Fn(usize) -> Option<Polygon>,
-) -> Vec<Kept> {
-    let mut kept = Vec::with_capacity(settled.size_hint().0);
-    let mut pieces: Vec<[Vec<(usize, Stays)>; 2]> = Vec::new();
+) -> Vec<KeptPart> {
+    let mut kept = Vec::with_capacity(elements.size_hint().0);
+    let mut pieces: Vec<[Vec<(usize, StayingRegion)>; 2]> = Vec::new();
     pieces.resize_with(parts.len(), Default::default);
-    for (i, owner, stays) in settled {
+    for (i, owner, stays) in elements {
         poll();
         let sides = stays.into_iter().zip(Orientation::BOTH);
         match owner {
@@ -81,38 +81,36 @@ pub fn kept(
     for (part, sides) in parts.iter().zip(pieces) {
         poll();
         let sides = sides.into_iter().zip(Orientation::BOTH);
-        kept.extend(
-            sides.filter_map(|(pieces, orientation)| {
-                kept_part(*part, pieces, orientation, &polygon)
-            }),
-        );
+        kept.extend(sides.filter_map(|(pieces, orientation)| {
+            kept_from_part(*part, pieces, orientation, &polygon)
+        }));
     }
     kept
 }
 
-/// Returns the part unchanged if all its pieces stay, otherwise the pieces that stay; `None` if there are
-/// none.
-fn kept_part(
+/// Returns a part of a face unchanged if all its convex pieces stay, otherwise the pieces that stay; `None`
+/// if there are none.
+fn kept_from_part(
     (part, slot): (&Arc<Part>, Slot),
-    pieces: Vec<(usize, Stays)>,
+    pieces: Vec<(usize, StayingRegion)>,
     orientation: Orientation,
     polygon: impl Fn(usize) -> Option<Polygon>,
-) -> Option<Kept> {
+) -> Option<KeptPart> {
     let face = SourceFace::new(slot, part.face);
-    if !pieces.is_empty() && pieces.iter().all(|p| matches!(p.1, Stays::All)) {
-        return Some(Kept::part(face, orientation, Arc::clone(part)));
+    if !pieces.is_empty() && pieces.iter().all(|p| matches!(p.1, StayingRegion::All)) {
+        return Some(KeptPart::part(face, orientation, Arc::clone(part)));
     }
     let (mut polygons, mut edges) = (Vec::new(), Vec::new());
     for (i, stays) in pieces {
         match stays {
-            Stays::Nothing => {}
-            Stays::All => polygons.extend(polygon(i)),
-            Stays::Pieces(pieces) => polygons.extend(pieces),
-            Stays::Outline(outline) => edges.extend(outline),
+            StayingRegion::Nothing => {}
+            StayingRegion::All => polygons.extend(polygon(i)),
+            StayingRegion::Pieces(pieces) => polygons.extend(pieces),
+            StayingRegion::Outline(outline) => edges.extend(outline),
         }
     }
     let some = !(polygons.is_empty() && edges.is_empty());
-    some.then(|| Kept::joined(face, orientation, polygons, edges))
+    some.then(|| KeptPart::joined(face, orientation, polygons, edges))
 }
 
 #[cfg(test)]
@@ -130,25 +128,28 @@ mod tests {
         let polygon = source
             .clip(FaceId(0), &scene.cell)
             .expect("it is in the cell");
-        let edges = BareEdge::all_of(&polygon).collect();
+        let edges = BareEdge::edges_of(&polygon).collect();
         let part = Arc::new(Part::new(Arc::clone(source), FaceId(0), scene.cell, edges));
         let parts = [(&part, Slot(0))];
-        let left = |second: Stays| {
-            let of_part = |i: usize, stays| (i, Owner::Part(0), [stays, Stays::Nothing]);
-            let settled = [of_part(0, Stays::All), of_part(1, second)];
-            let kept = kept(settled.into_iter(), &parts, |_| Some(polygon.clone()));
+        let left = |second: StayingRegion| {
+            let of_part = |i: usize, stays| (i, Owner::Part(0), [stays, StayingRegion::Nothing]);
+            let elements = [of_part(0, StayingRegion::All), of_part(1, second)];
+            let kept = kept(elements.into_iter(), &parts, |_| Some(polygon.clone()));
             assemble(kept, 0, false, &scene.cell, &scene.sources)
         };
         let shared = |node: &Node| match node {
             Node::Deferred(leaf) => leaf.parts.iter().any(|p| Arc::ptr_eq(&p.part, &part)),
             Node::Leaf(_) | Node::Cut(_) => false,
         };
-        assert!(shared(&left(Stays::All)));
-        assert!(!shared(&left(Stays::Nothing)));
+        assert!(shared(&left(StayingRegion::All)));
+        assert!(!shared(&left(StayingRegion::Nothing)));
     }
 
     #[test]
     fn no_pieces_are_nothing() {
-        assert!(matches!(Stays::of(Vec::new()), Stays::Nothing));
+        assert!(matches!(
+            StayingRegion::of(Vec::new()),
+            StayingRegion::Nothing
+        ));
     }
 }

@@ -21,7 +21,7 @@ use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
 use crate::mesh::handle::FaceId;
 use crate::mesh::triangles::TriangleMesh;
-use crate::tree::node::{Branch, Deferred, Group, Node};
+use crate::tree::node::{Branch, DeferredLeaf, FaceGroup, Node};
 
 /// The least average number of faces in a cell into which faces are sorted.
 const MIN_FACES_PER_CELL: usize = 4;
@@ -39,14 +39,14 @@ const MIN_CELLS: usize = 64;
 #[derive(Debug)]
 pub struct Bins {
     home: Branch,
-    /// For each group of faces, the number of its first element; elements are numbered consecutively over all
-    /// groups.
+    /// For each group of faces (with one mesh and orientation), the number of its first face; faces are
+    /// numbered consecutively over all groups.
     firsts: Vec<u32>,
     window: Window,
     /// For each cell the index of its first entry in `entries`; the last number is the end of the last cell's
     /// entries.
     starts: Vec<u32>,
-    /// The numbers of the elements in each cell, cell after cell.
+    /// The numbers of the faces in each cell, cell after cell.
     entries: Vec<u32>,
     /// For each corner of the window's cells, the number of entries in the cells below it on all three axes.
     below: Vec<u32>,
@@ -54,17 +54,17 @@ pub struct Bins {
 }
 
 /// The faces of one group, which share a mesh and an orientation; `first` is the number of the first one
-/// among the elements of the leaf.
-struct Run<'a> {
+/// among the faces of the leaf.
+struct GroupFaces<'a> {
     mesh: &'a TriangleMesh,
     faces: &'a [FaceId],
     orientation: Orientation,
     first: u32,
 }
 
-/// The cells that each element (face) lies in.
+/// The cells that each face lies in.
 struct Sorted {
-    /// For each element the number of the one cell that contains it, or `SPANS` if it reaches into several or
+    /// For each face the number of the one cell that contains it, or `SPANS` if it reaches into several or
     /// lies outside the window.
     cells: Vec<u32>,
     spans: Vec<Span>,
@@ -82,7 +82,7 @@ impl Bins {
             return None;
         };
         let runs = runs(leaf)?;
-        let mut window = plan(&runs, &home.cell, leaf.len())?;
+        let mut window = plan_window(&runs, &home.cell, leaf.len())?;
         loop {
             if let Some(bins) = Self::sorted(home, &runs, window, leaf.len()) {
                 return Some(bins);
@@ -93,9 +93,9 @@ impl Bins {
         }
     }
 
-    fn sorted(home: &Branch, runs: &[Run], window: Window, total: usize) -> Option<Self> {
+    fn sorted(home: &Branch, runs: &[GroupFaces], window: Window, total: usize) -> Option<Self> {
         let sorted = Sorted::new(&window, runs, total);
-        let rows = rows(
+        let rows = cell_element_pairs(
             &window,
             runs,
             &sorted.spans,
@@ -103,14 +103,14 @@ impl Bins {
         )?;
         let (starts, entries) = distribute(&window, &sorted.cells, &rows);
         let corners = |element: u32| {
-            let (run, face) = find(runs, element);
+            let (run, face) = group_and_face_of(runs, element);
             (run.mesh.corners(face), run.orientation)
         };
         Some(Self {
             home: home.clone(),
             firsts: runs.iter().map(|r| r.first).collect(),
             window,
-            below: integral(&window, &starts),
+            below: entries_below_corners(&window, &starts),
             crossings: Crossings::new(window, &sorted.spans, corners),
             starts,
             entries,
@@ -125,7 +125,7 @@ impl Bins {
     /// Returns the number of entries of faces in a cell of the sorted leaf: zero if no face meets the cell; a
     /// face may be counted several times.
     pub fn len_in(&self, cell: &Cell) -> usize {
-        let [x, y, z] = self.window.covered(cell);
+        let [x, y, z] = self.window.cells_in(cell);
         let [_, ny, nz] = self.window.count();
         let at = |x: i32, y: i32, z: i32| {
             self.below[((x * (ny + 1) + y) * (nz + 1) + z).cast_unsigned() as usize]
@@ -137,7 +137,7 @@ impl Bins {
 
     /// Returns the winding number at the low corner of a cell that lies in the sorted leaf.
     pub fn corner_of(&self, cell: &Cell) -> i32 {
-        let change = self.crossings.up_to(self.window.corner(cell));
+        let change = self.crossings.sum_up_to(self.window.corner(cell));
         self.home.oriented(self.leaf().corner + change)
     }
 
@@ -146,29 +146,29 @@ impl Bins {
         if *cell == self.home.cell {
             return self.home.clone();
         }
-        let leaf = Deferred {
+        let leaf = DeferredLeaf {
             groups: self.groups_in(cell),
             parts: Vec::new(),
             corner: self.corner_of(cell),
-            worked: self.leaf().worked,
-            ..Deferred::default()
+            by_kernel: self.leaf().by_kernel,
+            ..DeferredLeaf::default()
         };
         Branch::of_node(*cell, Node::Deferred(leaf))
     }
 
     /// Returns true if a kernel made the sorted leaf; false if it is the unchanged boundary of an operand.
-    pub fn is_worked(&self) -> bool {
-        self.leaf().worked
+    pub fn is_by_kernel(&self) -> bool {
+        self.leaf().by_kernel
     }
 
-    fn leaf(&self) -> &Deferred {
+    fn leaf(&self) -> &DeferredLeaf {
         match &*self.home.node {
             Node::Deferred(leaf) => leaf,
             Node::Leaf(_) | Node::Cut(_) => unreachable!("bins are made of deferred leaves"),
         }
     }
 
-    fn groups_in(&self, cell: &Cell) -> Vec<Group> {
+    fn groups_in(&self, cell: &Cell) -> Vec<FaceGroup> {
         let elements = self.elements_in(cell);
         let mut rest = &elements[..];
         let mut groups = Vec::new();
@@ -180,7 +180,7 @@ impl Bins {
             rest = others;
             if !own.is_empty() {
                 let face = |e: &u32| group.faces[(e - first) as usize];
-                groups.push(Group {
+                groups.push(FaceGroup {
                     touching: group.touching,
                     source: Arc::clone(&group.source),
                     orientation: group.orientation.turned_if(self.home.complement),
@@ -191,21 +191,21 @@ impl Bins {
         groups
     }
 
-    /// Returns the numbers of the elements in a cell, ascending and without repetition.
+    /// Returns the numbers of the faces in a cell, ascending and without repetition.
     fn elements_in(&self, cell: &Cell) -> Vec<u32> {
-        let [x, y, z] = self.window.covered(cell);
+        let [x, y, z] = self.window.cells_in(cell);
         let mut elements = Vec::with_capacity(self.len_in(cell));
         for (x, y) in x.flat_map(|x| y.clone().map(move |y| (x, y))) {
             let row = self.window.index([x, y, z.start])..self.window.index([x, y, z.end]);
             let entries = self.starts[row.start] as usize..self.starts[row.end] as usize;
             elements.extend_from_slice(&self.entries[entries]);
         }
-        ascending(elements, self.leaf().len())
+        sorted_without_repetition(elements, self.leaf().len())
     }
 }
 
 /// Sorts numbers below `limit` and removes repetitions.
-fn ascending(mut numbers: Vec<u32>, limit: usize) -> Vec<u32> {
+fn sorted_without_repetition(mut numbers: Vec<u32>, limit: usize) -> Vec<u32> {
     if numbers.len() < limit / 32 {
         numbers.sort_unstable();
         numbers.dedup();
@@ -226,15 +226,16 @@ fn ascending(mut numbers: Vec<u32>, limit: usize) -> Vec<u32> {
     numbers
 }
 
-/// Returns the faces of a leaf by group; `None` if the leaf has elements other than triangles of meshes.
-fn runs(leaf: &Deferred) -> Option<Vec<Run<'_>>> {
+/// Returns the faces of a leaf by group (one mesh and orientation); `None` if the leaf lists anything but
+/// triangles of meshes.
+fn runs(leaf: &DeferredLeaf) -> Option<Vec<GroupFaces<'_>>> {
     if !leaf.parts.is_empty() {
         return None;
     }
     let mut runs = Vec::with_capacity(leaf.groups.len());
     let mut first = 0;
     for group in &leaf.groups {
-        runs.push(Run {
+        runs.push(GroupFaces {
             mesh: group.source.mesh()?,
             faces: &group.faces,
             orientation: group.orientation,
@@ -245,31 +246,34 @@ fn runs(leaf: &Deferred) -> Option<Vec<Run<'_>>> {
     Some(runs)
 }
 
-/// Returns the group of the element with this number, and its face.
-fn find<'a, 'b>(runs: &'a [Run<'b>], element: u32) -> (&'a Run<'b>, FaceId) {
+/// Returns the group (faces of one mesh and orientation) of the face with this number, and the face.
+fn group_and_face_of<'a, 'b>(
+    runs: &'a [GroupFaces<'b>],
+    element: u32,
+) -> (&'a GroupFaces<'b>, FaceId) {
     let run = &runs[runs.partition_point(|r| r.first <= element) - 1];
     (run, run.faces[(element - run.first) as usize])
 }
 
-impl Run<'_> {
-    /// Returns true if the group has at least as many faces as its mesh has vertices, so that one pass over
-    /// all vertices pays.
-    fn is_most(&self) -> bool {
+impl GroupFaces<'_> {
+    /// Returns true if this group of faces of one mesh has at least as many faces as the mesh has vertices,
+    /// so that one pass over all vertices pays.
+    fn has_most_vertices(&self) -> bool {
         self.faces.len() >= self.mesh.vertices.len()
     }
 
     fn bounds(&self) -> Option<(Lattice, Lattice)> {
-        if self.is_most() {
+        if self.has_most_vertices() {
             return self.mesh.bounds();
         }
         self.faces
             .iter()
             .map(|f| self.mesh.face_box(*f))
-            .reduce(joint)
+            .reduce(box_union)
     }
 }
 
-fn joint(a: (Lattice, Lattice), b: (Lattice, Lattice)) -> (Lattice, Lattice) {
+fn box_union(a: (Lattice, Lattice), b: (Lattice, Lattice)) -> (Lattice, Lattice) {
     (
         each_axis(|i| a.0[i].min(b.0[i])),
         each_axis(|i| a.1[i].max(b.1[i])),
@@ -278,8 +282,11 @@ fn joint(a: (Lattice, Lattice), b: (Lattice, Lattice)) -> (Lattice, Lattice) {
 
 /// Returns the intersection of a cell with the bounding box of all faces, as its low and its high corner;
 /// `None` if it is empty.
-fn bounds(runs: &[Run], home: &Cell) -> Option<(Lattice, Lattice)> {
-    let (low, high) = runs.iter().filter_map(Run::bounds).reduce(joint)?;
+fn bounds(runs: &[GroupFaces], home: &Cell) -> Option<(Lattice, Lattice)> {
+    let (low, high) = runs
+        .iter()
+        .filter_map(GroupFaces::bounds)
+        .reduce(box_union)?;
     let top = home.high();
     let low = each_axis(|i| low[i].max(home.low()[i]));
     let high = each_axis(|i| high[i].min(top[i]));
@@ -288,12 +295,12 @@ fn bounds(runs: &[Run], home: &Cell) -> Option<(Lattice, Lattice)> {
 
 /// Returns the window of the smallest cells with enough faces in each cell and with each face in few enough
 /// cells, on average; `None` if there is none, or if its cells are fewer than `MIN_CELLS`.
-fn plan(runs: &[Run], home: &Cell, total: usize) -> Option<Window> {
+fn plan_window(runs: &[GroupFaces], home: &Cell, total: usize) -> Option<Window> {
     let (low, high) = bounds(runs, home)?;
     let step = total.div_ceil(FACES_SAMPLED);
     let sample: Vec<(Lattice, Lattice)> = (0..as_number(total))
         .step_by(step)
-        .map(|element| find(runs, element))
+        .map(|element| group_and_face_of(runs, element))
         .map(|(run, face)| run.mesh.face_box(face))
         .collect();
     let coarsest = home.size().into_iter().min().map_or(0, u32::from);
@@ -323,7 +330,7 @@ fn cell_count(window: &Window, span: &Span) -> usize {
 }
 
 impl Sorted {
-    fn new(window: &Window, runs: &[Run], total: usize) -> Self {
+    fn new(window: &Window, runs: &[GroupFaces], total: usize) -> Self {
         let mut sorted = Self {
             cells: Vec::with_capacity(total),
             spans: Vec::new(),
@@ -331,11 +338,11 @@ impl Sorted {
         for run in runs {
             poll();
             let mesh = run.mesh;
-            if run.is_most() {
+            if run.has_most_vertices() {
                 let codes: Vec<u32> = mesh.vertices.iter().map(|p| window.code(p)).collect();
                 let code = |f: FaceId| {
                     let vertices = mesh.vertices_of(f);
-                    each_axis(|i| codes[vertices[i].place()])
+                    each_axis(|i| codes[vertices[i].index()])
                 };
                 sorted.add(window, run, code);
             } else {
@@ -345,7 +352,7 @@ impl Sorted {
         sorted
     }
 
-    fn add(&mut self, window: &Window, run: &Run, codes: impl Fn(FaceId) -> [u32; 3]) {
+    fn add(&mut self, window: &Window, run: &GroupFaces, codes: impl Fn(FaceId) -> [u32; 3]) {
         for (element, face) in (run.first..).zip(run.faces) {
             let [a, b, c] = codes(*face);
             let cell = if a == b && b == c {
@@ -359,9 +366,14 @@ impl Sorted {
     }
 }
 
-/// Returns the pairs of cell and element for the faces that reach into several cells; `None` if these pairs,
+/// Returns the pairs of cell and face for the faces that reach into several cells; `None` if these pairs,
 /// with the lines that the faces may cross, are more than `limit`.
-fn rows(window: &Window, runs: &[Run], spans: &[Span], limit: usize) -> Option<Vec<(u32, u32)>> {
+fn cell_element_pairs(
+    window: &Window,
+    runs: &[GroupFaces],
+    spans: &[Span],
+    limit: usize,
+) -> Option<Vec<(u32, u32)>> {
     let mut rows = Vec::with_capacity(2 * spans.len());
     let mut lines = 0;
     for span in spans {
@@ -371,7 +383,7 @@ fn rows(window: &Window, runs: &[Run], spans: &[Span], limit: usize) -> Option<V
             continue;
         };
         if (0..3).any(|i| high[i] - low[i] > 1) {
-            let (run, face) = find(runs, span.element);
+            let (run, face) = group_and_face_of(runs, span.element);
             let corners = run.mesh.corners(face);
             spread(window, &corners, low, high, &mut |cell| {
                 rows.push((cell, span.element));
@@ -426,9 +438,9 @@ fn spread(
     }
 }
 
-/// Sorts entries by cell; returns for each cell the index of its first entry, and the elements of the
-/// entries. `cells` has the only cell of each element, and `rows` the pairs of cell and element of elements
-/// in several cells.
+/// Sorts pairs of a cell and a face in it by cell; returns for each cell the index of its first pair, and the
+/// faces of the pairs. `cells` has the only cell of each face, and `rows` the pairs of cell and face for
+/// faces in several cells.
 fn distribute(window: &Window, cells: &[u32], rows: &[(u32, u32)]) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0u32; window.len() + 2];
     for cell in cells.iter().filter(|c| **c != SPANS) {
@@ -459,7 +471,7 @@ fn distribute(window: &Window, cells: &[u32], rows: &[(u32, u32)]) -> (Vec<u32>,
 
 /// Returns for each corner of the window's cells the number of entries in the cells below it on all three
 /// axes.
-fn integral(window: &Window, starts: &[u32]) -> Vec<u32> {
+fn entries_below_corners(window: &Window, starts: &[u32]) -> Vec<u32> {
     let [nx, ny, nz] = window.count().map(|c| c.cast_unsigned() as usize);
     let (row, slab) = (nz + 1, (ny + 1) * (nz + 1));
     let mut below = vec![0u32; (nx + 1) * slab];
@@ -506,7 +518,7 @@ mod tests {
             assert_eq!(bins.corner_of(&cell), i32::from(inside), "{place:?}");
             let held = |face: &FaceId| {
                 let (low, high) = mesh.face_box(*face);
-                cell.holds_box(&low, &high)
+                cell.contains_box(&low, &high)
             };
             let small: Vec<FaceId> = mesh.face_ids().filter(held).collect();
             let faces = bins.groups_in(&cell).into_iter().flat_map(|g| g.faces);
@@ -524,7 +536,7 @@ mod tests {
 
     #[test]
     fn numbers_are_sorted_by_comparing_or_by_marking() {
-        assert_eq!(ascending(vec![9, 2, 9], 1000), [2, 9]);
-        assert_eq!(ascending(vec![9, 2, 9], 10), [2, 9]);
+        assert_eq!(sorted_without_repetition(vec![9, 2, 9], 1000), [2, 9]);
+        assert_eq!(sorted_without_repetition(vec![9, 2, 9], 10), [2, 9]);
     }
 }

@@ -17,7 +17,7 @@ type Key = u64;
 
 /// The changes of the winding number along the lines parallel to one axis, as running sums.
 #[derive(Debug, Default)]
-struct Along {
+struct AxisCrossings {
     keys: Vec<Key>,
     sums: Vec<i32>,
 }
@@ -26,14 +26,14 @@ struct Along {
 #[derive(Debug)]
 pub struct Crossings {
     window: Window,
-    along: [Along; 3],
+    by_axis: [AxisCrossings; 3],
 }
 
-fn key(line: u32, place: i32) -> Key {
-    u64::from(line) << 32 | u64::from(place.cast_unsigned())
+fn key(line: u32, index: i32) -> Key {
+    u64::from(line) << 32 | u64::from(index.cast_unsigned())
 }
 
-impl Along {
+impl AxisCrossings {
     fn new(mut changes: Vec<(Key, i32)>) -> Self {
         changes.sort_unstable();
         let mut sum = 0;
@@ -49,7 +49,7 @@ impl Along {
 
     /// Returns the change of the winding number along line number `line`, from its start to the plane number
     /// `end` across it.
-    fn up_to(&self, line: u32, end: i32) -> i32 {
+    fn sum_up_to(&self, line: u32, end: i32) -> i32 {
         let before = |key: Key| {
             let count = self.keys.partition_point(|k| *k < key);
             count.checked_sub(1).map_or(0, |last| self.sums[last])
@@ -60,7 +60,7 @@ impl Along {
 
 impl Crossings {
     /// Finds the crossings of faces that reach into several cells; `corners` returns the corners and the
-    /// orientation of a face by its element number.
+    /// orientation of a face by its number.
     pub fn new(
         window: Window,
         spans: &[Span],
@@ -71,27 +71,27 @@ impl Crossings {
             poll();
             let (corners, orientation) = corners(span.element);
             let mut add = |axis: usize, x: i32, y: i32| {
-                let Some((place, change)) = crossing(&window, span, &corners, axis, [x, y]) else {
+                let Some((index, change)) = crossing(&window, span, &corners, axis, [x, y]) else {
                     return;
                 };
                 let line = number(&window, axis, x, y);
-                found[axis].push((key(line, place), orientation.signed(change)));
+                found[axis].push((key(line, index), orientation.signed(change)));
             };
             visit_lines(span, &mut add);
         }
         Self {
             window,
-            along: found.map(Along::new),
+            by_axis: found.map(AxisCrossings::new),
         }
     }
 
     /// Returns the change of the winding number from the window's low corner to another corner of its cells.
-    pub fn up_to(&self, corner: [i32; 3]) -> i32 {
+    pub fn sum_up_to(&self, corner: [i32; 3]) -> i32 {
         let [x, y, z] = corner;
         let line = |axis| number(&self.window, axis, x, y);
-        self.along[0].up_to(line(0), x)
-            + self.along[1].up_to(line(1), y)
-            + self.along[2].up_to(line(2), z)
+        self.by_axis[0].sum_up_to(line(0), x)
+            + self.by_axis[1].sum_up_to(line(1), y)
+            + self.by_axis[2].sum_up_to(line(2), z)
     }
 }
 
@@ -191,7 +191,7 @@ mod tests {
             (0..5).flat_map(|x| (0..5).flat_map(move |y| (0..5).map(move |z| (x, y, z))))
         {
             let inside = [x, y].iter().all(|i| (1..4).contains(i)) && z > 0;
-            assert_eq!(crossings.up_to([x, y, z]), i32::from(inside));
+            assert_eq!(crossings.sum_up_to([x, y, z]), i32::from(inside));
         }
     }
 }

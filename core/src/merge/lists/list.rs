@@ -12,9 +12,9 @@ use crate::interrupt::spend;
 use crate::mesh::cached::Cached;
 use crate::mesh::handle::{FaceId, Slot};
 use crate::mesh::source::{Shape, Source};
-use crate::tree::node::{Branch, Deferred, Group, Node, PartElement};
+use crate::tree::node::{Branch, DeferredLeaf, FaceGroup, Node, PartElement};
 use crate::tree::pieces::{pieces, Piece};
-use crate::tree::table::Table;
+use crate::tree::table::SourceTable;
 
 /// Coordinates relative to a cell, divided by a power of two so that they fit into 32 bits.
 #[derive(Clone, Copy, Debug)]
@@ -58,26 +58,27 @@ impl Frame {
     }
 }
 
-/// A whole face with its bounding box relative to a cell, rounded outwards.
+/// A whole face of an operand with its bounding box relative to a cell, rounded outwards.
 #[derive(Clone, Copy, Debug)]
-pub struct Record {
+pub struct FaceRecord {
     low: [i32; 3],
     high: [i32; 3],
     /// The number of the face in its source.
     pub face: FaceId,
-    run: Run,
+    tag: GroupTag,
 }
 
 /// The source (its slot), the orientation and the mark `TOUCHING` of a group of faces in one 32-bit word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Run(u32);
+struct GroupTag(u32);
 
-impl Run {
+impl GroupTag {
     /// The bit that is set for faces turned around; the bits below 2³⁰ are the slot, as there are fewer than
     /// 2³⁰ sources.
     const OPPOSITE: u32 = 1 << 31;
 
-    /// The bit that is set for faces that may touch other elements anywhere, not only along edges.
+    /// The bit that is set for faces that may touch other elements (faces or parts of faces) anywhere, not
+    /// only along edges.
     const TOUCHING: u32 = 1 << 30;
 
     fn new(slot: Slot, orientation: Orientation, touching: bool) -> Self {
@@ -99,15 +100,15 @@ impl Run {
     }
 }
 
-impl Record {
+impl FaceRecord {
     /// Returns the index of the face's source in the evaluation's table of sources.
     pub fn slot(&self) -> Slot {
-        self.run.slot()
+        self.tag.slot()
     }
 
     /// Returns the orientation of the face relative to its source.
     pub fn orientation(&self) -> Orientation {
-        self.run.orientation()
+        self.tag.orientation()
     }
 }
 
@@ -128,31 +129,32 @@ impl PartRecord {
     }
 }
 
-/// The elements of one operand that meet a cell, and the operand's winding number at the cell's low corner.
+/// The faces and parts of faces of one operand that meet a cell, and the operand's winding number at the
+/// cell's low corner.
 #[derive(Clone, Debug)]
 pub struct List {
     frame: Frame,
     /// The whole faces that meet the cell.
-    pub records: Vec<Record>,
+    pub records: Vec<FaceRecord>,
     /// The parts of faces that meet the cell.
     pub parts: Vec<PartRecord>,
     /// The operand's winding number at the cell's low corner.
     pub corner: i32,
-    worked: bool,
+    by_kernel: bool,
 }
 
 /// The sources (meshes and half-spaces) of an evaluation, in the order in which operands first name them.
 #[derive(Debug)]
-pub struct Sources(Table);
+pub struct Sources(SourceTable);
 
 impl Sources {
     /// Makes the sources of an evaluation from a table.
-    pub fn new(table: Table) -> Self {
+    pub fn new(table: SourceTable) -> Self {
         Self(table)
     }
 
     /// Returns the table of sources.
-    pub fn table(&self) -> &Table {
+    pub fn table(&self) -> &SourceTable {
         &self.0
     }
 
@@ -171,7 +173,8 @@ impl Sources {
 }
 
 impl List {
-    /// Returns the low and the high corner of a box around all elements, rounded outwards.
+    /// Returns the low and the high corner of a box around all listed faces and parts of faces, rounded
+    /// outwards.
     pub fn bounds(&self) -> [Lattice; 2] {
         let records = self.records.iter().map(|r| (&r.low, &r.high));
         let parts = self.parts.iter().map(|p| (&p.low, &p.high));
@@ -187,7 +190,7 @@ impl List {
     }
 
     /// Makes the list of a deferred leaf in the cell of its branch, complemented if the branch is.
-    pub fn open(leaf: &Deferred, branch: &Branch, sources: &Sources) -> Self {
+    pub fn open(leaf: &DeferredLeaf, branch: &Branch, sources: &Sources) -> Self {
         spend(leaf.len());
         let frame = Frame::of(&branch.cell);
         let mut list = Self {
@@ -195,12 +198,12 @@ impl List {
             records: Vec::with_capacity(leaf.groups.iter().map(|g| g.faces.len()).sum()),
             parts: Vec::with_capacity(leaf.parts.len()),
             corner: branch.oriented(leaf.corner),
-            worked: leaf.worked,
+            by_kernel: leaf.by_kernel,
         };
         for group in &leaf.groups {
             let orientation = group.orientation.turned_if(branch.complement);
-            let run = Run::new(sources.slot(&group.source), orientation, group.touching);
-            let record = |face: &FaceId| frame.record(&group.source, *face, run);
+            let tag = GroupTag::new(sources.slot(&group.source), orientation, group.touching);
+            let record = |face: &FaceId| frame.record(&group.source, *face, tag);
             list.records.extend(group.faces.iter().map(record));
         }
         for element in &leaf.parts {
@@ -210,18 +213,18 @@ impl List {
         list
     }
 
-    /// Makes the list of a deferred leaf in a cell that contains the cell of its branch. `None` if an element
-    /// extends out of the branch's cell, because outside it may not bound the solid.
-    pub fn lifted(branch: &Branch, cell: &Cell, sources: &Sources) -> Option<Self> {
+    /// Makes the list of a deferred leaf in a cell that contains the cell of its branch. `None` if a face or
+    /// part extends out of the branch's cell, because outside it may not bound the solid.
+    pub fn of_larger_cell(branch: &Branch, cell: &Cell, sources: &Sources) -> Option<Self> {
         let Node::Deferred(leaf) = &*branch.node else {
             return None;
         };
         let held = |source: &Source, face: &FaceId| {
             let (low, high) = source.face_box(*face);
-            branch.cell.holds_box(&low, &high)
+            branch.cell.contains_box(&low, &high)
         };
-        let faces = |g: &Group| g.faces.iter().all(|face| held(&g.source, face));
-        let parts = |p: &PartElement| branch.cell.holds(&p.part.home);
+        let faces = |g: &FaceGroup| g.faces.iter().all(|face| held(&g.source, face));
+        let parts = |p: &PartElement| branch.cell.contains(&p.part.home);
         let all_held = || leaf.groups.iter().all(faces) && leaf.parts.iter().all(parts);
         if branch.cell != *cell && !all_held() {
             return None;
@@ -233,28 +236,29 @@ impl List {
         Some(list)
     }
 
-    /// Returns the number of elements (whole faces and parts).
+    /// Returns the number of listed faces and parts of faces.
     pub fn len(&self) -> usize {
         self.records.len() + self.parts.len()
     }
 
-    /// Returns true if a kernel made the elements; false if they are the unchanged boundary of an operand.
-    pub fn is_worked(&self) -> bool {
-        self.worked
+    /// Returns true if a kernel made the listed faces and parts; false if they are the unchanged boundary of
+    /// an operand.
+    pub fn is_by_kernel(&self) -> bool {
+        self.by_kernel
     }
 
-    /// Returns true if the list has a face that may touch other elements anywhere, not only along edges.
+    /// Returns true if the list has a face that may touch other listed faces anywhere, not only along edges.
     pub fn is_touching(&self) -> bool {
-        self.records.iter().any(|r| r.run.is_touching())
+        self.records.iter().any(|r| r.tag.is_touching())
     }
 
-    /// Returns true if no element is listed.
+    /// Returns true if no face and no part of a face is listed.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Divides the list of `cell` at `cut` into the lists of the minus and the plus half; an element may be
-    /// in both.
+    /// Divides the list of `cell` at `cut` into the lists of the minus and the plus half; a face may be in
+    /// both.
     pub fn divide(mut self, cell: &Cell, cut: Cut, sources: &Sources) -> (Self, Self) {
         spend(self.len());
         if !self.frame.resolves(cell) {
@@ -267,14 +271,14 @@ impl List {
             records: self.divide_records(cell, cut, sources),
             parts: above(&self.parts, cut.axis, at),
             corner: self.corner + change,
-            worked: self.worked,
+            by_kernel: self.by_kernel,
         };
         self.parts.retain(|p| p.low[cut.axis] < at);
         (self, plus)
     }
 
-    /// Restricts the list to a smaller cell. No element may meet the other part of the larger cell, so that
-    /// the winding number at the low corner does not change.
+    /// Restricts the list to a smaller cell. No listed face may meet the other part of the larger cell, so
+    /// that the winding number at the low corner does not change.
     pub fn shrink(&mut self, inner: &Cell, sources: &Sources) {
         if !self.frame.resolves(inner) {
             spend(self.len());
@@ -282,9 +286,9 @@ impl List {
         }
     }
 
-    /// Returns the winding number in `cell` outside of the smaller cell `inner`; no element may meet this
+    /// Returns the winding number in `cell` outside of the smaller cell `inner`; no listed face may meet this
     /// region.
-    pub fn beside(&self, cell: &Cell, inner: &Cell, sources: &Sources) -> i32 {
+    pub fn winding_number_outside(&self, cell: &Cell, inner: &Cell, sources: &Sources) -> i32 {
         match cell.cut() {
             Some(cut) if inner.low() == cell.low() => {
                 self.corner + self.change_along_edge(cell, cut, sources)
@@ -295,16 +299,17 @@ impl List {
 
     /// Removes the faces that miss the minus half of `cell`, and returns the faces that may meet its plus
     /// half.
-    fn divide_records(&mut self, cell: &Cell, cut: Cut, sources: &Sources) -> Vec<Record> {
+    fn divide_records(&mut self, cell: &Cell, cut: Cut, sources: &Sources) -> Vec<FaceRecord> {
         let (axis, at) = (cut.axis, self.frame.index(cut.axis, cut.at));
         let halves = Half::BOTH.map(|half| cell.half(cut, half));
-        let missed = |r: &Record, plus: usize| misses(sources.get(r.slot()), r.face, &halves[plus]);
+        let missed =
+            |r: &FaceRecord, plus: usize| misses(sources.get(r.slot()), r.face, &halves[plus]);
         let count = self.records.iter().filter(|r| r.high[axis] >= at).count();
         let mut plus = Vec::with_capacity(count);
         let frame = self.frame;
         self.records.retain(|r| {
             let (below, above) = (r.low[axis] < at, r.high[axis] >= at);
-            let large = below && above && frame.exceeds(r, cell);
+            let large = below && above && frame.is_as_long_as(r, cell);
             if above && !(large && missed(r, 1)) {
                 plus.push(*r);
             }
@@ -313,8 +318,9 @@ impl List {
         plus
     }
 
-    /// Returns the number of elements that extend out of the cell, which halving cannot separate soon.
-    pub fn reaching_out(&self, cell: &Cell) -> usize {
+    /// Returns the number of listed faces and parts that extend out of the cell, which halving cannot
+    /// separate soon.
+    pub fn count_reaching_out(&self, cell: &Cell) -> usize {
         let high = cell.high();
         let (low, high) = (self.frame.indices(cell.low()), self.frame.indices(&high));
         let out = |a: &[i32; 3], b: &[i32; 3]| (0..3).any(|i| a[i] < low[i] || b[i] > high[i]);
@@ -325,7 +331,7 @@ impl List {
     fn reframe(&mut self, cell: &Cell, sources: &Sources) {
         let frame = Frame::of(cell);
         for r in &mut self.records {
-            *r = frame.record(sources.get(r.slot()), r.face, r.run);
+            *r = frame.record(sources.get(r.slot()), r.face, r.tag);
         }
         for p in &mut self.parts {
             *p = frame.part_record(p.element.clone(), p.pieces.clone());
@@ -371,7 +377,7 @@ impl List {
         change
     }
 
-    /// Returns the list as a deferred leaf, complemented if `complement` is true; without elements, as a
+    /// Returns the list as a deferred leaf, complemented if `complement` is true; an empty list becomes a
     /// leaf.
     pub fn close(self, complement: bool, sources: &Sources) -> Node {
         let corner = if complement {
@@ -382,14 +388,14 @@ impl List {
         if self.is_empty() {
             return Node::Leaf(corner);
         }
-        let mut groups: Vec<Group> = Vec::new();
+        let mut groups: Vec<FaceGroup> = Vec::new();
         let mut open = None;
         for r in &self.records {
-            if open != Some(r.run) {
-                open = Some(r.run);
+            if open != Some(r.tag) {
+                open = Some(r.tag);
                 let source = Arc::clone(sources.get(r.slot()));
-                groups.push(Group {
-                    touching: r.run.is_touching(),
+                groups.push(FaceGroup {
+                    touching: r.tag.is_touching(),
                     source,
                     orientation: r.orientation().turned_if(complement),
                     faces: Vec::new(),
@@ -401,11 +407,11 @@ impl List {
         }
         let turned = |p: PartRecord| p.element.turned_if(complement);
         let parts = self.parts.into_iter().map(turned).collect();
-        Node::Deferred(Deferred {
+        Node::Deferred(DeferredLeaf {
             groups,
             parts,
             corner,
-            worked: self.worked,
+            by_kernel: self.by_kernel,
             share: Cached::new(),
         })
     }
@@ -420,7 +426,7 @@ fn above(parts: &[PartRecord], axis: usize, at: i32) -> Vec<PartRecord> {
 }
 
 impl Frame {
-    fn record(&self, source: &Source, face: FaceId, run: Run) -> Record {
+    fn record(&self, source: &Source, face: FaceId, tag: GroupTag) -> FaceRecord {
         let (low, high) = match source.shape() {
             Shape::Mesh(mesh) => {
                 let (low, high) = mesh.face_box(face);
@@ -428,11 +434,11 @@ impl Frame {
             }
             Shape::HalfSpace(_) => ([i32::MIN; 3], [i32::MAX; 3]),
         };
-        Record {
+        FaceRecord {
             low,
             high,
             face,
-            run,
+            tag,
         }
     }
 
@@ -448,7 +454,7 @@ impl Frame {
 
     /// Returns true if a face's bounding box is at least as long as `cell` on an axis; such a face may miss a
     /// half of the cell that its box meets.
-    fn exceeds(&self, r: &Record, cell: &Cell) -> bool {
+    fn is_as_long_as(&self, r: &FaceRecord, cell: &Cell) -> bool {
         let size = cell.size();
         (0..3).any(|i| {
             let extent = i64::from(r.high[i]) - i64::from(r.low[i]);
@@ -490,7 +496,7 @@ mod tests {
             let inner = Cell::around(&[low.max(0); 3], &[high; 3]);
             let list = down(scene.lists[0].clone(), scene.cell, &cell, &scene.sources).0;
             let mut shrunk = list.clone();
-            let beside = shrunk.beside(&cell, &inner, &scene.sources);
+            let beside = shrunk.winding_number_outside(&cell, &inner, &scene.sources);
             shrunk.shrink(&inner, &scene.sources);
             let (list, others) = down(list, cell, &inner, &scene.sources);
             assert_eq!((shrunk.corner, shrunk.len()), (list.corner, list.len()));
@@ -505,7 +511,7 @@ mod tests {
         while let Some(cut) = cell.cut().filter(|_| cell != *inner) {
             let (minus, plus) = list.divide(&cell, cut, sources);
             let lower = cell.half(cut, Half::Minus);
-            let is_lower = lower.holds(inner);
+            let is_lower = lower.contains(inner);
             cell = if is_lower {
                 lower
             } else {

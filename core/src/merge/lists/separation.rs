@@ -3,7 +3,7 @@
 use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
-use crate::geometry::doubles::vector::{cross, dot, less};
+use crate::geometry::doubles::vector::{cross, difference, dot};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::{Shape, Source};
@@ -66,17 +66,17 @@ fn middle(low: &Lattice, high: &Lattice, origin: &Lattice) -> ([f64; 3], [f64; 3
 }
 
 fn separated(p: &[[f64; 3]; 3], half: &[f64; 3]) -> bool {
-    let e = each_axis(|i| less(&p[(i + 1) % 3], &p[i]));
+    let e = each_axis(|i| difference(&p[(i + 1) % 3], &p[i]));
     let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let across = e
         .iter()
         .flat_map(|edge| unit.iter().map(|u| cross(u, edge)));
     std::iter::once(cross(&e[0], &e[1]))
         .chain(across)
-        .any(|axis| apart(p, half, &axis))
+        .any(|axis| separates(p, half, &axis))
 }
 
-fn apart(p: &[[f64; 3]; 3], half: &[f64; 3], axis: &[f64; 3]) -> bool {
+fn separates(p: &[[f64; 3]; 3], half: &[f64; 3], axis: &[f64; 3]) -> bool {
     let values = [dot(&p[0], axis), dot(&p[1], axis), dot(&p[2], axis)];
     let low = values[0].min(values[1]).min(values[2]);
     let high = values[0].max(values[1]).max(values[2]);

@@ -13,9 +13,9 @@ const MAX_CELLS_PER_AXIS: i64 = 1022;
 
 /// A box of equally large cells of the dyadic hierarchy, numbered along each axis from the lowest one.
 ///
-/// A coordinate's *place* on an axis is the index of its cell along the axis, −1 below the window, and the
-/// number of cells above it. The *lines* of an axis are the planes that bound the cells, numbered from 0 to
-/// the number of cells.
+/// A coordinate's *cell index* on an axis is the index of its cell along the axis, −1 below the window, and
+/// the number of cells above it. The *lines* of an axis are the planes that bound the cells, numbered from 0
+/// to the number of cells.
 #[derive(Clone, Copy, Debug)]
 pub struct Window {
     /// The binary logarithm of the cells' extent in lattice steps, the same on all axes.
@@ -28,7 +28,7 @@ pub struct Window {
 /// standing for outside the window.
 #[derive(Clone, Copy, Debug)]
 pub struct Span {
-    /// The number of the face among the elements of a deferred leaf.
+    /// The number of the face among the faces of a deferred leaf.
     pub element: u32,
     /// The lowest cell index on each axis.
     pub low: [i16; 3],
@@ -103,14 +103,14 @@ impl Window {
 
     #[inline]
     #[allow(clippy::cast_possible_truncation, reason = "clamped before")]
-    fn place(&self, axis: usize, k: i64) -> i32 {
+    fn cell_index(&self, axis: usize, k: i64) -> i32 {
         ((k >> self.size) - self.first[axis]).clamp(-1, i64::from(self.count[axis])) as i32
     }
 
     /// Packs a lattice point's three cell indices into one 32-bit word, equal for all points of a cell.
     #[inline]
     pub fn code(&self, p: &Lattice) -> u32 {
-        let field = |i: usize| (self.place(i, p[i]) + 1).cast_unsigned();
+        let field = |i: usize| (self.cell_index(i, p[i]) + 1).cast_unsigned();
         field(0) << 20 | field(1) << 10 | field(2)
     }
 
@@ -146,17 +146,17 @@ impl Window {
 
     /// Returns for each axis the indices of the window's cells in a larger cell.
     #[inline]
-    pub fn covered(&self, cell: &Cell) -> [Range<i32>; 3] {
+    pub fn cells_in(&self, cell: &Cell) -> [Range<i32>; 3] {
         let high = cell.high();
         each_axis(|i| {
-            let low = self.place(i, cell.low()[i]).max(0);
-            low..(self.place(i, high[i]) + 1).clamp(low, self.count[i])
+            let low = self.cell_index(i, cell.low()[i]).max(0);
+            low..(self.cell_index(i, high[i]) + 1).clamp(low, self.count[i])
         })
     }
 
     /// Returns for each axis the number of the window's plane through the low corner of a larger cell.
     pub fn corner(&self, cell: &Cell) -> [i32; 3] {
-        each_axis(|i| self.place(i, cell.low()[i]).max(0))
+        each_axis(|i| self.cell_index(i, cell.low()[i]).max(0))
     }
 
     /// Returns true if a cell is larger than the window's cells on an axis, so that halving it cuts none of

@@ -23,20 +23,20 @@ const LANES: usize = 8;
 /// A corner of a box, as 32-bit integers.
 type Ends = [i32; 3];
 
-/// An element with its box in 32-bit coordinates.
+/// A triangle, or a part of a face, with its box in 32-bit coordinates.
 #[derive(Clone, Copy)]
-pub struct Boxed {
+pub struct BoxedElement {
     low: [i32; 3],
     high: [i32; 3],
-    /// The index of the element's operand.
+    /// The index of the operand that the triangle or part belongs to.
     pub operand: u32,
-    /// The number of the element, chosen by the caller.
+    /// The number of the triangle or part, chosen by the caller.
     pub number: u32,
 }
 
-impl Boxed {
-    /// Makes an element with its operand's index, its number, and its box with `shift` low bits of each
-    /// coordinate dropped.
+impl BoxedElement {
+    /// Makes a triangle or part of a face with its operand's index, its number, and its box with `shift` low
+    /// bits of each coordinate dropped.
     #[allow(clippy::cast_possible_truncation, reason = "the shift leaves 31 bits")]
     pub fn new(operand: usize, number: u32, [low, high]: [&Lattice; 2], shift: u32) -> Self {
         Self {
@@ -47,19 +47,28 @@ impl Boxed {
         }
     }
 
-    /// Returns the same element with another number.
-    #[must_use]
-    pub const fn numbered(self, number: u32) -> Self {
-        Self { number, ..self }
+    /// Makes an element with its operand's index, its number, and the low and the high corner of its box.
+    pub const fn between(operand: u32, number: u32, low: Ends, high: Ends) -> Self {
+        Self {
+            low,
+            high,
+            operand,
+            number,
+        }
     }
 
-    /// Returns the low and the high corner of the element's box.
+    /// Returns true if the boxes of two elements overlap.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        (0..3).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
+    }
+
+    /// Returns the low and the high corner of the box.
     pub const fn ends(&self) -> (Ends, Ends) {
         (self.low, self.high)
     }
 
-    /// Returns the element with its box clipped to the box from `low` to `high`; `None` if the boxes do not
-    /// overlap.
+    /// Returns the triangle or part with its box clipped to the box from `low` to `high`; `None` if the boxes
+    /// do not overlap.
     pub fn within(&self, low: Ends, high: Ends) -> Option<Self> {
         let part = Self {
             low: each_axis(|i| self.low[i].max(low[i])),
@@ -93,54 +102,55 @@ struct Lanes {
     high: [[i32; LANES]; 3],
 }
 
-/// The elements whose boxes reach into a box of space, grouped by operand.
-pub struct Part {
-    elements: Vec<Boxed>,
-    space: Space,
+/// The elements (triangles or parts of faces) whose boxes reach into a box of space, grouped by operand.
+pub struct ElementsInBox {
+    elements: Vec<BoxedElement>,
+    half_open_box: HalfOpenBox,
     /// The number of low bits dropped from the coordinates of the boxes.
     shift: u32,
 }
 
 /// The box of points with coordinates above `low` and up to `high`.
 ///
-/// Two elements belong to the space that contains the low corner of the intersection of their boxes, so that
-/// each pair is found in one space only.
+/// A pair of overlapping boxes belongs to the half-open box that contains the low corner of their
+/// intersection, so that each pair is found in one half-open box only.
 #[derive(Clone, Copy)]
-pub struct Space {
+pub struct HalfOpenBox {
     low: [i32; 3],
     high: [i32; 3],
 }
 
-/// Calls `meet` for the pairs of elements of different operands whose boxes overlap, and `crowd` for elements
-/// that halving does not separate, with the space to which their pairs belong. Stops and returns `None` if a
-/// call does.
-pub fn pairs(
-    part: Part,
-    mut meet: impl FnMut(u32, u32) -> Option<()>,
-    mut crowd: impl FnMut(&[Boxed], &Space) -> Option<()>,
-) -> Option<()> {
+/// Calls `report` for the pairs of elements (triangles or parts of faces) of different operands whose boxes
+/// overlap, and returns the elements that halving does not separate, sorted by number; pairs of these are not
+/// reported. Stops and returns `None` if `report` does.
+pub fn crowded(
+    part: ElementsInBox,
+    mut report: impl FnMut(u32, u32) -> Option<()>,
+) -> Option<Vec<BoxedElement>> {
+    let mut crowded = Vec::new();
     part.halved(MAX_COMPARED, |part| {
-        if part.elements.len() <= MAX_COMPARED_UNSEPARATED {
-            let space = part.space;
-            compare_all(&part.elements, &space, |a, b| {
-                space.if_owned(a, b, || meet(a.number, b.number))
-            })
-        } else {
-            crowd(&part.elements, &part.space)
+        if part.elements.len() > MAX_COMPARED_UNSEPARATED {
+            crowded.extend(part.elements);
+            return Some(());
         }
-    })
+        let half_open_box = part.half_open_box;
+        compare_all(&part.elements, &half_open_box, |a, b| {
+            half_open_box.if_pair_belongs(a, b, || report(a.number, b.number))
+        })
+    })?;
+    Some(without_repetition(crowded))
 }
 
-/// Calls `meet` for all pairs of elements of different operands whose boxes overlap, the earlier operand
-/// first. Compares all with all; stops and returns `None` if `meet` does.
+/// Calls `report` for all pairs of elements (triangles or parts of faces) of different operands whose boxes
+/// overlap, the earlier operand first. Compares all with all; stops and returns `None` if `report` does.
 pub fn compare_all(
-    elements: &[Boxed],
-    space: &Space,
-    mut meet: impl FnMut(&Boxed, &Boxed) -> Option<()>,
+    elements: &[BoxedElement],
+    half_open_box: &HalfOpenBox,
+    mut report: impl FnMut(&BoxedElement, &BoxedElement) -> Option<()>,
 ) -> Option<()> {
     let operands = elements.chunk_by(|a, b| a.operand == b.operand).count();
     if 2 * operands > elements.len() {
-        return compare_in_order(elements, space, meet);
+        return compare_in_order(elements, half_open_box, report);
     }
     let lanes = Lanes::of(elements);
     let mut end = 0;
@@ -153,7 +163,7 @@ pub fn compare_all(
             Lanes::each_overlapping(&lanes, end, one, |at| {
                 let other = &elements[at];
                 if goes_on.is_some() {
-                    goes_on = meet(one, other);
+                    goes_on = report(one, other);
                 }
             });
             goes_on?;
@@ -162,15 +172,15 @@ pub fn compare_all(
     Some(())
 }
 
-/// Calls `meet` for all pairs of elements of different operands whose boxes overlap, the lower number first,
-/// where most operands have a single element. Sorts the boxes along the axis on which they overlap least, and
-/// compares only those that overlap there.
+/// Calls `report` for all pairs of elements (triangles or parts of faces) of different operands whose boxes
+/// overlap, the lower number first, where most operands have a single element. Sorts the boxes along the axis
+/// on which they overlap least, and compares only those that overlap there.
 fn compare_in_order(
-    elements: &[Boxed],
-    space: &Space,
-    mut meet: impl FnMut(&Boxed, &Boxed) -> Option<()>,
+    elements: &[BoxedElement],
+    half_open_box: &HalfOpenBox,
+    mut report: impl FnMut(&BoxedElement, &BoxedElement) -> Option<()>,
 ) -> Option<()> {
-    let axis = space.sparsest(elements);
+    let axis = half_open_box.sparsest(elements);
     let sorted = sorted_along(axis, elements);
     let lanes = Lanes::of(&sorted);
     for (next, one) in (1..).zip(&sorted) {
@@ -186,7 +196,7 @@ fn compare_in_order(
                 } else {
                     (other, one)
                 };
-                goes_on = meet(a, b);
+                goes_on = report(a, b);
             }
         });
         goes_on?;
@@ -194,24 +204,12 @@ fn compare_in_order(
     Some(())
 }
 
-/// Returns the elements sorted by the lower ends of their boxes on an axis.
-fn sorted_along(axis: usize, elements: &[Boxed]) -> Vec<Boxed> {
+/// Returns the elements (triangles or parts of faces) sorted by the lower ends of their boxes on an axis.
+fn sorted_along(axis: usize, elements: &[BoxedElement]) -> Vec<BoxedElement> {
     let begins = (0usize..).zip(elements).map(|(at, e)| (e.low[axis], at));
     let mut order: Vec<(i32, usize)> = begins.collect();
     order.sort_unstable();
     order.into_iter().map(|(_, at)| elements[at]).collect()
-}
-
-/// Calls `meet` for each element of the first group and each of the second whose boxes overlap; compares all
-/// with all.
-pub fn compare_groups(first: &[Boxed], second: &[Boxed], meet: impl Fn(&Boxed, &Boxed)) {
-    let lanes = Lanes::of(second);
-    for one in first {
-        spend(1 + second.len() / PAIRS_PER_UNIT);
-        Lanes::each_overlapping(&lanes, 0, one, |at| {
-            meet(one, &second[at]);
-        });
-    }
 }
 
 impl Lanes {
@@ -221,12 +219,12 @@ impl Lanes {
         high: [[i32::MIN; LANES]; 3],
     };
 
-    /// Packs the boxes of elements in order; empty boxes fill the last pack.
-    fn of(elements: &[Boxed]) -> Vec<Self> {
-        elements.chunks(LANES).map(Self::of_few).collect()
+    /// Packs the boxes of elements (triangles or parts of faces) in order; empty boxes fill the last pack.
+    fn of(elements: &[BoxedElement]) -> Vec<Self> {
+        elements.chunks(LANES).map(Self::packed).collect()
     }
 
-    fn of_few(elements: &[Boxed]) -> Self {
+    fn packed(elements: &[BoxedElement]) -> Self {
         let mut lanes = Self::EMPTY;
         for (lane, e) in elements.iter().enumerate() {
             for i in 0..3 {
@@ -238,7 +236,12 @@ impl Lanes {
     }
 
     /// Calls `found` with the indices, from `from` on, of the boxes that overlap the box of `one`.
-    fn each_overlapping(all: &[Self], from: usize, one: &Boxed, mut found: impl FnMut(usize)) {
+    fn each_overlapping(
+        all: &[Self],
+        from: usize,
+        one: &BoxedElement,
+        mut found: impl FnMut(usize),
+    ) {
         let first = from / LANES;
         for (block, lanes) in (first..).zip(&all[first.min(all.len())..]) {
             let missed = lanes.missed_by(one);
@@ -256,7 +259,7 @@ impl Lanes {
     /// Returns for each box a 32-bit word with all bits set if it misses the box of `one`, otherwise zero.
     /// Words as wide as the compared coordinates compile to vector instructions.
     #[inline]
-    fn missed_by(&self, one: &Boxed) -> [u32; LANES] {
+    fn missed_by(&self, one: &BoxedElement) -> [u32; LANES] {
         let word = |b: bool| if b { !0u32 } else { 0 };
         let mut missed = [0; LANES];
         for i in 0..3 {
@@ -269,9 +272,9 @@ impl Lanes {
     }
 }
 
-impl Space {
-    /// Returns the smallest space that contains the boxes of all elements.
-    pub fn around(elements: &[Boxed]) -> Self {
+impl HalfOpenBox {
+    /// Returns the smallest space that contains the boxes of all elements (triangles or parts of faces).
+    pub fn around(elements: &[BoxedElement]) -> Self {
         let low = |i: usize| elements.iter().map(|e| e.low[i]).min();
         let high = |i: usize| elements.iter().map(|e| e.high[i]).max();
         Self {
@@ -280,10 +283,11 @@ impl Space {
         }
     }
 
-    /// Returns the axis along which the boxes of elements are shortest, relative to the space.
-    fn sparsest(&self, elements: &[Boxed]) -> usize {
+    /// Returns the axis along which the boxes of elements (triangles or parts of faces) are shortest,
+    /// relative to the space.
+    fn sparsest(&self, elements: &[BoxedElement]) -> usize {
         let share = |i: usize| {
-            let length = |e: &Boxed| f64::from(e.high[i]) - f64::from(e.low[i]);
+            let length = |e: &BoxedElement| f64::from(e.high[i]) - f64::from(e.low[i]);
             let size = f64::from(self.high[i]) - f64::from(self.low[i]);
             elements.iter().map(length).sum::<f64>() / size
         };
@@ -308,18 +312,23 @@ impl Space {
         [below, above]
     }
 
-    /// Calls `meet` if the pair of elements belongs to this space, and returns its result; otherwise returns
-    /// `Some(())`.
-    pub fn if_owned(&self, a: &Boxed, b: &Boxed, meet: impl FnOnce() -> Option<()>) -> Option<()> {
-        if self.owns(a, b) {
-            meet()
+    /// Calls `report` if the pair of boxes belongs to this part of space, and returns its result; otherwise
+    /// returns `Some(())`.
+    fn if_pair_belongs(
+        &self,
+        a: &BoxedElement,
+        b: &BoxedElement,
+        report: impl FnOnce() -> Option<()>,
+    ) -> Option<()> {
+        if self.pair_belongs(a, b) {
+            report()
         } else {
             Some(())
         }
     }
 
-    /// Returns true if the low corner of the intersection of two elements' boxes lies in this space.
-    pub fn owns(&self, a: &Boxed, b: &Boxed) -> bool {
+    /// Returns true if the low corner of the intersection of two boxes lies in this part of space.
+    fn pair_belongs(&self, a: &BoxedElement, b: &BoxedElement) -> bool {
         (0..3).all(|i| {
             let corner = a.low[i].max(b.low[i]);
             self.low[i] < corner && corner <= self.high[i]
@@ -327,22 +336,22 @@ impl Space {
     }
 }
 
-/// Returns the elements sorted by number, without repetition.
-pub fn each_once(mut elements: Vec<Boxed>) -> Vec<Boxed> {
+/// Returns the elements (triangles or parts of faces) sorted by number, without repetition.
+fn without_repetition(mut elements: Vec<BoxedElement>) -> Vec<BoxedElement> {
     elements.sort_unstable_by_key(|e| e.number);
     elements.dedup_by_key(|e| e.number);
     elements
 }
 
-impl Part {
-    /// Makes a part of space around all elements, which must be grouped by operand; `shift` is the number of
-    /// low bits dropped from their boxes.
+impl ElementsInBox {
+    /// Makes a part of space around all elements (triangles or parts of faces), which must be grouped by
+    /// operand; `shift` is the number of low bits dropped from their boxes.
     #[must_use]
-    pub fn of(elements: Vec<Boxed>, shift: u32) -> Self {
-        let space = Space::around(&elements);
+    pub fn of(elements: Vec<BoxedElement>, shift: u32) -> Self {
+        let half_open_box = HalfOpenBox::around(&elements);
         Self {
             elements,
-            space,
+            half_open_box,
             shift,
         }
     }
@@ -353,15 +362,15 @@ impl Part {
         self.shift
     }
 
-    /// Halves space into parts with at most `most` elements each, and adds one part with all elements that
-    /// halving does not separate. Each pair of overlapping boxes belongs to one of the first parts, or is in
-    /// the last one.
+    /// Halves space into parts with at most `max_elements` elements (triangles or parts of faces) each, and
+    /// adds one part with all elements that halving does not separate. Each pair of overlapping boxes belongs
+    /// to one of the first parts, or is in the last one.
     #[must_use]
-    pub fn divided(self, most: usize) -> Vec<Self> {
+    pub fn divided(self, max_elements: usize) -> Vec<Self> {
         let shift = self.shift;
         let (mut parts, mut crowded) = (Vec::new(), Vec::new());
-        let _ = self.halved(most, |part| {
-            if part.elements.len() <= most {
+        let _ = self.halved(max_elements, |part| {
+            if part.elements.len() <= max_elements {
                 parts.push(part);
             } else {
                 crowded.extend(part.elements);
@@ -369,18 +378,18 @@ impl Part {
             Some(())
         });
         if !crowded.is_empty() {
-            parts.push(Self::of(each_once(crowded), shift));
+            parts.push(Self::of(without_repetition(crowded), shift));
         }
         parts
     }
 
-    /// Halves space, and calls `visit` for each part that has at most `most` elements or that halving does
-    /// not separate; stops and returns `None` if `visit` does.
-    fn halved(self, most: usize, mut visit: impl FnMut(Self) -> Option<()>) -> Option<()> {
+    /// Halves space, and calls `visit` for each part that has at most `max_elements` elements (triangles or
+    /// parts of faces) or that halving does not separate; stops and returns `None` if `visit` does.
+    fn halved(self, max_elements: usize, mut visit: impl FnMut(Self) -> Option<()>) -> Option<()> {
         let mut open = vec![self];
         while let Some(part) = open.pop() {
             spend(part.elements.len());
-            let halved = part.elements.len() > most && part.halve(&mut open);
+            let halved = part.elements.len() > max_elements && part.halve(&mut open);
             if !halved {
                 visit(part)?;
             }
@@ -388,13 +397,13 @@ impl Part {
         Some(())
     }
 
-    /// Halves the space on an axis, and appends the halves with elements of different operands to `open`.
-    /// Returns false, without a change, if no axis separates the elements.
+    /// Halves the space on an axis, and appends the halves with elements (triangles or parts of faces) of
+    /// different operands to `open`. Returns false, without a change, if no axis separates the elements.
     ///
     /// It takes the longest axis that separates the elements: this is as good as the best one, and saves
     /// counting on all axes.
     fn halve(&self, open: &mut Vec<Self>) -> bool {
-        let length = |i: usize| self.space.high[i] - self.space.low[i];
+        let length = |i: usize| self.half_open_box.high[i] - self.half_open_box.low[i];
         let mut axes = [0, 1, 2];
         axes.sort_by_key(|i| Reverse(length(*i)));
         let wide = axes.into_iter().filter(|i| length(*i) > 1);
@@ -404,20 +413,21 @@ impl Part {
             return false;
         };
         let at = self.middle(axis);
-        let [below, above] = self.space.divided(axis, at);
+        let [below, above] = self.half_open_box.divided(axis, at);
         self.push(below, few, |e| e.is_below(axis, at), open);
         self.push(above, many, |e| e.is_above(axis, at), open);
         true
     }
 
     fn middle(&self, axis: usize) -> i32 {
-        self.space.low[axis].midpoint(self.space.high[axis])
+        self.half_open_box.low[axis].midpoint(self.half_open_box.high[axis])
     }
 
-    /// Returns the numbers of elements that reach into the lower and into the upper half on an axis.
+    /// Returns the numbers of elements (triangles or parts of faces) that reach into the lower and into the
+    /// upper half on an axis.
     fn counts(&self, axis: usize) -> [usize; 2] {
         let at = self.middle(axis);
-        let count = |[below, above]: [u32; 2], e: &Boxed| {
+        let count = |[below, above]: [u32; 2], e: &BoxedElement| {
             [
                 below + u32::from(e.is_below(axis, at)),
                 above + u32::from(e.is_above(axis, at)),
@@ -428,18 +438,18 @@ impl Part {
 
     fn push(
         &self,
-        space: Space,
+        half_open_box: HalfOpenBox,
         count: usize,
-        reaches: impl Fn(&&Boxed) -> bool,
+        reaches: impl Fn(&&BoxedElement) -> bool,
         open: &mut Vec<Self>,
     ) {
-        let mut elements: Vec<Boxed> = Vec::with_capacity(count);
+        let mut elements: Vec<BoxedElement> = Vec::with_capacity(count);
         elements.extend(self.elements.iter().filter(reaches));
-        let alone = |e: &Boxed| e.operand == elements[0].operand;
+        let alone = |e: &BoxedElement| e.operand == elements[0].operand;
         if !elements.iter().all(alone) {
             open.push(Self {
                 elements,
-                space,
+                half_open_box,
                 ..*self
             });
         }

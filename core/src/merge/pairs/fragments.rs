@@ -2,15 +2,22 @@
 //!
 //! The box of a long thin triangle (a needle) overlaps the boxes of many elements around it, so halving space
 //! does not separate them. But a needle crosses few of the cells in its box, and its fragment in a cell has a
-//! small box.
+//! small box. Cells are turned with the needles, because boxes along a needle are smaller than boxes across it.
 
-use super::boxes::{Boxed, Space};
+use super::boxes::{BoxedElement, HalfOpenBox};
 use super::clip::part_within;
-use super::direction::SLACK;
-use super::Swept;
-use crate::arith::convert::as_double;
-use crate::geometry::doubles::Triangle;
+use super::BoundedElement;
+use crate::arith::convert::{as_double, as_number};
+use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::vector::{cross, dot};
+use crate::geometry::doubles::{Point, Triangle};
 use crate::interrupt::spend;
+
+/// The padding of turned coordinates, as a share of the largest one; far above their rounding errors.
+const SLACK: f64 = 1e-14;
+
+/// The largest absolute value of a scaled coordinate.
+const MAX_SCALED: f64 = 1_073_741_824.0;
 
 /// The most fragments in a cell that are compared all with all; dividing the cell of fewer fragments costs
 /// about as much.
@@ -19,8 +26,8 @@ const MAX_FRAGMENTS_COMPARED: usize = 64;
 /// The number of equal intervals into which the candidate coordinates divide each axis of a cell.
 const INTERVALS_PER_AXIS: usize = 16;
 
-/// A division of a cell separates elements if both parts together have at most this share of the cell's
-/// pairs.
+/// A division of a cell separates elements (triangles or parts of faces) if both parts together have at most
+/// this share of the cell's pairs.
 const MAX_SHARE_OF_PAIRS: f64 = 7.0 / 8.0;
 
 /// The number of consecutive divisions that may separate nothing; a part with at most half of the pairs
@@ -32,18 +39,24 @@ const MAX_VAIN_DIVISIONS: u32 = 2;
 
 /// The triangles to be separated, and the cells still to be divided.
 pub struct Crowd {
-    /// For each element its corners, if known, in the scale of the boxes.
+    /// For each element (a triangle or part of a face) the corners of its triangle, if known, turned and scaled.
     corners: Vec<Option<Triangle>>,
     /// A bound on the error of clipping.
     slack: f64,
     open: Vec<Fragments>,
 }
 
-/// The fragments of elements in a cell, grouped by operand.
+/// Three perpendicular directions, and a factor that scales coordinates along them.
+struct Frame {
+    directions: [Point; 3],
+    scale: f64,
+}
+
+/// The fragments of elements (triangles or parts of faces) in a cell, grouped by operand.
 pub struct Fragments {
-    /// The fragments' boxes, numbered by the index of the element.
-    pub elements: Vec<Boxed>,
-    pub space: Space,
+    /// The fragments' boxes, numbered by the index of the element (a triangle or part of a face).
+    pub elements: Vec<BoxedElement>,
+    pub half_open_box: HalfOpenBox,
     /// The number of consecutive further divisions that may separate nothing.
     patience: u32,
 }
@@ -58,39 +71,49 @@ struct Division {
 
 impl Division {
     /// Returns the sum of the numbers of pairs on both sides.
-    fn left(&self) -> f64 {
+    fn remaining_pairs(&self) -> f64 {
         self.pairs[0] + self.pairs[1]
     }
 }
 
 impl Crowd {
-    /// Starts the separation of elements; `swept` has their boxes before, and `boxed` after dropping `shift`
-    /// low bits.
-    pub fn of(boxed: &[Boxed], swept: &[Swept], shift: u32) -> Self {
-        let scale = 1.0 / as_double(1u64 << shift);
-        let scaled = |corners: Triangle| corners.map(|p| p.map(|x| x * scale));
-        let corners: Vec<Option<Triangle>> = swept.iter().map(|e| e.corners.map(scaled)).collect();
+    /// Starts the separation of elements (triangles or parts of faces), which are grouped by operand.
+    pub fn of(elements: &[BoundedElement]) -> Self {
+        let frame = Frame::along(elements);
+        let corners: Vec<Option<Triangle>> = elements.iter().map(|e| frame.corners(e)).collect();
+        let boxed = (0..)
+            .zip(elements)
+            .map(|(number, e)| frame.boxed(number, e));
+        let boxed: Vec<BoxedElement> = boxed.collect();
         let coordinates = corners.iter().flatten().flatten().flatten();
-        let size = coordinates.fold(1.0f64, |most, x| most.max(x.abs()));
-        let numbered = (0..).zip(boxed).map(|(number, e)| e.numbered(number));
-        let all = Fragments {
-            elements: numbered.collect(),
-            space: Space::around(boxed),
+        let size = coordinates.fold(MAX_SCALED, |most, x| most.max(x.abs()));
+        let crowd = Self {
+            corners,
+            slack: SLACK * size,
+            open: Vec::new(),
+        };
+        let half_open_box = HalfOpenBox::around(&boxed);
+        let clipped = boxed
+            .iter()
+            .filter_map(|e| crowd.fragment(e, &half_open_box));
+        let whole = Fragments {
+            elements: clipped.collect(),
+            half_open_box,
             patience: MAX_VAIN_DIVISIONS,
         };
         Self {
-            corners,
-            slack: SLACK * size,
-            open: vec![all],
+            open: vec![whole],
+            ..crowd
         }
     }
 
-    /// Clips the fragment `of` an element to the smaller cell `space`; `None` if nothing is left.
-    fn fragment(&self, of: &Boxed, space: &Space) -> Option<Boxed> {
+    /// Clips the fragment `of` an element (a triangle or part of a face) to the smaller cell `half_open_box`;
+    /// `None` if nothing is left.
+    fn fragment(&self, of: &BoxedElement, half_open_box: &HalfOpenBox) -> Option<BoxedElement> {
         let Some(corners) = &self.corners[of.number as usize] else {
             return Some(*of);
         };
-        let (low, high) = space.ends();
+        let (low, high) = half_open_box.ends();
         // A cell contains the points from the lattice point after its low end to the one after its high end.
         let low = low.map(|x| f64::from(x) + 1.0 - self.slack);
         let high = high.map(|x| f64::from(x) + 1.0 + self.slack);
@@ -104,39 +127,108 @@ impl Crowd {
     /// Divides a cell at the candidate coordinate that leaves the fewest pairs, and clips the fragments;
     /// `None` if dividing does not pay.
     fn divide(&self, whole: &Fragments) -> Option<[Fragments; 2]> {
-        let places = (0..3).flat_map(|axis| whole.divisions(axis));
-        let best = places.min_by(|a, b| a.left().total_cmp(&b.left()))?;
+        let candidates = (0..3).flat_map(|axis| whole.divisions(axis));
+        let best = candidates.min_by(|a, b| a.remaining_pairs().total_cmp(&b.remaining_pairs()))?;
         let Division { axis, at, .. } = best;
-        let fragment = |e: &Boxed, space: &Space| {
+        let fragment = |e: &BoxedElement, half_open_box: &HalfOpenBox| {
             let crosses = e.is_below(axis, at) && e.is_above(axis, at);
             if crosses {
-                self.fragment(e, space)
+                self.fragment(e, half_open_box)
             } else {
                 Some(*e)
             }
         };
-        let part = |space: Space, patience: u32, reaches: fn(&Boxed, usize, i32) -> bool| {
+        let part = |half_open_box: HalfOpenBox,
+                    patience: u32,
+                    reaches: fn(&BoxedElement, usize, i32) -> bool| {
             let own = whole.elements.iter().filter(|e| reaches(e, axis, at));
             Fragments {
-                elements: own.filter_map(|e| fragment(e, &space)).collect(),
-                space,
+                elements: own.filter_map(|e| fragment(e, &half_open_box)).collect(),
+                half_open_box,
                 patience,
             }
         };
         let patience = whole.patience_after(&best)?;
-        let [below, above] = whole.space.divided(axis, at);
+        let [below, above] = whole.half_open_box.divided(axis, at);
         Some([
-            part(below, patience[0], Boxed::is_below),
-            part(above, patience[1], Boxed::is_above),
+            part(below, patience[0], BoxedElement::is_below),
+            part(above, patience[1], BoxedElement::is_above),
         ])
     }
+}
+
+impl Frame {
+    /// The frame along the longest edge of all elements and along the plane of this edge and the one that is
+    /// most across it; the scale of the boxes' coordinates fills 31 bits.
+    fn along(elements: &[BoundedElement]) -> Self {
+        let corners = elements.iter().filter_map(|e| e.corners.as_ref());
+        let edges: Vec<Point> = corners.map(longest_edge).collect();
+        let greatest = |size: &dyn Fn(&Point) -> f64| {
+            let larger = |u: &&Point, v: &&Point| size(u).total_cmp(&size(v));
+            edges.iter().max_by(larger).copied().unwrap_or_default()
+        };
+        let long = greatest(&|edge| dot(edge, edge));
+        let other = greatest(&|edge| {
+            let across = cross(&long, edge);
+            dot(&across, &across)
+        });
+        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let turned = unit(&long).zip(unit(&cross(&long, &other)));
+        let directions = turned.map_or(axes, |(u, w)| [u, cross(&w, &u), w]);
+        let ends = elements.iter().flat_map(|e| [e.low, e.high]).flatten();
+        // Turned coordinates are at most √3 times as large.
+        let size = 2.0 * as_double(ends.fold(1, |most, x| x.abs().max(most)));
+        Self {
+            directions,
+            scale: MAX_SCALED / size,
+        }
+    }
+
+    fn turned(&self, point: &Point) -> Point {
+        self.directions.map(|d| dot(point, &d) * self.scale)
+    }
+
+    fn corners(&self, element: &BoundedElement) -> Option<Triangle> {
+        element
+            .corners
+            .map(|corners| corners.map(|p| self.turned(&p)))
+    }
+
+    /// Returns the turned and scaled box around the box of an element (a triangle or part of a face).
+    fn boxed(&self, number: u32, element: &BoundedElement) -> BoxedElement {
+        let [low, high] = [&element.low, &element.high].map(|end| end.map(as_double));
+        let end = |direction: &Point, towards: [&Point; 2]| {
+            let at = |i: usize| towards[usize::from(direction[i] > 0.0)][i];
+            dot(direction, &each_axis(at)) * self.scale
+        };
+        let low_end = self
+            .directions
+            .map(|d| as_coordinate(end(&d, [&high, &low])) - 1);
+        let high_end = self
+            .directions
+            .map(|d| as_coordinate(end(&d, [&low, &high])) + 1);
+        BoxedElement::between(as_number(element.operand), number, low_end, high_end)
+    }
+}
+
+fn longest_edge(corners: &Triangle) -> Point {
+    let edge = |i: usize| each_axis(|k| corners[(i + 1) % 3][k] - corners[i][k]);
+    let longer = |a: &Point, b: &Point| dot(a, a).total_cmp(&dot(b, b));
+    (0..3).map(edge).max_by(longer).unwrap_or_default()
+}
+
+/// Returns a vector scaled to length 1; `None` for the zero vector and for infinite lengths.
+fn unit(v: &Point) -> Option<Point> {
+    let size = dot(v, v).sqrt();
+    (size > 0.0 && size.is_finite()).then(|| v.map(|x| x / size))
 }
 
 impl Iterator for Crowd {
     type Item = Fragments;
 
-    /// Returns the fragments in the next cell that is not worth dividing. Any two elements of different
-    /// operands that meet have fragments with overlapping boxes in one of these cells.
+    /// Returns the fragments in the next cell that is not worth dividing. Any two elements (triangles or
+    /// parts of faces) of different operands that meet have fragments with overlapping boxes in one of these
+    /// cells.
     fn next(&mut self) -> Option<Fragments> {
         while let Some(whole) = self.open.pop() {
             spend(whole.elements.len());
@@ -158,16 +250,16 @@ impl Fragments {
     /// cell; `None` if the cell must not be divided there.
     fn patience_after(&self, division: &Division) -> Option<[u32; 2]> {
         let before = self.pairs();
-        if division.left() <= MAX_SHARE_OF_PAIRS * before {
+        if division.remaining_pairs() <= MAX_SHARE_OF_PAIRS * before {
             return Some([MAX_VAIN_DIVISIONS; 2]);
         }
-        let less = self.patience.checked_sub(1);
-        let less = less.filter(|_| division.left() <= before)?;
+        let difference = self.patience.checked_sub(1);
+        let difference = difference.filter(|_| division.remaining_pairs() <= before)?;
         let of_part = |own: f64| {
             if 2.0 * own <= before {
                 MAX_VAIN_DIVISIONS
             } else {
-                less
+                difference
             }
         };
         Some(division.pairs.map(of_part))
@@ -186,20 +278,20 @@ impl Fragments {
     }
 
     /// Returns the fragments of each operand as a slice.
-    fn runs(&self) -> impl Iterator<Item = &[Boxed]> {
+    fn runs(&self) -> impl Iterator<Item = &[BoxedElement]> {
         self.elements.chunk_by(|a, b| a.operand == b.operand)
     }
 
     /// Returns the candidate coordinates for dividing the cell on an axis, with the numbers of pairs on both
     /// sides.
     fn divisions(&self, axis: usize) -> impl Iterator<Item = Division> + use<> {
-        let (low, high) = self.space.ends();
+        let (low, high) = self.half_open_box.ends();
         let (low, length) = (low[axis], high[axis] - low[axis]);
         let scale = as_double(INTERVALS_PER_AXIS) / f64::from(length);
-        let first_from = |x: i32| as_place((f64::from(x - low) * scale).ceil());
+        let first_from = |x: i32| as_index((f64::from(x - low) * scale).ceil());
         let (mut below, mut above) = (Tally::default(), Tally::default());
         for run in self.runs() {
-            let ends = || run.iter().map(Boxed::ends);
+            let ends = || run.iter().map(BoxedElement::ends);
             below.add(ends().map(|(low, _)| first_from(low[axis])));
             above.add(ends().map(|(_, high)| INTERVALS_PER_AXIS - first_from(high[axis])));
         }
@@ -213,20 +305,24 @@ impl Fragments {
     }
 }
 
-/// Counts of the elements up to each candidate coordinate, from which the numbers of pairs follow.
+/// Counts of the elements (triangles or parts of faces) up to each candidate coordinate, from which the
+/// numbers of pairs follow.
 #[derive(Default)]
 struct Tally {
-    /// For each candidate, the increase of the number of elements over the previous candidate.
+    /// For each candidate, the increase of the number of elements (triangles or parts of faces) over the
+    /// previous candidate.
     more: [f64; INTERVALS_PER_AXIS + 1],
-    /// For each candidate, the increase of the sum of the squares of the operands' numbers of elements.
+    /// For each candidate, the increase of the sum of the squares of the operands' numbers of elements
+    /// (triangles or parts of faces).
     more_squares: [f64; INTERVALS_PER_AXIS + 1],
 }
 
 impl Tally {
-    /// Adds the elements of one operand, given the index of the candidate at which each begins.
-    fn add(&mut self, places: impl Iterator<Item = usize>) {
+    /// Adds the elements (triangles or parts of faces) of one operand, given the index of the candidate at
+    /// which each begins.
+    fn add(&mut self, candidates: impl Iterator<Item = usize>) {
         let mut own = [0.0; INTERVALS_PER_AXIS + 1];
-        places.for_each(|place| own[place] += 1.0);
+        candidates.for_each(|place| own[place] += 1.0);
         let mut before = 0.0;
         for (k, more) in own.into_iter().enumerate() {
             self.more[k] += more;
@@ -235,7 +331,8 @@ impl Tally {
         }
     }
 
-    /// Returns for each candidate the number of pairs of elements of different operands up to it.
+    /// Returns for each candidate the number of pairs of elements (triangles or parts of faces) of different
+    /// operands up to it.
     fn pairs(&self) -> [f64; INTERVALS_PER_AXIS + 1] {
         let (mut count, mut squares) = (0.0, 0.0);
         std::array::from_fn(|k| {
@@ -260,7 +357,7 @@ fn as_coordinate(x: f64) -> i32 {
     clippy::cast_possible_truncation,
     reason = "the cast saturates"
 )]
-fn as_place(x: f64) -> usize {
+fn as_index(x: f64) -> usize {
     (x as usize).min(INTERVALS_PER_AXIS)
 }
 
@@ -268,56 +365,53 @@ fn as_place(x: f64) -> usize {
 mod tests {
     use super::*;
     use crate::arith::convert::as_whole;
-    use crate::geometry::axes::each_axis;
 
     /// A disc of needles from one corner to an arc of short walls; the needles are operand 0, and each wall
     /// is an operand of its own.
-    fn disc(sides: u32) -> Vec<Swept> {
+    fn disc(sides: u32) -> Vec<BoundedElement> {
         let corner = |k: u32| {
             let (y, x) = (f64::from(k) / f64::from(sides) * std::f64::consts::PI).sin_cos();
             [x, y, 0.0].map(|x| (x * 1e6).round() + 1e6)
         };
-        let swept = |operand: usize, corners: Triangle| {
+        let bounded = |operand: usize, corners: Triangle| {
             let end = |i: usize, most: fn(f64, f64) -> f64| {
                 as_whole(most(corners[0][i], most(corners[1][i], corners[2][i])))
             };
-            Swept {
+            BoundedElement {
                 operand,
                 low: each_axis(|i| end(i, f64::min)),
                 high: each_axis(|i| end(i, f64::max)),
                 corners: Some(corners),
             }
         };
-        let needle = |k: u32| swept(0, [corner(0), corner(k), corner(k + 1)]);
+        let needle = |k: u32| bounded(0, [corner(0), corner(k), corner(k + 1)]);
         let wall = |k: u32| {
             let [x, y, _] = corner(k);
-            swept(k as usize, [corner(k), corner(k + 1), [x, y, 2e6]])
+            bounded(k as usize, [corner(k), corner(k + 1), [x, y, 2e6]])
         };
         let needles = (1..sides).map(needle);
         needles.chain((1..sides).map(wall)).collect()
     }
 
-    fn crowd(swept: &[Swept]) -> Crowd {
-        let boxed = |(k, e): (u32, &Swept)| Boxed::new(e.operand, k, [&e.low, &e.high], 0);
-        let boxes: Vec<Boxed> = (0..).zip(swept).map(boxed).collect();
-        Crowd::of(&boxes, swept, 0)
-    }
-
     /// Twice as many needles and walls have about twice as many pairs in cells.
     #[test]
     fn needles_come_apart_from_walls_at_their_ends() {
-        let pairs = |sides: u32| crowd(&disc(sides)).map(|cell| cell.pairs()).sum::<f64>();
+        let pairs = |sides: u32| {
+            Crowd::of(&disc(sides))
+                .map(|cell| cell.pairs())
+                .sum::<f64>()
+        };
         let (half, whole) = (pairs(2000), pairs(4000));
         assert!(whole < 3.0 * half && whole < 1e6, "{half} {whole}");
     }
 
     #[test]
     fn those_with_a_common_corner_are_in_one_cell() {
-        let swept = disc(500);
-        let cells: Vec<Fragments> = crowd(&swept).collect();
+        let bounded = disc(500);
+        let cells: Vec<Fragments> = Crowd::of(&bounded).collect();
         let is_in =
             |cell: &Fragments, k: usize| cell.elements.iter().any(|e| e.number as usize == k);
-        let needles = swept.len() / 2;
+        let needles = bounded.len() / 2;
         for k in 0..needles {
             assert!(
                 cells

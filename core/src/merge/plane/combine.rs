@@ -12,7 +12,8 @@ use crate::merge::op::SetOp;
 use crate::tree::partition::Label;
 use crate::tree::plane::{Boundary, PlaneSet, SWEEPS_PER_TREE};
 
-/// Two operands count as unlike if their sizes (numbers of edges or nodes) differ by more than this factor.
+/// Two sets of the plane count as unlike if their sizes (numbers of edges or nodes) differ by more than this
+/// factor.
 const MAX_SIZE_RATIO: usize = 8;
 
 /// A merged tree with more than this many times the nodes of the larger operand's first tree is replaced by

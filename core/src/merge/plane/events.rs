@@ -14,7 +14,7 @@ pub(super) struct Stops {
     /// For each stop, the index of a given corner at its point.
     pub corners: Vec<u32>,
     /// For each given corner, the index of the stop at its point.
-    pub places: Vec<u32>,
+    pub stop_of: Vec<u32>,
 }
 
 impl Stops {
@@ -27,13 +27,13 @@ impl Stops {
         }
         let mut stops = Self {
             corners: Vec::with_capacity(keys.len()),
-            places: vec![0; keys.len()],
+            stop_of: vec![0; keys.len()],
         };
         let equal = |a: &Key, b: &Key| a.order(b, corners) == Ordering::Equal;
         for group in keys.chunk_by(equal) {
             poll();
             for key in group {
-                stops.places[key.number as usize] = as_number(stops.corners.len());
+                stops.stop_of[key.number as usize] = as_number(stops.corners.len());
             }
             // A lattice point, if there is one, stands for the stop: tests of it are the cheapest.
             let lattice = group.iter().find(|key| key.is_lattice);
@@ -96,7 +96,7 @@ impl Crossings {
 
     /// Removes and returns the next crossing if it comes before `corner` in the order of the sweep; drops
     /// further copies of it, and crossings equal to `corner`.
-    pub(super) fn before(&mut self, corner: Option<&Corner>) -> Option<Corner> {
+    pub(super) fn next_before(&mut self, corner: Option<&Corner>) -> Option<Corner> {
         let order = |known: &Crossing| {
             corner.map_or(Ordering::Less, |corner| known.0.point.order(&corner.point))
         };

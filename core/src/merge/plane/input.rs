@@ -39,7 +39,9 @@ impl Outlines {
             return Ok(());
         }
         let Some(line) = Line2::through(from, to) else {
-            let text = "an outline extends beyond the lattice of 2^53 steps";
+            let text =
+                "an outline has a corner beyond the lattice of 2^53 steps; scale the outline \
+                        down, or choose a coarser pitch";
             return Err(Error::new(ErrorKind::TooLarge, text));
         };
         let first = self.corner(from);

@@ -16,14 +16,14 @@ use crate::tree::plane::{Boundary, PlaneSet};
 /// # Errors
 /// `Internal` for a defect.
 pub fn located(set: &PlaneSet, points: &[Lattice2]) -> Result<Vec<Location>> {
-    if !set.wants_tree(points.len())
+    if !set.should_build_tree(points.len())
         && let Some(boundary) = set.closed()?
     {
-        return passed(boundary, points);
+        return locations_by_sweep(boundary, points);
     }
     let tree = set.tree()?;
-    let place = |p: &Lattice2| classify(tree, &Point2::lattice(*p));
-    Ok(points.iter().map(place).collect())
+    let location = |p: &Lattice2| classify(tree, &Point2::lattice(*p));
+    Ok(points.iter().map(location).collect())
 }
 
 /// The width in lattice steps that is added around corners in doubles: they are off by two units in the last
@@ -50,16 +50,16 @@ fn frame(boundary: &Boundary) -> Option<[Lattice2; 2]> {
 /// # Cost
 /// O(k + (n + i) log n) for n edges and k points, of which i lie in the box around the edges, if the sweep
 /// line meets few edges at once.
-fn passed(boundary: &Boundary, points: &[Lattice2]) -> Result<Vec<Location>> {
+fn locations_by_sweep(boundary: &Boundary, points: &[Lattice2]) -> Result<Vec<Location>> {
     let mut outlines = Outlines::default();
     outlines.extend(boundary, 1);
     let outside = match boundary.outer {
         Label::In => Location::In,
         Label::Out => Location::Out,
     };
-    let mut places = vec![outside; points.len()];
+    let mut locations = vec![outside; points.len()];
     let Some([low, high]) = frame(boundary) else {
-        return Ok(places);
+        return Ok(locations);
     };
     let is_near = |p: &Lattice2| (0..2).all(|i| low[i] <= p[i] && p[i] <= high[i]);
     let mut order: Vec<usize> = (0..points.len()).filter(|i| is_near(&points[*i])).collect();
@@ -70,17 +70,17 @@ fn passed(boundary: &Boundary, points: &[Lattice2]) -> Result<Vec<Location>> {
     while let Some(event) = sweep.next() {
         poll();
         while let Some((i, point)) = &next {
-            places[*i] = match point.order(&event.corner.point) {
+            locations[*i] = match point.order(&event.corner.point) {
                 Ordering::Less => sweep.location(point),
                 Ordering::Equal => Location::On,
                 Ordering::Greater => break,
             };
             next = left.next();
         }
-        sweep.pass(&event)?;
+        sweep.process(&event)?;
     }
     for (i, point) in next.into_iter().chain(left) {
-        places[i] = sweep.location(&point);
+        locations[i] = sweep.location(&point);
     }
-    Ok(places)
+    Ok(locations)
 }

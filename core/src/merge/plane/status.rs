@@ -8,7 +8,7 @@ use crate::geometry::spaces::dim2::{Point2, RoundedLine};
 /// A segment of a line that the sweep line meets, of one or more overlapping input segments; it reaches from
 /// the last stop on it to the next.
 #[derive(Clone, Debug)]
-pub(super) struct Stretch {
+pub(super) struct ActiveSegment {
     /// The line of the segment, directed to the right; its minus side is above.
     pub line: RoundedLine,
     /// The index of the stop at which the first of the input segments ends.
@@ -26,7 +26,7 @@ pub(super) struct Stretch {
     pub start: Option<u32>,
 }
 
-impl Stretch {
+impl ActiveSegment {
     /// Returns the winding number just above the segment.
     pub(super) fn above(&self) -> i32 {
         self.below + self.rise
@@ -35,7 +35,7 @@ impl Stretch {
 
 /// The position of a point in the order of the segments on the sweep line.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct OrderRange {
     /// The number of segments below the point.
     pub first: usize,
     /// The number of segments below the point or through it.
@@ -46,14 +46,14 @@ pub(super) struct Place {
 #[derive(Debug, Default)]
 pub(super) struct Status {
     order: Vec<u32>,
-    stretches: Vec<Stretch>,
+    segments: Vec<ActiveSegment>,
     free: Vec<u32>,
 }
 
 impl Status {
     /// Returns the segment with this index in the order from below.
-    pub(super) fn at(&self, place: usize) -> &Stretch {
-        &self.stretches[self.order[place] as usize]
+    pub(super) fn segment_at(&self, index: usize) -> &ActiveSegment {
+        &self.segments[self.order[index] as usize]
     }
 
     /// Returns the number of segments on the sweep line.
@@ -63,13 +63,13 @@ impl Status {
 
     /// Returns the position of a point of the sweep line in the order of segments; `stop` is the index of the
     /// stop at this point, if an input segment begins or ends there.
-    pub(super) fn place(&self, point: &Point2, stop: Option<u32>) -> Place {
+    pub(super) fn range_at(&self, point: &Point2, stop: Option<u32>) -> OrderRange {
         let side = |number: &u32| {
-            let stretch = &self.stretches[*number as usize];
-            if Some(stretch.right) == stop {
+            let segment = &self.segments[*number as usize];
+            if Some(segment.right) == stop {
                 Side::On
             } else {
-                stretch.line.side_of(point)
+                segment.line.side_of(point)
             }
         };
         // The minus side of a line to the right is above it.
@@ -78,35 +78,35 @@ impl Status {
             .iter()
             .take_while(|n| side(n) == Side::On);
         let last = first + through.count();
-        Place { first, last }
+        OrderRange { first, last }
     }
 
     /// Replaces the segments through a point by the segments that leave it to the right.
     ///
     /// # Cost
     /// If the number of segments changes, four bytes are moved for each segment above.
-    pub(super) fn exchange(&mut self, place: Place, others: SmallVec<[Stretch; 2]>) {
-        let through = &self.order[place.first..place.last];
+    pub(super) fn replace(&mut self, range: OrderRange, others: SmallVec<[ActiveSegment; 2]>) {
+        let through = &self.order[range.first..range.last];
         if through.len() == others.len() {
-            for (number, stretch) in through.iter().zip(others) {
-                self.stretches[*number as usize] = stretch;
+            for (number, segment) in through.iter().zip(others) {
+                self.segments[*number as usize] = segment;
             }
             return;
         }
-        self.free.extend(&self.order[place.first..place.last]);
+        self.free.extend(&self.order[range.first..range.last]);
         let mut numbers: SmallVec<[u32; 4]> = SmallVec::new();
-        for stretch in others {
-            numbers.push(self.kept(stretch));
+        for segment in others {
+            numbers.push(self.store(segment));
         }
-        self.order.splice(place.first..place.last, numbers);
+        self.order.splice(range.first..range.last, numbers);
     }
 
-    fn kept(&mut self, stretch: Stretch) -> u32 {
+    fn store(&mut self, segment: ActiveSegment) -> u32 {
         if let Some(number) = self.free.pop() {
-            self.stretches[number as usize] = stretch;
+            self.segments[number as usize] = segment;
             return number;
         }
-        self.stretches.push(stretch);
-        crate::arith::convert::as_number(self.stretches.len()) - 1
+        self.segments.push(segment);
+        crate::arith::convert::as_number(self.segments.len()) - 1
     }
 }

@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 use super::events::{Crossings, Stops};
 use super::input::Outlines;
 use super::output::Output;
-use super::status::{Place, Status, Stretch};
+use super::status::{ActiveSegment, OrderRange, Status};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::side::Side;
 use crate::geometry::spaces::dim2::{Line2, Point2, RoundedLine};
@@ -42,14 +42,14 @@ pub fn bounded(outlines: &Outlines, inside: impl Fn(i32) -> bool) -> Result<Boun
     let mut sweep = Sweep::new(outlines, inside);
     while let Some(event) = sweep.next() {
         poll();
-        sweep.pass(&event)?;
+        sweep.process(&event)?;
     }
     Ok(sweep.into_boundary())
 }
 
 /// An input segment, directed to the right.
 #[derive(Clone, Copy, Debug)]
-struct Running {
+struct SweptStrand {
     line: Line2,
     right: u32,
     rise: i32,
@@ -71,7 +71,7 @@ pub(super) struct Sweep<'a, R> {
     stops: Stops,
     /// The input segments by their left end; `starts` has for each stop the index of the first one that
     /// begins there.
-    strands: Vec<Running>,
+    strands: Vec<SweptStrand>,
     starts: Vec<u32>,
     passed: u32,
     crossings: Crossings,
@@ -82,7 +82,7 @@ pub(super) struct Sweep<'a, R> {
 impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
     pub(super) fn new(outlines: &'a Outlines, inside: R) -> Self {
         let stops = Stops::of(&outlines.corners);
-        let (strands, starts) = running(outlines, &stops);
+        let (strands, starts) = swept_strands(outlines, &stops);
         Self {
             outlines,
             inside,
@@ -100,7 +100,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
     pub(super) fn next(&mut self) -> Option<Event> {
         let stop = self.passed;
         let corner = self.corner(stop).copied();
-        if let Some(corner) = self.crossings.before(corner.as_ref()) {
+        if let Some(corner) = self.crossings.next_before(corner.as_ref()) {
             return Some(Event { corner, stop: None });
         }
         self.passed += 1;
@@ -121,41 +121,41 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         self.output.into_boundary(outer)
     }
 
-    /// Returns true if exactly one side of the segment `stretch` is inside.
-    fn separates(&self, stretch: &Stretch) -> bool {
-        (self.inside)(stretch.below) != (self.inside)(stretch.above())
+    /// Returns true if exactly one side of the given segment is inside.
+    fn separates(&self, segment: &ActiveSegment) -> bool {
+        (self.inside)(segment.below) != (self.inside)(segment.above())
     }
 
     /// Processes a stop: ends the segments that reach it, and begins the segments that leave it to the right.
-    pub(super) fn pass(&mut self, event: &Event) -> Result<()> {
-        let place = self.status.place(&event.corner.point, event.stop);
-        let (winding, face) = self.below(place.first);
-        let leaving = self.leaving(place, event.stop, winding);
-        let upper = if place.first < place.last {
-            let top = self.status.at(place.last - 1);
+    pub(super) fn process(&mut self, event: &Event) -> Result<()> {
+        let range = self.status.range_at(&event.corner.point, event.stop);
+        let (winding, face) = self.winding_and_face_below(range.first);
+        let leaving = self.leaving_segments(range, event.stop, winding);
+        let upper = if range.first < range.last {
+            let top = self.status.segment_at(range.last - 1);
             (top.above(), top.faces[1])
         } else {
             (winding, face)
         };
-        if leaving.last().map_or(winding, Stretch::above) != upper.0 {
+        if leaving.last().map_or(winding, ActiveSegment::above) != upper.0 {
             return Err(not_closed());
         }
-        let leaving = self.settled(leaving, place, &event.corner, [face, upper.1]);
+        let leaving = self.with_faces_and_edges(leaving, range, &event.corner, [face, upper.1]);
         let count = leaving.len();
-        self.status.exchange(place, leaving);
-        self.look(place.first);
+        self.status.replace(range, leaving);
+        self.record_crossing(range.first);
         if count > 0 {
-            self.look(place.first + count);
+            self.record_crossing(range.first + count);
         }
         Ok(())
     }
 
-    /// Returns the winding number and the face of the result just below the index `place` in the order of
+    /// Returns the winding number and the face of the result just below the index `index` in the order of
     /// segments on the sweep line.
-    fn below(&self, place: usize) -> (i32, u32) {
-        match place.checked_sub(1) {
+    fn winding_and_face_below(&self, index: usize) -> (i32, u32) {
+        match index.checked_sub(1) {
             Some(lower) => {
-                let lower = self.status.at(lower);
+                let lower = self.status.segment_at(lower);
                 (lower.above(), lower.faces[1])
             }
             None => (self.outlines.base, 0),
@@ -165,11 +165,11 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
     /// Returns the location of a point on the sweep line, which comes after the last stop and before the next
     /// one.
     pub(super) fn location(&self, point: &Point2) -> Location {
-        let place = self.status.place(point, None);
-        if place.first < place.last {
+        let range = self.status.range_at(point, None);
+        if range.first < range.last {
             return Location::On;
         }
-        if (self.inside)(self.below(place.first).0) {
+        if (self.inside)(self.winding_and_face_below(range.first).0) {
             Location::In
         } else {
             Location::Out
@@ -178,10 +178,15 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
 
     /// Returns the segments that leave a stop to the right, in order from below; `winding` is the winding
     /// number below them.
-    fn leaving(&self, place: Place, stop: Option<u32>, winding: i32) -> SmallVec<[Stretch; 2]> {
+    fn leaving_segments(
+        &self,
+        range: OrderRange,
+        stop: Option<u32>,
+        winding: i32,
+    ) -> SmallVec<[ActiveSegment; 2]> {
         let mut numbers: SmallVec<[u32; 4]> = SmallVec::new();
-        for passing in place.first..place.last {
-            let strands = self.status.at(passing).strands.iter();
+        for passing in range.first..range.last {
+            let strands = self.status.segment_at(passing).strands.iter();
             let goes_on = |n: &&u32| Some(self.strands[**n as usize].right) != stop;
             numbers.extend(strands.filter(goes_on).copied());
         }
@@ -195,18 +200,18 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         let groups = numbers.chunk_by(|m, n| line(*m) == line(*n));
         groups
             .map(|group| {
-                let stretch = self.stretch(group, below);
-                below = stretch.above();
-                stretch
+                let segment = self.active_segment(group, below);
+                below = segment.above();
+                segment
             })
             .collect()
     }
 
     /// Makes one segment of the sweep line's order from overlapping input segments on one line; `below` is
     /// the winding number below it.
-    fn stretch(&self, strands: &[u32], below: i32) -> Stretch {
+    fn active_segment(&self, strands: &[u32], below: i32) -> ActiveSegment {
         let running = strands.iter().map(|n| &self.strands[*n as usize]);
-        Stretch {
+        ActiveSegment {
             line: RoundedLine::of(self.strands[strands[0] as usize].line),
             right: running.clone().map(|s| s.right).min().unwrap_or(u32::MAX),
             strands: SmallVec::from_slice(strands),
@@ -219,43 +224,43 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
 
     /// Sets the faces beside the segments that leave a stop, adds the edges of the result that end there, and
     /// begins new ones; `lower` and `upper` are the faces below and above all segments at the stop.
-    fn settled(
+    fn with_faces_and_edges(
         &mut self,
-        mut leaving: SmallVec<[Stretch; 2]>,
-        place: Place,
+        mut leaving: SmallVec<[ActiveSegment; 2]>,
+        range: OrderRange,
         corner: &Corner,
         [lower, upper]: [u32; 2],
-    ) -> SmallVec<[Stretch; 2]> {
+    ) -> SmallVec<[ActiveSegment; 2]> {
         let walls = leaving.iter().filter(|s| self.separates(s)).count();
         let (mut left, mut face) = (walls, lower);
-        for stretch in &mut leaving {
-            stretch.faces[0] = face;
-            if self.separates(stretch) {
+        for segment in &mut leaving {
+            segment.faces[0] = face;
+            if self.separates(segment) {
                 left -= 1;
                 face = if left == 0 { upper } else { self.output.face() };
             }
-            stretch.faces[1] = face;
+            segment.faces[1] = face;
         }
         if walls == 0 {
             self.output.join(lower, upper);
         }
-        let arriving = place.first..place.last;
+        let arriving = range.first..range.last;
         let arriving: SmallVec<[usize; 4]> = arriving
-            .filter(|i| self.status.at(*i).start.is_some())
+            .filter(|i| self.status.segment_at(*i).start.is_some())
             .collect();
-        if !self.goes_on(&arriving, &mut leaving, walls) {
-            self.turn(&arriving, &mut leaving, walls, corner);
+        if !self.extend_edge(&arriving, &mut leaving, walls) {
+            self.place_corner(&arriving, &mut leaving, walls, corner);
         }
         leaving
     }
 
     /// Extends the one boundary edge that reaches a stop if exactly one leaves it, in the same line and with
     /// the same side inside; returns true if it did.
-    fn goes_on(&self, arriving: &[usize], leaving: &mut [Stretch], walls: usize) -> bool {
+    fn extend_edge(&self, arriving: &[usize], leaving: &mut [ActiveSegment], walls: usize) -> bool {
         let ([before], 1) = (arriving, walls) else {
             return false;
         };
-        let before = self.status.at(*before);
+        let before = self.status.segment_at(*before);
         let Some(after) = leaving.iter_mut().find(|s| self.separates(s)) else {
             return false;
         };
@@ -269,33 +274,42 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
 
     /// Adds a corner to the result if a boundary edge reaches or leaves a stop; ends the edges that reach it
     /// and begins those that leave it.
-    fn turn(&mut self, arriving: &[usize], leaving: &mut [Stretch], walls: usize, corner: &Corner) {
+    fn place_corner(
+        &mut self,
+        arriving: &[usize],
+        leaving: &mut [ActiveSegment],
+        walls: usize,
+        corner: &Corner,
+    ) {
         if arriving.is_empty() && walls == 0 {
             return;
         }
         let here = self.output.corner(corner);
-        for place in arriving {
-            let stretch = self.status.at(*place);
-            let above = Label::from_inside((self.inside)(stretch.above()));
-            if let Some(start) = stretch.start {
-                let line = *stretch.line.line();
-                self.output.edge(line, [start, here], stretch.faces, above);
+        for index in arriving {
+            let segment = self.status.segment_at(*index);
+            let above = Label::from_inside((self.inside)(segment.above()));
+            if let Some(start) = segment.start {
+                let line = *segment.line.line();
+                self.output.edge(line, [start, here], segment.faces, above);
             }
         }
-        for stretch in leaving {
-            if self.separates(stretch) {
-                stretch.start = Some(here);
+        for segment in leaving {
+            if self.separates(segment) {
+                segment.start = Some(here);
             }
         }
     }
 
-    /// Records the crossing, if there is one, of the two neighbouring segments at the indices `place - 1` and
-    /// `place` from below.
-    fn look(&mut self, place: usize) {
-        if place == 0 || place >= self.status.len() {
+    /// Records the crossing, if there is one, of the two neighbouring segments at the indices `index - 1` and
+    /// `index` from below.
+    fn record_crossing(&mut self, index: usize) {
+        if index == 0 || index >= self.status.len() {
             return;
         }
-        let (lower, upper) = (self.status.at(place - 1), self.status.at(place));
+        let (lower, upper) = (
+            self.status.segment_at(index - 1),
+            self.status.segment_at(index),
+        );
         let end = |stop: u32| self.corner(stop).map(|corner| &corner.point);
         let on = |line: &RoundedLine, point: Option<&Point2>, side| {
             point.is_some_and(|point| line.side_of(point) == side)
@@ -306,7 +320,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
             lower.right > upper.right && on(&lower.line, end(upper.right), Side::Plus)
         };
         if cross {
-            let lines = [lower, upper].map(|stretch| *stretch.line.line());
+            let lines = [lower, upper].map(|segment| *segment.line.line());
             self.crossings.extend(Corner::crossing(lines[0], lines[1]));
         }
     }
@@ -314,17 +328,17 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
 
 /// Returns the input segments sorted by left end, and for each stop the index of the first one that begins
 /// there.
-fn running(outlines: &Outlines, stops: &Stops) -> (Vec<Running>, Vec<u32>) {
+fn swept_strands(outlines: &Outlines, stops: &Stops) -> (Vec<SweptStrand>, Vec<u32>) {
     let mut strands = Vec::with_capacity(outlines.strands.len());
     for strand in &outlines.strands {
-        let [from, to] = strand.ends.map(|end| stops.places[end as usize]);
+        let [from, to] = strand.ends.map(|end| stops.stop_of[end as usize]);
         let (left, line, rise) = if from < to {
             (from, strand.line, strand.weight)
         } else {
             (to, strand.line.flipped(), -strand.weight)
         };
         let right = from.max(to);
-        strands.push((left, Running { line, right, rise }));
+        strands.push((left, SweptStrand { line, right, rise }));
     }
     let mut starts = vec![0u32; stops.corners.len() + 1];
     for (left, _) in &strands {
@@ -344,6 +358,6 @@ fn running(outlines: &Outlines, stops: &Stops) -> (Vec<Running>, Vec<u32>) {
 }
 
 fn not_closed() -> Error {
-    let text = "the outlines are not closed: their winding numbers are inconsistent";
+    let text = "the outlines are not closed; at each point as many segments must end as begin";
     Error::new(ErrorKind::NotClosed, text)
 }

@@ -18,7 +18,7 @@ static IS_ENDING: AtomicBool = AtomicBool::new(false);
 static RETURNING: AtomicUsize = AtomicUsize::new(0);
 
 thread_local! {
-    /// True for the thread that ends the interpreter.
+    /// True for the thread that ends the Python interpreter.
     static ENDS_IT: Cell<bool> = const { Cell::new(false) };
 }
 

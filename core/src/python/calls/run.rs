@@ -12,18 +12,19 @@ use crate::error::panics::caught;
 use crate::error::{Error, Result};
 use crate::interrupt::{Call, CallerHooks, Share, Task, ASK_EVERY};
 
-/// Work on fewer elements than this begins on the caller's thread: passes over them are not shared, and a
-/// step that is worth it wakes the pool itself.
+/// Work on fewer array elements than this begins on the caller's thread: passes over them are not shared, and
+/// a step that is worth it wakes the thread pool itself.
 pub const MIN_ELEMENTS_FOR_POOL: usize = 1 << 13;
 
-/// What a call on the caller's thread may do: ask for signals, and hand a share of its work to a pool.
+/// What a call on the caller's thread may do: ask for signals, and run a part of its work in a thread pool.
 const HOOKS: CallerHooks = CallerHooks {
     wants_to_stop: signal_raised,
     hand_over,
 };
 
 thread_local! {
-    /// The number of threads that this thread's call asked for, and the pool that does shares of its work.
+    /// The number of threads that this thread's call asked for, and the thread pool that does parts of its
+    /// work.
     static HELPERS: RefCell<(usize, Option<Arc<Pool>>)> = const { RefCell::new((0, None)) };
 
     /// The exception that a signal handler raised during a call of this thread.
@@ -87,7 +88,7 @@ fn shared<T: Send>(pool: &Pool, call: &Call, work: impl FnOnce() -> Result<T> + 
     awaited(pool, call.task(), || call.run(work)).unwrap_or_else(none)
 }
 
-/// Runs a share of a call's work in the call's pool and waits for it.
+/// Runs a part of a call's work in the call's thread pool and waits for it.
 fn hand_over(task: Task, share: Share<'_>) {
     if let Some(pool) = helpers() {
         awaited(&pool, task, || task.run(share));

@@ -25,9 +25,9 @@ pub struct BuildOptions {
     pub own: Vec<Row>,
 }
 
-pub fn lenience_of((triangulate_bent, drop_flat): (bool, bool)) -> Lenience {
+pub fn lenience_of((triangulate_nonplanar, drop_flat): (bool, bool)) -> Lenience {
     Lenience {
-        triangulate_bent,
+        triangulate_nonplanar,
         drop_flat,
     }
 }
@@ -41,7 +41,10 @@ pub fn named_policy(name: &str, seed: u64, sample: Sample, alpha: f64) -> Result
         "weighted" => Policy::Weighted(sample, alpha),
         "least-cost" => Policy::LeastCost(sample),
         _ => {
-            let text = format!("unknown policy '{name}'");
+            let text = format!(
+                "'{name}' is not a policy; use first, random, least-splits, balanced, weighted or \
+                 least-cost"
+            );
             return Err(Error::new(ErrorKind::Shape, text));
         }
     })

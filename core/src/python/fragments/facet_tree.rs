@@ -145,7 +145,12 @@ impl<S: FromRow> FacetTree<S> {
 
     /// Returns options that build the same tree again.
     pub fn build_options(&self) -> BuildOptions {
-        let own = self.tree.own().iter().map(row_of::<S>).collect();
+        let own = self
+            .tree
+            .own_hyperplanes()
+            .iter()
+            .map(row_of::<S>)
+            .collect();
         let method = BuildMethod::Given(self.cuts());
         BuildOptions { method, own }
     }
@@ -213,7 +218,7 @@ impl<S: Affine> FacetTree<S> {
     }
 
     pub fn coefficients(&self, node: NodeId) -> Option<Vec<BigInt>> {
-        let [a, b, c, d] = S::exact(&self.tree.nodes().get(node.place())?.hyperplane);
+        let [a, b, c, d] = S::exact(&self.tree.nodes().get(node.index())?.hyperplane);
         let mut all: Vec<BigInt> = [a, b, c].into_iter().take(S::DIM).collect();
         all.push(d);
         Some(all)
@@ -291,7 +296,7 @@ impl<S: Affine> FacetTree<S> {
                 export.vertices.extend(self.positions(shape));
                 export
                     .original
-                    .extend(S::original(shape, &facet.corners, &facet.seams));
+                    .extend(S::original_edges(shape, &facet.corners, &facet.seams));
                 export.offsets.push(export.vertices.len() as i64);
                 export.source.push(i64::from(facet.source));
                 export.node.push(number);
@@ -301,11 +306,12 @@ impl<S: Affine> FacetTree<S> {
         export
     }
 
-    /// Returns the box of the facets, enlarged by a margin in model units, at least one step.
+    /// Returns the box around the tree's facets (input points, segments or polygons), enlarged by a margin in
+    /// model units, at least one step.
     pub fn whole(&self, margin: f64) -> Result<Polytope<S>> {
         let steps = (margin / self.units([1.0; 3])[0])
             .round()
-            .clamp(1.0, S::REACH as f64) as i64;
+            .clamp(1.0, S::MAX_COORDINATE as f64) as i64;
         grown_box(&self.facets, steps)
     }
 
@@ -322,7 +328,7 @@ impl<S: Affine> FacetTree<S> {
                 let region = self.tree.region(node, &whole);
                 match (region, half_of(side)) {
                     (Some(region), Some(half)) => {
-                        let cut = &self.tree.nodes()[node.place()].hyperplane;
+                        let cut = &self.tree.nodes()[node.index()].hyperplane;
                         let [minus, plus] = region.divided(cut);
                         if half == Half::Minus {
                             minus
@@ -343,7 +349,7 @@ impl<S: Affine> FacetTree<S> {
         let span = self
             .tree
             .region(node, &whole)
-            .and_then(|r| r.span(&self.tree.nodes()[node.place()].hyperplane));
+            .and_then(|r| r.span(&self.tree.nodes()[node.index()].hyperplane));
         Ok(span.map_or_else(Vec::new, |s| self.positions(&s)))
     }
 }
@@ -360,14 +366,16 @@ fn half_of(side: i8) -> Option<Half> {
     }
 }
 
-/// Returns the box of the facets, enlarged by `margin` steps on each side.
+/// Returns the box around facets (points, segments or polygons), enlarged by `margin` steps on each side.
 fn grown_box<S: Affine>(facets: &[Facet], margin: i64) -> Result<Polytope<S>> {
     let corners = || facets.iter().flat_map(|f| &f.corners);
-    let reach = |k: i64| k.clamp(-S::REACH, S::REACH);
+    let reach = |k: i64| k.clamp(-S::MAX_COORDINATE, S::MAX_COORDINATE);
     let low = [0, 1, 2].map(|i| reach(corners().map(|c| c[i]).min().unwrap_or(0) - margin));
     let high = [0, 1, 2].map(|i| reach(corners().map(|c| c[i]).max().unwrap_or(0) + margin));
     Polytope::cuboid(&low, &high).ok_or_else(|| {
-        let text = "the facets extend to the border of the lattice, so no box fits around them";
+        let text =
+            "the facets extend to the border of the lattice, so no box fits around the facets; \
+                    choose a coarser pitch";
         Error::new(ErrorKind::TooLarge, text)
     })
 }

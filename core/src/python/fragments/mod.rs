@@ -490,13 +490,15 @@ impl PyFragmentTree {
         rows(py, corners, self.dimension())
     }
 
-    /// Return the facets on the lattice: corners in steps, and for each facet where its corners start.
+    /// Return the tree's facets (input points, segments or polygons) on the lattice: corners in steps, and
+    /// for each facet where its corners start.
     fn lattice<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyArray2<i64>>, Ints<'py>)> {
         let corners = rows(py, self.corners.clone(), self.dimension())?;
         Ok((corners, PyArray1::from_vec(py, self.offsets.clone())))
     }
 
-    /// Return the number of convex pieces into which the facets were divided.
+    /// Return the number of convex pieces into which the tree's facets (input points, segments or polygons)
+    /// were divided.
     #[getter]
     fn piece_count(&self) -> usize {
         each!(&self.inner, facet_tree => facet_tree.facets.len())
@@ -568,7 +570,8 @@ impl PyFragmentTree {
         each!(&self.inner, facet_tree => facet_tree.source(piece))
     }
 
-    /// Runs the work of a method; the report of a defect contains the facets.
+    /// Runs the work of a method; the report of a defect contains the tree's facets (its input points,
+    /// segments or polygons).
     fn run<T: Send>(
         &self,
         py: Python<'_>,

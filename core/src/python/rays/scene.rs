@@ -329,7 +329,8 @@ impl RayScene {
 }
 
 impl RayScene {
-    /// Runs work that may divide parts of the tree; the report of a defect contains the facets.
+    /// Runs work that may divide parts of the tree; the report of a defect contains the facets (points,
+    /// segments or triangles) of the scene.
     fn run<T: Send>(
         &self,
         py: Python<'_>,

@@ -4,12 +4,12 @@ use crate::error::Result;
 use crate::query::stab::record::Record;
 use crate::store::sealed::{seal, unseal, Kind};
 
-/// Encodes a record as bytes.
+/// Encodes the record of a stab tree (its counters and cuts) as bytes.
 pub fn to_bytes(record: &Record) -> Result<Vec<u8>> {
     seal(Kind::Rays, record)
 }
 
-/// Decodes a record from bytes.
+/// Decodes the record of a stab tree (its counters and cuts) from bytes.
 ///
 /// # Errors
 /// `BadSnapshot`.

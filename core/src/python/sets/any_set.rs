@@ -224,7 +224,9 @@ impl Set {
 }
 
 fn too_large() -> Error {
-    let text = "the moved or refined set does not fit the lattice of 2^53 steps";
+    let text =
+        "the moved or refined set does not fit the lattice of 2^53 steps; move the set less, or \
+                choose a coarser pitch";
     Error::new(ErrorKind::TooLarge, text)
 }
 
@@ -236,7 +238,9 @@ fn bad_dimension(dimension: usize) -> Error {
 
 fn span<S: AxisSpace>(cut: &S::Hyperplane) -> Result<S::Fragment> {
     S::span(cut, &S::universe()).ok_or_else(|| {
-        let text = "the hyperplane misses the lattice of 2^53 steps";
+        let text =
+            "the hyperplane misses the lattice of 2^53 steps; choose a hyperplane nearer to \
+                    the origin";
         Error::new(ErrorKind::TooLarge, text)
     })
 }
@@ -277,8 +281,7 @@ fn mapped<S: AxisSpace>(
     let image = from_preorder(&moved.collect::<Result<Vec<_>>>()?, S::universe())?;
     // The image is right inside the frame; a bounded set must not lose a part outside it.
     if is_bounded(tree) && stats(&image).cuts != stats(tree).cuts {
-        let text = "the moved or refined set does not fit the lattice of 2^53 steps";
-        return Err(Error::new(ErrorKind::TooLarge, text));
+        return Err(too_large());
     }
     Ok(image)
 }

@@ -87,7 +87,7 @@ pub fn same_lattice(a: Pitch, b: Pitch) -> Result<()> {
         return Ok(());
     }
     let text = format!(
-        "the sets have different lattice steps, 10^{} and 10^{}",
+        "the sets have different lattice steps, 10^{} and 10^{}; make both with the same pitch",
         a.exponent(),
         b.exponent()
     );

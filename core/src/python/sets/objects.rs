@@ -81,7 +81,7 @@ impl ObjectTree {
             .map_err(|e| self.with_report(py, e, &[self, other]))
     }
 
-    /// Applies a set operation with another set, by the function `way`.
+    /// Applies a set operation with another set, by the given method `way`: a merge of trees, or a sweep.
     fn operated<T: Send>(
         &self,
         py: Python<'_>,

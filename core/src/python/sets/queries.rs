@@ -121,7 +121,7 @@ impl Set {
     pub fn classify(&self, points: &[f64], columns: usize, pitch: Pitch) -> Result<Vec<Location>> {
         if !points.is_empty() && columns != self.dimension() {
             return Err(shape(format!(
-                "points must have {} numbers",
+                "each point must have {} numbers, not {columns}",
                 self.dimension()
             )));
         }

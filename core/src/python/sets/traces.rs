@@ -4,7 +4,9 @@ use super::each::{each, Set};
 use crate::error::Result;
 use crate::geometry::spaces::affine::Affine;
 use crate::geometry::spaces::space::Space;
-use crate::merge::generic::trace::{Decision, DecisionReason, Joined, Journal, MergeStep, Name};
+use crate::merge::generic::trace::{
+    Decision, DecisionReason, Joined, Journal, MergeStep, NodeName,
+};
 use crate::merge::{merge_watched, SetOp};
 use crate::python::hyperplanes::{row_of, shape, Row};
 use crate::tree::partition::{preorder, Entry, Label, PartitionTree};
@@ -74,11 +76,11 @@ pub fn step_row(step: &MergeStep) -> StepRow {
     }
 }
 
-fn number(name: Name) -> i64 {
+fn number(name: NodeName) -> i64 {
     match name {
-        Name::Leaf(Label::Out) => -1,
-        Name::Leaf(Label::In) => -2,
-        Name::First(number) | Name::Second(number) => i64::from(number),
+        NodeName::Leaf(Label::Out) => -1,
+        NodeName::Leaf(Label::In) => -2,
+        NodeName::First(number) | NodeName::Second(number) => i64::from(number),
     }
 }
 

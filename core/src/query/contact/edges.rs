@@ -76,7 +76,7 @@ impl ReflexEdge {
         Self {
             ends: vertices.map(|vertex| surface.vertex(vertex)),
             vertices,
-            beside: [half, mate].map(|half| FaceId::beside(half).0),
+            beside: [half, mate].map(|half| FaceId::of_half_edge(half).0),
         }
     }
 
@@ -121,7 +121,7 @@ impl<'a> Folds<'a> {
             if mate == NONE || mate < half {
                 continue;
             }
-            let [triangle, other] = [half, mate].map(|half| FaceId::beside(half).0);
+            let [triangle, other] = [half, mate].map(|half| FaceId::of_half_edge(half).0);
             let apex = triangles[other as usize][(mate as usize + 2) % 3];
             match surface.side(triangle, &surface.vertex(apex)) {
                 Side::On if surface.patch(triangle) == surface.patch(other) => {
@@ -251,7 +251,7 @@ impl<'a> Folds<'a> {
         let flat = self.flats.holding(triangle);
         let goes_on = |half: u32| {
             let mate = self.topology.mates()[half as usize];
-            mate != NONE && self.flats.holding(FaceId::beside(mate).0) == flat
+            mate != NONE && self.flats.holding(FaceId::of_half_edge(mate).0) == flat
         };
         let mut inner = (0usize..).zip(FaceId(triangle).half_edges());
         facet.has_inside(ends) || inner.any(|(i, half)| goes_on(half) && facet.has_along(i, ends))

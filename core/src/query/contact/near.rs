@@ -4,7 +4,7 @@ use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
-use crate::merge::pairs::{pairs_of_many, shift_of, Boxed, Part, Swept};
+use crate::merge::pairs::{pairs, shift_of, BoundedElement, BoxedElement, ElementsInBox};
 
 /// A box with lattice corners, which belong to it.
 #[derive(Clone, Copy)]
@@ -79,11 +79,11 @@ impl LatticeBox {
     }
 }
 
-/// A part of one of two operands, with a box around it.
+/// A triangle or another part of one of two operands, with a box around it.
 pub struct Element {
-    /// The number of the operand; elements of one operand follow each other.
+    /// The index of the operand; the parts of one operand follow each other in the list.
     pub operand: usize,
-    /// A box that contains the element.
+    /// A box that contains the part of the operand.
     pub space: LatticeBox,
 }
 
@@ -101,12 +101,12 @@ pub fn near_pairs(
     let (origin, shift) = (around.low, shift_of(around.size()));
     let boxed = |(number, element): (usize, &Element)| {
         let [low, high] = element.space.from(&origin);
-        Boxed::new(element.operand, as_number(number), [&low, &high], shift)
+        BoxedElement::new(element.operand, as_number(number), [&low, &high], shift)
     };
-    let swept = |number: u32| {
+    let bounded = |number: u32| {
         let element = &elements[number as usize];
         let [low, high] = element.space.from(&origin);
-        Swept {
+        BoundedElement {
             operand: element.operand,
             low,
             high,
@@ -114,7 +114,7 @@ pub fn near_pairs(
         }
     };
     let boxes = elements.iter().enumerate().map(boxed).collect();
-    pairs_of_many(Part::of(boxes, shift), swept, meet)
+    pairs(ElementsInBox::of(boxes, shift), bounded, meet)
 }
 
 /// The corners relative to a point, in lattice steps; `None` if one is not a lattice point.

@@ -27,7 +27,8 @@ const SLACK_PER_WAY: f64 = 1.0 / (1u64 << 49) as f64;
 /// coordinate.
 const NARROWING: f64 = 1.0 / (1u64 << 23) as f64;
 
-/// Up to `N` rays in the frame, side by side, from where they enter the interval [−1, 1] on their main axis.
+/// Up to `N` rays in a frame that maps the scene into [−1, 1] on each axis, side by side, from where they
+/// enter that interval on their main axis.
 struct Starts<const D: usize, const N: usize> {
     at: [[f64; N]; D],
     slope: [[f64; N]; D],
@@ -160,7 +161,7 @@ fn most<const N: usize>(of: &[f32; N]) -> f32 {
     of.iter().fold(of[0], |a, b| if *b > a { *b } else { a })
 }
 
-/// Up to `N` similar rays with directions in one octant, and a beam that contains them.
+/// Up to `N` similar rays with directions in one octant, and a beam that contains the rays.
 #[derive(Clone, Debug)]
 pub struct Bundle<const D: usize, const N: usize> {
     /// For each axis the side of a box that rays meet first: 1, the high side, if slopes are negative.

@@ -28,7 +28,7 @@ pub struct Item {
 }
 
 impl Item {
-    /// Makes an item of a facet and its box.
+    /// Makes an entry of a facet and its box.
     pub fn new(facet: u32, span: Span) -> Self {
         Self { facet, span }
     }
@@ -102,7 +102,7 @@ impl<const D: usize> Cuts<D> {
         (!cuts.is_empty()).then_some(Self { cuts })
     }
 
-    /// Returns the items of each part, with the box around them.
+    /// Returns the facets of each part of the list, with the box around them.
     pub fn divided(&self, items: &[Item]) -> Vec<(Vec<Item>, Span)> {
         let mut parts = vec![(Vec::new(), Span::NOTHING); self.cuts.len() + 1];
         for item in items {
@@ -130,7 +130,7 @@ fn around(items: &[Item]) -> Span {
     Span::around(items.iter().map(|item| &item.span))
 }
 
-/// Moves the items for which `below` is true to the start of the list; returns their number.
+/// Moves the facets for which `below` is true to the start of the list; returns their number.
 fn partition(items: &mut [Item], below: impl Fn(&Item) -> bool) -> usize {
     let mut count = 0;
     for at in 0..items.len() {

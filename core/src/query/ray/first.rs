@@ -21,7 +21,7 @@ pub struct Found<const D: usize> {
     pub meeting: Meeting<D>,
 }
 
-/// The nearest facet found on a ray, with its depth in doubles.
+/// The nearest facet that was found on a ray up to now, with its depth in doubles.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate {
     /// The facet's index in the scene.
@@ -265,7 +265,7 @@ pub fn alls<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Vec<Found<
     rays.iter().zip(met).map(exact).collect()
 }
 
-/// Returns the facets on each ray that doubles do not certainly exclude.
+/// Returns for each ray the facets that doubles do not certainly exclude from meeting it.
 pub fn likely<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Vec<u32>> {
     let queries = queries(scene, rays);
     let mut met = vec![Vec::new(); rays.len()];
@@ -283,7 +283,8 @@ pub fn likely<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Vec<u32>
     met
 }
 
-/// Returns for each ray whether a facet has a point strictly between its start and its reach.
+/// Returns for each ray whether a facet has a point strictly between the ray's start and the end of its
+/// reach.
 pub fn blocked<const D: usize>(
     scene: &Scene<D>,
     rays: &[Ray<D>],

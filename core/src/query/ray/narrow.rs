@@ -12,7 +12,7 @@
 
 use super::facet::{relative, Corners, Facet};
 use super::line::Ray;
-use crate::arith::leading::{Leading, Split, SPLIT_BITS};
+use crate::arith::leading::{Leading, SplitInteger, SPLIT_BITS};
 use crate::mesh::grid::Pitch;
 
 /// The largest p in the derivation of widths: the bits of a corner relative to the origin.
@@ -26,7 +26,7 @@ const LARGEST_POWER: u64 = 19;
 
 /// The exact weights and the height of a ray that crosses a triangle's plane inside the triangle.
 pub struct Narrow<const D: usize> {
-    weights: [Split; D],
+    weights: [SplitInteger; D],
     /// The sum of the weights, positive.
     sum: Leading,
     height: i128,
@@ -41,7 +41,7 @@ impl<const D: usize> Narrow<D> {
         if D != 3 || !fits(&v, ray) {
             return None;
         }
-        let mut weights = [Split::new(0, 0); D];
+        let mut weights = [SplitInteger::new(0, 0); D];
         let mut height = 0i128;
         for i in 0..D {
             let normal = cross(&v[(i + 1) % D], &v[(i + 2) % D]);
@@ -61,7 +61,7 @@ impl<const D: usize> Narrow<D> {
             sum = sum.negated();
             height = -height;
         }
-        let meets = height >= 0 && !sum.is_zero() && !weights.iter().any(Split::is_negative);
+        let meets = height >= 0 && !sum.is_zero() && !weights.iter().any(SplitInteger::is_negative);
         meets.then(|| Self {
             weights,
             sum: sum.leading(),
@@ -130,17 +130,17 @@ fn cross<const D: usize>(a: &[i64; D], b: &[i64; D]) -> [i128; D] {
 }
 
 #[inline]
-fn dot<const D: usize>(direction: &[i128; D], normal: &[i128; D]) -> Split {
+fn dot<const D: usize>(direction: &[i128; D], normal: &[i128; D]) -> SplitInteger {
     let (mut high, mut low) = (0i128, 0i128);
     for (d, n) in direction.iter().zip(normal) {
         high = high.wrapping_add((d >> SPLIT_BITS).wrapping_mul(*n));
         low = low.wrapping_add((d & ((1 << SPLIT_BITS) - 1)).wrapping_mul(*n));
     }
-    Split::new(high, low)
+    SplitInteger::new(high, low)
 }
 
 #[inline]
-fn total<const D: usize>(weights: &[Split; D]) -> Split {
+fn total<const D: usize>(weights: &[SplitInteger; D]) -> SplitInteger {
     let mut sum = weights[0];
     for weight in &weights[1..] {
         sum = sum.plus(weight);

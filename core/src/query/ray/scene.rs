@@ -26,7 +26,7 @@ pub struct Scene<const D: usize> {
     /// The mean extent of facets, in the frame.
     mean_facet_size: f64,
     root: Deferred<D>,
-    /// Whether the facets are closed; empty until a caller needs to know.
+    /// Whether the facets of the scene are closed, without border; empty until a caller needs to know.
     closed: OnceLock<Result<()>>,
 }
 
@@ -135,7 +135,7 @@ impl<const D: usize> Scene<D> {
         &self.root
     }
 
-    /// Returns an error if the facets are not closed; decides it once.
+    /// Returns an error if the facets of the scene are not closed; decides it once.
     ///
     /// # Errors
     /// `NotClosed` with the indices in the input of facets at the border.

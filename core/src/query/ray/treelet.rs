@@ -250,7 +250,7 @@ impl<const D: usize> Treelet<D> {
             for lane in 0..CHILDREN_PER_NODE {
                 let span = match nodes[at].children[lane] {
                     Child::None => break,
-                    Child::Node(node) => nodes[node.place()].whole(),
+                    Child::Node(node) => nodes[node.index()].whole(),
                     Child::Block(block) => around(&blocks[block as usize]),
                     Child::Deferred(number) => below[number as usize].1,
                 };
@@ -338,7 +338,7 @@ impl<'a, const D: usize> Making<'a, D> {
                     self.treelet.nodes.push(Wide::EMPTY);
                     open.push((below, part));
                 }
-                let node = &mut self.treelet.nodes[node.place()];
+                let node = &mut self.treelet.nodes[node.index()];
                 node.set(lane, &part.span);
                 node.children[lane] = child;
             }

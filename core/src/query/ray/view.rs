@@ -38,7 +38,7 @@ pub fn views<const D: usize>(scene: &Scene<D>) -> Vec<View<D>> {
                 facets = treelet.blocks[block as usize].facets().to_vec();
             }
             deferred = matches!(child, Child::Deferred(_)) && below.is_none();
-            let wide = below.and_then(|below| Some((below, below.nodes.get(node.place())?)));
+            let wide = below.and_then(|below| Some((below, below.nodes.get(node.index())?)));
             if let Some((below, wide)) = wide {
                 for (lane, child) in wide.children.iter().enumerate().rev() {
                     if *child != Child::None {

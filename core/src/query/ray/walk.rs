@@ -90,7 +90,7 @@ fn descend<const D: usize, const N: usize>(
         if from > limit {
             continue;
         }
-        let wide = &treelet.nodes[node.place()];
+        let wide = &treelet.nodes[node.index()];
         match wide.children[lane as usize] {
             Child::None => {}
             Child::Node(below) => enter(bundle, treelet, below, limit, &mut open),
@@ -127,7 +127,7 @@ fn enter<'a, const D: usize, const N: usize>(
     limit: f32,
     open: &mut Stack<'a, D>,
 ) {
-    let Some(wide) = treelet.nodes.get(node.place()) else {
+    let Some(wide) = treelet.nodes.get(node.index()) else {
         return;
     };
     let (from, enters) = bundle.enters(wide, limit);

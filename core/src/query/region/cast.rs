@@ -46,9 +46,9 @@ pub fn cast(tree: &PartitionTree<Dim2>, line: &Line2) -> Result<Vec<[Point2; 2]>
 /// Returns the parts of a segment in a cut that have the set on both sides.
 fn inside_of_both(cut: &Cut<Dim2>, piece: &Segment2) -> Result<Vec<Segment2>> {
     let mut found = Vec::new();
-    for (part, minus) in cut.child(Half::Minus).beside(*piece)? {
+    for (part, minus) in cut.child(Half::Minus).labels_beside(*piece)? {
         if minus == Label::In {
-            let beyond = cut.child(Half::Plus).beside(part)?;
+            let beyond = cut.child(Half::Plus).labels_beside(part)?;
             let inside = beyond.into_iter().filter(|(_, plus)| *plus == Label::In);
             found.extend(inside.map(|(part, _)| part));
         }
@@ -62,7 +62,7 @@ fn connected(
     whole: &Segment2,
     mut pieces: Vec<Segment2>,
 ) -> Vec<[Point2; 2]> {
-    pieces.sort_by(|a, b| whole.along(&a.points()[0], &b.points()[0]));
+    pieces.sort_by(|a, b| whole.order_along(&a.points()[0], &b.points()[0]));
     let mut stretches: Vec<[Point2; 2]> = Vec::new();
     for piece in pieces {
         let [from, to] = *piece.points();

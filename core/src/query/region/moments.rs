@@ -19,7 +19,9 @@ use crate::tree::plane::Boundary;
 type Ratio = (BigInt, BigInt);
 
 fn unbounded() -> Error {
-    let text = "the set reaches to infinity and has no finite measure";
+    let text =
+        "the set reaches to infinity and has no finite measure; intersect the set with a bounded \
+                one first";
     Error::new(ErrorKind::Unbounded, text)
 }
 

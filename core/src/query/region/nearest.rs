@@ -17,7 +17,7 @@ pub struct Nearest {
     levels: Vec<Vec<Extent>>,
 }
 
-/// The number of items in one box.
+/// The number of segments, or of smaller boxes, in one box of the hierarchy.
 const ITEMS_PER_BOX: usize = 8;
 
 /// The number of steps of the space-filling curve along each axis.

@@ -34,7 +34,9 @@ pub struct Outline {
 /// `Unbounded`.
 pub fn outlines(boundary: &Boundary) -> Result<Vec<Outline>> {
     if boundary.outer == Label::In || !boundary.is_closed() {
-        let text = "the region reaches to infinity and has no closed outlines";
+        let text =
+            "the region reaches to infinity and has no closed outlines; intersect the region \
+                    with a bounded one first";
         return Err(Error::new(ErrorKind::Unbounded, text));
     }
     let mut loops: Vec<Vec<usize>> = Vec::new();

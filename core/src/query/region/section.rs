@@ -63,7 +63,7 @@ impl Sections {
         let crossings: Vec<Crossing> = self
             .triangles
             .iter()
-            .map(|triangle| triangle.map(VertexId::place))
+            .map(|triangle| triangle.map(VertexId::index))
             .filter(|[a, b, c]| below[*a] != below[*b] || below[*b] != below[*c])
             .filter_map(|corners| Crossing::of(corners, &below))
             .collect();
@@ -93,12 +93,12 @@ impl Sections {
     }
 }
 
-/// An edge of the mesh that the plane crosses: its end below the plane, then the other end.
+/// An edge of the mesh that the cutting plane crosses: its end below the plane, then its end above it.
 type Rung = [usize; 2];
 
 /// A triangle that the plane crosses, with the two edges at which the plane crosses it.
 struct Crossing {
-    /// The edge at which the triangle's outline comes back below the plane.
+    /// The edge at which the triangle's outline comes back below the cutting plane.
     enter: Rung,
     leave: Rung,
     corners: [usize; 3],
@@ -122,8 +122,8 @@ impl Crossing {
     }
 }
 
-/// Returns the first and the last edge of each run of coplanar triangles; between them the section is
-/// straight.
+/// Returns the first and the last crossed edge of each sequence of adjacent coplanar triangles; between them
+/// the section is straight.
 fn straight(points: &[Vertex], crossings: &[Crossing]) -> Vec<[Rung; 2]> {
     let next = successors(points, crossings);
     let mut follows = vec![false; crossings.len()];
@@ -192,8 +192,11 @@ fn meet_wide(ends: [&Vertex; 2], plane: &Plane) -> Result<Lattice> {
     for (i, coordinate) in meet.iter_mut().enumerate() {
         let x: BigInt = &t * &p.x[i] - &s * &q.x[i];
         let nearest = Integer::div_floor(&(x * 2i32 + &w), &twice);
-        *coordinate = i64::try_from(nearest)
-            .map_err(|_| Error::new(ErrorKind::TooLarge, "a section extends beyond the lattice"))?;
+        *coordinate = i64::try_from(nearest).map_err(|_| {
+            let text = "the section of the solid has a corner beyond the lattice of 2^53 steps; \
+                            move the solid nearer to the origin";
+            Error::new(ErrorKind::TooLarge, text)
+        })?;
     }
     Ok(meet)
 }

@@ -1,6 +1,6 @@
 //! The trait of spaces with what stab trees need of facets and hyperplanes.
 
-use crate::arith::bounds::REACH;
+use crate::arith::bounds::MAX_COORDINATE;
 use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::plane::Plane;
@@ -15,12 +15,12 @@ use std::sync::Arc;
 /// A space of `D` dimensions in which stab trees are built over facets of `D` lattice corners.
 pub trait Cast<const D: usize>: Space {
     /// The largest magnitude of a lattice coordinate.
-    const REACH: i64;
+    const MAX_COORDINATE: i64;
 
     /// Makes the fragment that covers a whole facet.
     ///
     /// # Errors
-    /// `TooLarge` beyond [`Self::REACH`]; `Internal` for a facet without extent.
+    /// `TooLarge` beyond [`Self::MAX_COORDINATE`]; `Internal` for a facet without extent.
     fn fragment(corners: &[[i64; D]; D]) -> Result<Self::Fragment>;
 
     /// Returns normal n and offset c of the hyperplane n·x + c = 0; the value is positive on the plus side.
@@ -37,7 +37,7 @@ fn without_extent() -> Error {
 }
 
 impl Cast<1> for Dim1 {
-    const REACH: i64 = REACH - 1;
+    const MAX_COORDINATE: i64 = MAX_COORDINATE - 1;
 
     fn fragment(corners: &[[i64; 1]; 1]) -> Result<Point1> {
         Ok(Point1::new(corners[0][0], Direction::Below))
@@ -56,7 +56,7 @@ impl Cast<1> for Dim1 {
 }
 
 impl Cast<2> for Dim2 {
-    const REACH: i64 = REACH;
+    const MAX_COORDINATE: i64 = MAX_COORDINATE;
 
     fn fragment(corners: &[[i64; 2]; 2]) -> Result<Segment2> {
         let [from, to] = *corners;
@@ -64,7 +64,8 @@ impl Cast<2> for Dim2 {
             if from == to {
                 return without_extent();
             }
-            let text = "a segment extends beyond the lattice of 2^53 steps";
+            let text = "a segment has an end beyond the lattice of 2^53 steps; scale the segments \
+                        down, or choose a coarser pitch";
             Error::new(ErrorKind::TooLarge, text)
         })
     }
@@ -85,7 +86,7 @@ impl Cast<2> for Dim2 {
 }
 
 impl Cast<3> for Dim3 {
-    const REACH: i64 = REACH - 1;
+    const MAX_COORDINATE: i64 = MAX_COORDINATE - 1;
 
     fn fragment(corners: &[[i64; 3]; 3]) -> Result<Polygon> {
         let [a, b, c] = corners;

@@ -12,7 +12,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::handle::NodeId;
 use crate::query::ray::Scene;
 
-/// The counters of a stab tree, and the facets at which it was cut.
+/// The counters of a stab tree, and the facets at which it was cut, from which the tree can be made again.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Record {
     rays: u64,
@@ -62,7 +62,8 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
     pub fn regrown(scene: Scene<D>, growth: Growth, record: &Record) -> Result<Self> {
         let tree = Self::new(scene, growth, None)?;
         tree.follow(record).ok_or_else(|| {
-            let text = "the stored tree was not built over these facets";
+            let text = "the stored tree was not built over the given facets; give the facets over \
+                        which it was built";
             Error::new(ErrorKind::BadSnapshot, text)
         })?;
         Ok(tree)
@@ -71,7 +72,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
     fn follow(&self, record: &Record) -> Option<()> {
         let mut nodes = self.nodes_mut();
         for (at, facets, child) in record.cuts() {
-            if child.place() != nodes.all.len() {
+            if child.index() != nodes.all.len() {
                 return None;
             }
             nodes.divide_by(self.scene(), at, *facets.first()?)?;
@@ -126,7 +127,8 @@ fn restore<S: Cast<D>, const D: usize>(
     Some(())
 }
 
-/// Sorts entries into the order of the stored facets, and sets their hits; `None` if the facets differ.
+/// Sorts the entries of a leaf's list into the order of the stored facet numbers, and sets their hits; `None`
+/// if they are not the same facets.
 fn rearranged<F>(mut entries: Vec<Entry<F>>, hits: &[(u32, u64)]) -> Option<Vec<Entry<F>>> {
     let mut order: Vec<usize> = (0..hits.len()).collect();
     order.sort_unstable_by_key(|place| hits[*place].0);

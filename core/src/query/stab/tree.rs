@@ -64,7 +64,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
         let mut list = Heap::default();
         for (facet, corners) in (0..).zip(scene.facets()) {
             poll();
-            let beyond = |c: &f64| c.abs() > S::REACH as f64;
+            let beyond = |c: &f64| c.abs() > S::MAX_COORDINATE as f64;
             if corners.iter().flatten().any(beyond) {
                 // Returns the error that explains the refusal.
                 S::fragment(&lattice(corners))?;
@@ -170,7 +170,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
         // The hits are ascending in each leaf, because counting one changes no later index.
         for hit in &pending.hits {
             // Another ray may have divided the leaf in the meantime.
-            let Content::Leaf(list) = &mut nodes.all[hit.node.place()].content else {
+            let Content::Leaf(list) = &mut nodes.all[hit.node.index()].content else {
                 continue;
             };
             if let Some(place) = list.place(hit.facet, hit.place) {
@@ -211,7 +211,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
 impl<S: Cast<D>, const D: usize> Nodes<S, D> {
     /// Divides a leaf at its most hit fragment; `None` if it has at most one fragment.
     fn divide(&mut self, scene: &Scene<D>, at: NodeId) -> Option<()> {
-        let Content::Leaf(list) = &self.all[at.place()].content else {
+        let Content::Leaf(list) = &self.all[at.index()].content else {
             return None;
         };
         let [top, _, ..] = list.entries() else {
@@ -223,8 +223,8 @@ impl<S: Cast<D>, const D: usize> Nodes<S, D> {
 
     /// Divides a leaf at the fragment of a given facet; `None` if there is no such leaf or fragment.
     pub(super) fn divide_by(&mut self, scene: &Scene<D>, at: NodeId, facet: u32) -> Option<()> {
-        let (first, depth) = (self.all.len(), self.all.get(at.place())?.depth + 1);
-        let Content::Leaf(list) = &mut self.all[at.place()].content else {
+        let (first, depth) = (self.all.len(), self.all.get(at.index())?.depth + 1);
+        let Content::Leaf(list) = &mut self.all[at.index()].content else {
             return None;
         };
         let place = list.entries().iter().position(|e| e.facet == facet)?;
@@ -233,8 +233,8 @@ impl<S: Cast<D>, const D: usize> Nodes<S, D> {
         let mut entries = std::mem::take(list).into_entries();
         entries.remove(place);
         let (inner, halves) = parts::<S, D>(facet, &pivot, entries, scene, children);
-        self.all[at.place()].content = Content::Inner(Box::new(inner));
-        self.all[at.place()].forget_places();
+        self.all[at.index()].content = Content::Inner(Box::new(inner));
+        self.all[at.index()].forget_places();
         self.all.extend(halves.map(|half| Node::leaf(half, depth)));
         self.subdivisions += 1;
         Some(())
@@ -243,11 +243,11 @@ impl<S: Cast<D>, const D: usize> Nodes<S, D> {
     /// Returns the event that describes the division of a node.
     fn division(&self, scene: &Scene<D>, node: NodeId) -> StabEvent {
         let number = |facet: &u32| scene.number(*facet);
-        let list = |child: NodeId| match &self.all[child.place()].content {
+        let list = |child: NodeId| match &self.all[child.index()].content {
             Content::Leaf(list) => list.entries().iter().map(|e| number(&e.facet)).collect(),
             Content::Inner(_) => Vec::new(),
         };
-        let (coplanar, children) = match &self.all[node.place()].content {
+        let (coplanar, children) = match &self.all[node.index()].content {
             Content::Inner(inner) => (inner.coplanar.iter().map(number).collect(), inner.children),
             Content::Leaf(_) => (Vec::new(), [node; 2]),
         };

@@ -18,7 +18,8 @@ pub struct View<const D: usize> {
     /// The normal and the offset of the cut n·x + c = 0, and the children on its minus and its plus side;
     /// `None` for a leaf.
     pub cut: Option<([i128; D], Int<3>, [NodeId; 2])>,
-    /// The list L(v) of a leaf in the order of its heap, or the facets in the cut, the pivot first.
+    /// For a leaf, its list of facets L(v) in the order of the heap; for an inner node, the facets in its
+    /// cut, the pivot first.
     pub facets: Vec<u32>,
     /// The hits T(p) of each facet in `facets`; 0 for those in a cut.
     pub hits: Vec<u64>,

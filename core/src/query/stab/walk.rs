@@ -24,7 +24,7 @@ enum StackEntry {
     Cut { node: NodeId, from: f64, far: Far },
 }
 
-/// What lies on the stack directly below a cut.
+/// What lies on the stack of a ray's walk directly below a cut.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Far {
     /// Not the child on the far side of the cut.
@@ -95,7 +95,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
     }
 
     fn visit(&mut self, node: NodeId, span: (f64, f64), open: &mut Stack) {
-        let visited = &self.nodes[node.place()];
+        let visited = &self.nodes[node.index()];
         let visits = visited.visits.fetch_add(1, Ordering::Relaxed) + 1;
         self.trace.nodes += 1;
         self.watcher.notify(|| StabEvent::Visit {
@@ -111,7 +111,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
 
     /// Tests the facets in a cut; returns true if the child behind it can be skipped.
     fn test_cut(&mut self, node: NodeId, far: Far) -> bool {
-        let Content::Inner(inner) = &self.nodes[node.place()].content else {
+        let Content::Inner(inner) = &self.nodes[node.index()].content else {
             return false;
         };
         for facet in &inner.coplanar {
@@ -179,7 +179,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
             Some(met) => met,
             None => self.test_boxes(node),
         };
-        let leaf = &self.nodes[node.place()];
+        let leaf = &self.nodes[node.index()];
         let within = met.iter().filter(|(_, depth)| depth.low() <= to);
         let hit = |facet: u32| {
             let place = leaf.place(list, facet)?;

@@ -14,15 +14,15 @@ use crate::geometry::spaces::affine::Affine;
 /// As the cut passes through corners, it does not cut facets that meet there, and facets that lie in the cut
 /// need no further division.
 ///
-/// `None` if no axis divides the pieces well: each side may have at most three quarters of them. This bounds
-/// the depth by log(n)/log(4/3), and so the number of fragments.
+/// `None` if no axis divides the pieces (convex parts of facets) well: each side may have at most three
+/// quarters of them. This bounds the depth by log(n)/log(4/3), and so the number of fragments.
 pub fn median_cut<S: Affine>(pieces: &[Piece<S>]) -> Option<(NodeCut, S::Hyperplane)> {
     let boxes: Vec<_> = pieces.iter().map(|p| S::bounds(&p.fragment)).collect();
     axes_by_spread::<S>(&boxes).into_iter().find_map(|axis| {
         let at = median(boxes.iter().flatten().map(|end| end[axis]))?;
         let cut = S::axis_cut(axis, at)?;
         let tally = Tally::of(pieces, &cut);
-        (4 * tally.larger() <= 3 * pieces.len()).then_some((NodeCut::Axis { axis, at }, cut))
+        (4 * tally.larger_side() <= 3 * pieces.len()).then_some((NodeCut::Axis { axis, at }, cut))
     })
 }
 

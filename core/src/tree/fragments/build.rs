@@ -12,7 +12,7 @@ use crate::mesh::handle::NodeId;
 use crate::tree::partition::SplitMix;
 use crate::tree::trace::Watcher;
 
-/// Builds the tree that divides the pieces as the plan says.
+/// Builds the tree that divides the pieces (convex parts of facets) as the plan says.
 ///
 /// # Order
 /// The list of pieces and the plan determine the tree.
@@ -49,7 +49,7 @@ pub fn build_watched<S: Affine, W: Watcher<Division>>(
     };
     builder.push(OpenRegion {
         pieces,
-        place: None,
+        parent: None,
         depth: 0,
         region,
         old: root,
@@ -97,7 +97,7 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
             None => [None, None],
         };
         let pieces = if W::LISTENS {
-            numbers(&open.pieces)
+            piece_numbers(&open.pieces)
         } else {
             Vec::new()
         };
@@ -105,34 +105,34 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
         let [minus, plus] = self.distribute(open.pieces, &hyperplane, node);
         self.watcher.notify(|| Division {
             node,
-            place: open.place,
+            place: open.parent,
             depth: open.depth,
             cut,
             reason,
             candidates,
             pieces,
-            minus: numbers(&minus),
-            plus: numbers(&plus),
-            split: crossing(&self.tree.crossings[crossed..]),
-            coplanar: coplanar(&self.tree.fragments[start..]),
+            minus: piece_numbers(&minus),
+            plus: piece_numbers(&plus),
+            split: crossed_pieces(&self.tree.crossings[crossed..]),
+            coplanar: coplanar_pieces(&self.tree.fragments[start..]),
         });
-        self.link(open.place, node);
+        self.link(open.parent, node);
         self.tree.nodes.push(Node {
             hyperplane,
             cut,
-            coplanar: narrow(start)?..narrow(self.tree.fragments.len())?,
+            coplanar: as_u32(start)?..as_u32(self.tree.fragments.len())?,
             minus: None,
             plus: None,
-            parent: open.place,
+            parent: open.parent,
             depth: open.depth,
         });
         let chooser = &self.chooser;
         let side = |half, pieces, region| OpenRegion {
             pieces,
-            place: Some((node, half)),
+            parent: Some((node, half)),
             depth: open.depth + 1,
             region,
-            old: chooser.below(open.old, half),
+            old: chooser.existing_child(open.old, half),
         };
         let [below, above] = [
             side(Half::Minus, minus, minus_region),
@@ -144,23 +144,23 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
     }
 
     fn next_number(&self) -> Result<NodeId> {
-        narrow(self.tree.nodes.len()).map(NodeId)
+        as_u32(self.tree.nodes.len()).map(NodeId)
     }
 
     /// Enters a node as the child of its parent, on the given side; `None` stands for the root.
-    fn link(&mut self, place: Option<(NodeId, Half)>, node: NodeId) {
-        let Some((above, half)) = place else {
+    fn link(&mut self, parent: Option<(NodeId, Half)>, node: NodeId) {
+        let Some((above, half)) = parent else {
             return;
         };
-        let above = &mut self.tree.nodes[above.place()];
+        let above = &mut self.tree.nodes[above.index()];
         match half {
             Half::Minus => above.minus = Some(node),
             Half::Plus => above.plus = Some(node),
         }
     }
 
-    /// Distributes pieces to the two sides of a node's cut, in their order; stores coplanar pieces and
-    /// crossings in the tree.
+    /// Distributes pieces (convex parts of facets) to the two sides of a node's cut, in their order; stores
+    /// coplanar pieces and crossings in the tree.
     fn distribute(
         &mut self,
         pieces: Vec<Piece<S>>,
@@ -193,20 +193,20 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
     }
 }
 
-fn numbers<S: Affine>(pieces: &[Piece<S>]) -> Vec<u32> {
+fn piece_numbers<S: Affine>(pieces: &[Piece<S>]) -> Vec<u32> {
     pieces.iter().map(|piece| piece.number).collect()
 }
 
-fn crossing(crossings: &[Crossing]) -> Vec<u32> {
+fn crossed_pieces(crossings: &[Crossing]) -> Vec<u32> {
     crossings.iter().map(|crossing| crossing.piece).collect()
 }
 
-fn coplanar<S: Affine>(fragments: &[Fragment<S>]) -> Vec<u32> {
+fn coplanar_pieces<S: Affine>(fragments: &[Fragment<S>]) -> Vec<u32> {
     let number = |fragment: &Fragment<S>| fragment.piece.number;
     fragments.iter().map(number).collect()
 }
 
-fn narrow(count: usize) -> Result<u32> {
+fn as_u32(count: usize) -> Result<u32> {
     u32::try_from(count)
         .map_err(|_| Error::new(ErrorKind::TooLarge, "a tree holds at most 2^32 fragments"))
 }

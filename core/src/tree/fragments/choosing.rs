@@ -38,7 +38,7 @@ impl<S: Affine> Chooser<S> {
             Plan::Lines(lines) => (Self::Lines(lines), Vec::new()),
             Plan::Grown(tree, rest) => {
                 let (rest, more) = Self::of(*rest);
-                let own = tree.own().iter().cloned().chain(more).collect();
+                let own = tree.own_hyperplanes().iter().cloned().chain(more).collect();
                 (Self::Grown(tree, Box::new(rest)), own)
             }
             Plan::Own(mut own, rest) => {
@@ -62,10 +62,10 @@ impl<S: Affine> Chooser<S> {
     }
 
     /// The child of a node in the existing tree that the new tree extends; `None` if there is none.
-    pub fn below(&self, old: Option<NodeId>, half: Half) -> Option<NodeId> {
+    pub fn existing_child(&self, old: Option<NodeId>, half: Half) -> Option<NodeId> {
         match self {
             Self::Grown(tree, _) => tree.child(old?, half),
-            Self::OwnFirst(rest) => rest.below(old, half),
+            Self::OwnFirst(rest) => rest.existing_child(old, half),
             _ => None,
         }
     }
@@ -78,11 +78,11 @@ impl<S: Affine> Chooser<S> {
     ) -> Result<Chosen<S>> {
         let pieces = &open.pieces;
         match self {
-            Self::Given(cuts) => given(cuts.next(), pieces, own),
+            Self::Given(cuts) => given_cut(cuts.next(), pieces, own),
             Self::Policy { policy, top } => Ok(by_policy(policy, *top, open, watcher)),
-            Self::Asked(ask) => asked(ask, open, own, watcher),
+            Self::Asked(ask) => asked_cut(ask, open, own, watcher),
             Self::Lines(lines) => Ok(through_ends(lines, pieces, own)),
-            Self::Grown(tree, rest) => match open.old.and_then(|n| tree.nodes().get(n.place())) {
+            Self::Grown(tree, rest) => match open.old.and_then(|n| tree.nodes().get(n.index())) {
                 Some(node) => Ok((node.cut, node.hyperplane.clone(), Reason::Given)),
                 None => rest.choose(open, own, watcher),
             },
@@ -97,7 +97,7 @@ impl<S: Affine> Chooser<S> {
     pub fn finish(self) -> Result<()> {
         match self {
             Self::Given(rest) if rest.len() > 0 => {
-                Err(unsuited("there are more cuts than regions with facets"))
+                Err(unsuited_cut("there are more cuts than regions with facets"))
             }
             _ => Ok(()),
         }
@@ -125,12 +125,12 @@ fn by_policy<S: Affine>(
     supporting(&pieces[pivot], policy.reason())
 }
 
-fn given<S: Affine>(
+fn given_cut<S: Affine>(
     cut: Option<NodeCut>,
     pieces: &[Piece<S>],
     own: &[S::Hyperplane],
 ) -> Result<Chosen<S>> {
-    let cut = cut.ok_or_else(|| unsuited("there are fewer cuts than regions with facets"))?;
+    let cut = cut.ok_or_else(|| unsuited_cut("there are fewer cuts than regions with facets"))?;
     let hyperplane = match cut {
         NodeCut::Pivot(number) => pieces
             .iter()
@@ -140,17 +140,17 @@ fn given<S: Affine>(
         NodeCut::Own(number) => own.get(number as usize).cloned(),
     };
     let hyperplane =
-        hyperplane.ok_or_else(|| unsuited("the facet of a cut does not lie in its region"))?;
+        hyperplane.ok_or_else(|| unsuited_cut("the facet of a cut does not lie in its region"))?;
     Ok((cut, hyperplane, Reason::Given))
 }
 
-fn unsuited(why: &str) -> Error {
+fn unsuited_cut(why: &str) -> Error {
     let text = format!("the stored cuts do not fit the facets: {why}");
     Error::new(ErrorKind::BadSnapshot, text)
 }
 
-/// The first of the tree's own hyperplanes, with its index, that does not leave all pieces on one side;
-/// `None` if there is none.
+/// The first of the tree's own hyperplanes, with its index, that does not leave all pieces (convex parts of
+/// facets) on one side; `None` if there is none.
 fn first_that_divides<S: Affine>(
     pieces: &[Piece<S>],
     own: &[S::Hyperplane],
@@ -161,42 +161,42 @@ fn first_that_divides<S: Affine>(
 }
 
 /// Evenly spaced indices below `count`, at most as many as the sample has.
-fn spaced(count: usize, Sample(sample): Sample) -> impl Iterator<Item = usize> {
+fn evenly_spaced(count: usize, Sample(sample): Sample) -> impl Iterator<Item = usize> {
     let stride = count.div_ceil(sample.max(1)).max(1);
     (0..count).step_by(stride)
 }
 
-fn asked<S: Affine>(
+fn asked_cut<S: Affine>(
     ask: &mut Ask<S>,
     open: &OpenRegion<S>,
     own: &mut Vec<S::Hyperplane>,
     watcher: &mut impl Watcher<Candidate>,
 ) -> Result<Chosen<S>> {
     let pieces = &open.pieces;
-    let shown: Vec<usize> = spaced(pieces.len(), ask.sample).collect();
+    let shown: Vec<usize> = evenly_spaced(pieces.len(), ask.sample).collect();
     let candidates: Vec<Candidate> = shown
         .iter()
-        .map(|&place| {
-            let tally = Tally::of(pieces, S::hyperplane(&pieces[place].fragment));
-            tally.candidate(pieces[place].number, tally.splits as f64)
+        .map(|&index| {
+            let tally = Tally::of(pieces, S::hyperplane(&pieces[index].fragment));
+            tally.candidate(pieces[index].number, tally.splits as f64)
         })
         .collect();
     for candidate in &candidates {
         watcher.notify(|| *candidate);
     }
     match (ask.answer)(open.depth, pieces.len(), &candidates)? {
-        Answer::Candidate(place) => {
-            let place = shown.get(place).ok_or_else(|| {
+        Answer::Candidate(index) => {
+            let index = shown.get(index).ok_or_else(|| {
                 let count = shown.len();
                 let text = format!(
-                    "the policy chose candidate {place}, but there are only {count} candidates"
+                    "the policy chose candidate {index}, but there are only {count} candidates"
                 );
                 Error::new(ErrorKind::IndexOutOfRange, text)
             })?;
-            Ok(supporting(&pieces[*place], Reason::Asked))
+            Ok(supporting(&pieces[*index], Reason::Asked))
         }
         Answer::Hyperplane(cut) => {
-            if Tally::of(pieces, &cut).larger() >= pieces.len() {
+            if Tally::of(pieces, &cut).larger_side() >= pieces.len() {
                 let text = "the policy chose a hyperplane that leaves all facets of a region on \
                             one side, or cuts each of them; choose one that separates them";
                 return Err(Error::new(ErrorKind::BadNormal, text));
@@ -208,33 +208,33 @@ fn asked<S: Affine>(
     }
 }
 
-/// Of sampled hyperplanes, supporting or through corners of pieces, the one whose larger side has the fewest
-/// pieces.
+/// Of sampled hyperplanes, supporting or through corners of pieces (convex parts of facets), the one whose
+/// larger side has the fewest pieces.
 fn through_ends<S: Affine>(
     lines: &Lines,
     pieces: &[Piece<S>],
     own: &mut Vec<S::Hyperplane>,
 ) -> Chosen<S> {
-    let pivot = |place: usize| {
-        let larger = Tally::of(pieces, S::hyperplane(&pieces[place].fragment)).larger();
-        (larger, place)
+    let pivot = |index: usize| {
+        let larger = Tally::of(pieces, S::hyperplane(&pieces[index].fragment)).larger_side();
+        (larger, index)
     };
-    let supported = spaced(pieces.len(), lines.sample).map(pivot).min();
-    let (least, place) = supported.unwrap_or((usize::MAX, 0));
+    let supported = evenly_spaced(pieces.len(), lines.sample).map(pivot).min();
+    let (least, index) = supported.unwrap_or((usize::MAX, 0));
     let crossing = corner_cuts::<S>(lines, pieces)
-        .map(|cut| (Tally::of(pieces, &cut).larger(), cut))
+        .map(|cut| (Tally::of(pieces, &cut).larger_side(), cut))
         .min_by_key(|(larger, _)| *larger);
     match crossing {
         Some((larger, cut)) if larger < least => {
             own.push(cut.clone());
             (NodeCut::Own((own.len() - 1) as u32), cut, Reason::Ends)
         }
-        _ => supporting(&pieces[place], Reason::Ends),
+        _ => supporting(&pieces[index], Reason::Ends),
     }
 }
 
-/// A sample of hyperplanes through corners of the pieces: through one, two or three, the dimension of the
-/// space.
+/// A sample of hyperplanes through corners of the pieces (convex parts of facets): through one, two or three,
+/// the dimension of the space.
 fn corner_cuts<'a, S: Affine>(
     lines: &'a Lines,
     pieces: &[Piece<S>],
@@ -245,7 +245,7 @@ fn corner_cuts<'a, S: Affine>(
     corners.dedup();
     let count = corners.len();
     let tuples = (0..S::DIM).fold(1usize, |all, _| all.saturating_mul(count));
-    spaced(tuples, lines.sample).filter_map(move |mut number| {
+    evenly_spaced(tuples, lines.sample).filter_map(move |mut number| {
         poll();
         let through: Vec<Lattice> = (0..S::DIM)
             .map(|_| {

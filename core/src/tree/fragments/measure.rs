@@ -39,8 +39,8 @@ pub fn measures<S: Affine>(tree: &FragmentTree<S>, whole: &Polytope<S>) -> Vec<M
     }
     while let Some((number, region)) = pending.pop() {
         poll();
-        found[number.place()] = Measure::of(&region);
-        let node = &tree.nodes()[number.place()];
+        found[number.index()] = Measure::of(&region);
+        let node = &tree.nodes()[number.index()];
         if node.minus.is_none() && node.plus.is_none() {
             continue;
         }

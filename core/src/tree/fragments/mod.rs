@@ -50,6 +50,6 @@ pub use measure::{measures, Measure};
 pub use node::{Crossing, Fragment, FragmentTree, Node, NodeCut, Piece};
 pub use order::{back_to_front, sides};
 pub use perfect::{perfect, PERFECT_LIMIT};
-pub use plan::{Answer, Answering, Ask, Lines, Plan};
+pub use plan::{Answer, AnswerCallback, Ask, Lines, Plan};
 pub use policy::{Policy, Sample};
 pub use trace::{Candidate, Division, Reason};

@@ -8,28 +8,29 @@ use crate::geometry::side::Half;
 use crate::geometry::spaces::affine::{Affine, Polytope};
 use crate::mesh::handle::NodeId;
 
-/// A convex piece from which a tree is built, or a part of it, with its number.
+/// A convex part of a facet (piece) from which a tree is built, or a part of it, with its number.
 #[derive(Clone, Debug)]
 pub struct Piece<S: Affine> {
-    /// The convex piece.
+    /// The convex part of the facet, as a fragment.
     pub fragment: S::Fragment,
-    /// The number of the input piece from which the fragment was cut.
+    /// The number of the piece (convex part of an input facet) from which the fragment was cut.
     pub number: u32,
 }
 
-/// A piece that lies in a node's hyperplane.
+/// A piece (a convex part of a facet) that lies in a node's hyperplane.
 #[derive(Clone, Debug)]
 pub struct Fragment<S: Affine> {
-    /// An input piece, or the part of it in the node's region.
+    /// A piece (convex part of an input facet), or the part of it in the node's region.
     pub piece: Piece<S>,
-    /// True if the orientation of the piece is opposite to that of the node's hyperplane.
+    /// True if the orientation of the piece (a convex part of a facet) is opposite to that of the node's
+    /// hyperplane.
     pub flipped: bool,
 }
 
-/// The origin of a node's hyperplane; enough to rebuild the tree from the pieces.
+/// The origin of a node's hyperplane; enough to rebuild the tree from the pieces (convex parts of facets).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum NodeCut {
-    /// The supporting hyperplane of the input piece with this number.
+    /// The supporting hyperplane of the input piece (a convex part of a facet) with this number.
     Pivot(u32),
     /// The hyperplane x[axis] = at, in lattice steps: a free cut.
     Axis {
@@ -61,12 +62,12 @@ pub struct Node<S: Affine> {
     pub depth: u32,
 }
 
-/// The event that a node's hyperplane cut a fragment of a piece.
+/// The event that a node's hyperplane cut a fragment of a piece (a convex part of a facet).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Crossing {
     /// The node whose hyperplane cut the fragment.
     pub node: NodeId,
-    /// The number of the piece that was cut.
+    /// The number of the piece (a convex part of a facet) that was cut.
     pub piece: u32,
 }
 
@@ -106,13 +107,13 @@ impl<S: Affine> FragmentTree<S> {
     }
 
     /// The tree's list of hyperplanes that come from neither a facet nor an axis.
-    pub fn own(&self) -> &[S::Hyperplane] {
+    pub fn own_hyperplanes(&self) -> &[S::Hyperplane] {
         &self.own
     }
 
     /// The child on one side of a node; `None` if no facet lies there.
     pub fn child(&self, node: NodeId, half: Half) -> Option<NodeId> {
-        let node = self.nodes.get(node.place())?;
+        let node = self.nodes.get(node.index())?;
         match half {
             Half::Minus => node.minus,
             Half::Plus => node.plus,
@@ -127,9 +128,9 @@ impl<S: Affine> FragmentTree<S> {
     /// One division of a region for each cut above the node.
     pub fn region(&self, node: NodeId, whole: &Polytope<S>) -> Option<Polytope<S>> {
         let mut way = Vec::new();
-        let mut next = self.nodes.get(node.place())?.parent;
+        let mut next = self.nodes.get(node.index())?.parent;
         while let Some((above, half)) = next {
-            let above = self.nodes.get(above.place())?;
+            let above = self.nodes.get(above.index())?;
             way.push((&above.hyperplane, half));
             next = above.parent;
         }

@@ -35,7 +35,7 @@ pub fn back_to_front<S: Affine>(tree: &FragmentTree<S>, eye: &Viewpoint) -> Vec<
             }
             Step::Enter(number) => number,
         };
-        let node = &tree.nodes()[number.place()];
+        let node = &tree.nodes()[number.index()];
         let (far, near) = match eye.side::<S>(&node.hyperplane) {
             Side::Plus => (node.minus, node.plus),
             Side::Minus | Side::On => (node.plus, node.minus),

@@ -15,11 +15,12 @@ use crate::geometry::side::Split;
 use crate::geometry::spaces::affine::Affine;
 use crate::interrupt::poll;
 
-/// The largest number of pieces for the exhaustive search, which caches up to 2^24 sets.
+/// The largest number of pieces (convex parts of facets) for the exhaustive search, which caches up to 2^24
+/// sets.
 pub const PERFECT_LIMIT: usize = 24;
 
-/// For the hyperplane of one piece, three bit sets of pieces: those on its minus side, on its plus side, and
-/// those it cuts.
+/// For the hyperplane of one piece (a convex part of a facet), three bit sets of pieces: those on its minus
+/// side, on its plus side, and those it cuts.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sides {
     minus: u32,
@@ -27,15 +28,16 @@ struct Sides {
     split: u32,
 }
 
-/// The cuts, in preorder, of a tree of supporting hyperplanes that cuts no piece; `None` if there is no such
-/// tree.
+/// The cuts, in preorder, of a tree of supporting hyperplanes that cuts no piece (a convex part of a facet);
+/// `None` if there is no such tree.
 ///
 /// # Errors
 /// `TooMany` if there are more than [`PERFECT_LIMIT`] pieces.
 pub fn perfect<S: Affine>(pieces: &[Piece<S>]) -> Result<Option<Vec<NodeCut>>> {
     if pieces.len() > PERFECT_LIMIT {
         let text = format!(
-            "the search for a perfect autopartition takes at most {PERFECT_LIMIT} facets, not {}",
+            "the search for a perfect autopartition takes at most {PERFECT_LIMIT} facets, not {}; \
+             build the tree with a policy instead",
             pieces.len()
         );
         return Err(Error::new(ErrorKind::TooMany, text));
@@ -69,13 +71,14 @@ fn sides_of<S: Affine>(pivot: &Piece<S>, pieces: &[Piece<S>]) -> Sides {
 
 struct Search {
     sides: Vec<Sides>,
-    /// For each decided set of pieces, a pivot that leads to a perfect tree, or `None` if there is no such
-    /// tree.
+    /// For each decided set of pieces (convex parts of facets), a pivot (the piece whose hyperplane divides
+    /// first) that leads to a tree which cuts no piece, or `None` if there is no such tree.
     pivots: FxHashMap<u32, Option<usize>>,
 }
 
 impl Search {
-    /// Return whether a set of pieces has a perfect tree; recurses at most as deep as the set has pieces.
+    /// Return whether a set of pieces (convex parts of facets) has a tree that cuts none of them; recurses at
+    /// most as deep as the set has pieces.
     fn decide(&mut self, set: u32) -> bool {
         if set == 0 {
             return true;

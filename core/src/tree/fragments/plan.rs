@@ -11,12 +11,12 @@ use crate::mesh::handle::NodeId;
 
 /// The plan for building a fragment tree: which hyperplane divides each region.
 pub enum Plan<S: Affine> {
-    /// A policy chooses a pivot among the region's pieces.
+    /// A policy chooses a pivot among the region's pieces (convex parts of facets).
     Policy {
         /// The policy that chooses the pivot.
         policy: Policy,
-        /// Regions with more pieces than this are divided by axis-parallel cuts where these divide well;
-        /// `None` for autopartition alone.
+        /// Regions with more pieces (convex parts of facets) than this are divided by axis-parallel cuts
+        /// where these divide well; `None` for autopartition alone.
         top: Option<usize>,
         /// The region of the root, for policies that compare volumes.
         region: Option<Polytope<S>>,
@@ -25,13 +25,14 @@ pub enum Plan<S: Affine> {
     Given(Vec<NodeCut>),
     /// A callback chooses each hyperplane.
     Asked(Ask<S>),
-    /// Hyperplanes through corners of pieces are compared with supporting ones: lines through two, planes
-    /// through three.
+    /// Hyperplanes through corners of pieces (convex parts of facets) are compared with supporting ones:
+    /// lines through two, planes through three.
     Lines(Lines),
-    /// The cuts of an existing tree, whose pieces come first in the list; another plan divides its leaves.
+    /// The cuts of an existing tree, whose pieces (convex parts of facets) come first in the list; another
+    /// plan divides its leaves.
     Grown(Box<FragmentTree<S>>, Box<Self>),
-    /// The given hyperplanes in order, except where all pieces are on one side; then another plan, which may
-    /// refer to them by index.
+    /// The given hyperplanes in order, except where all pieces (convex parts of facets) are on one side; then
+    /// another plan, which may refer to them by index.
     Own(Vec<S::Hyperplane>, Box<Self>),
 }
 
@@ -56,16 +57,17 @@ impl<S: Affine> Plan<S> {
     }
 }
 
-/// A callback that chooses the hyperplane for a region from its depth, its number of pieces and the
-/// candidates.
-pub type Answering<S> = Box<dyn FnMut(u32, usize, &[Candidate]) -> Result<Answer<S>> + Send>;
+/// A callback that chooses the hyperplane for a region from its depth, its number of pieces (convex parts of
+/// facets) and the candidates.
+pub type AnswerCallback<S> = Box<dyn FnMut(u32, usize, &[Candidate]) -> Result<Answer<S>> + Send>;
 
 /// A callback that chooses hyperplanes, and the number of candidates that it receives.
 pub struct Ask<S: Affine> {
-    /// The number of candidates, evenly spaced in the region's list of pieces; there is at least one.
+    /// The number of candidates, evenly spaced in the region's list of pieces (convex parts of facets); there
+    /// is at least one.
     pub sample: Sample,
-    /// The callback; each candidate's score is the number of pieces that it cuts.
-    pub answer: Answering<S>,
+    /// The callback; each candidate's score is the number of pieces (convex parts of facets) that it cuts.
+    pub answer: AnswerCallback<S>,
 }
 
 /// The hyperplane that a callback chooses.
@@ -76,10 +78,10 @@ pub enum Answer<S: Affine> {
     Hyperplane(S::Hyperplane),
 }
 
-/// The data for cuts through corners of pieces: lines through two in the plane, planes through three in
-/// space.
+/// The data for cuts through corners of pieces (convex parts of facets): lines through two in the plane,
+/// planes through three in space.
 pub struct Lines {
-    /// The corners of each piece, by the piece's number.
+    /// The corners of each piece (a convex part of a facet), by the piece's number.
     pub corners: Vec<Vec<Lattice>>,
     /// The number of hyperplanes through corners to compare in each region, and of supporting ones as well.
     pub sample: Sample,
@@ -88,7 +90,7 @@ pub struct Lines {
 /// A region that is not yet divided.
 pub(super) struct OpenRegion<S: Affine> {
     pub(super) pieces: Vec<Piece<S>>,
-    pub(super) place: Option<(NodeId, Half)>,
+    pub(super) parent: Option<(NodeId, Half)>,
     pub(super) depth: u32,
     pub(super) region: Option<Polytope<S>>,
     /// The node with the same region in the existing tree that the new tree extends, if any.

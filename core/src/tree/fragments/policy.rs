@@ -7,31 +7,33 @@ use crate::geometry::spaces::affine::{Affine, Polytope};
 use crate::interrupt::poll;
 use crate::tree::trace::Watcher;
 
-/// The number of candidates that a policy compares at each node, evenly spaced in the list of pieces.
+/// The number of candidates that a policy compares at each node, evenly spaced in the list of pieces (convex
+/// parts of facets).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample(pub usize);
 
-/// The rule that chooses the pivot of a region: the piece whose hyperplane divides it. The numbers of pieces
-/// on the two sides are n⁻ and n⁺; a cut piece counts on both.
+/// The rule that chooses the pivot of a region: the piece (a convex part of a facet) whose hyperplane divides
+/// it. The numbers of pieces on the two sides are n⁻ and n⁺; a cut piece counts on both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Policy {
-    /// The first piece in the order given.
+    /// The first piece (a convex part of a facet) in the order given.
     First,
-    /// The first piece in a random order of all pieces, drawn once; the seed makes it reproducible.
+    /// The first piece (a convex part of a facet) in a random order of all pieces, drawn once; the seed makes
+    /// it reproducible.
     ///
     /// There is one order for the whole tree, not a draw for each node, as the analysis requires.
     Random(u64),
-    /// The candidate whose hyperplane cuts the fewest pieces.
+    /// The candidate whose hyperplane cuts the fewest pieces (convex parts of facets).
     LeastSplits(Sample),
     /// The candidate with the least |n⁻ − n⁺|.
     Balanced(Sample),
     /// The candidate with the least alpha·|n⁻ − n⁺| + (1 − alpha)·splits, where splits is the number of
-    /// pieces that it cuts.
+    /// pieces (convex parts of facets) that it cuts.
     ///
     /// With alpha = 1/2, this is the candidate whose larger side has the fewest pieces.
     Weighted(Sample, f64),
-    /// The candidate with the least P⁻·n⁻ + P⁺·n⁺, the expected number of pieces on a random point's side; P⁻
-    /// and P⁺ are the sides' shares of the region's volume.
+    /// The candidate with the least P⁻·n⁻ + P⁺·n⁺, the expected number of pieces (convex parts of facets) on
+    /// a random point's side; P⁻ and P⁺ are the sides' shares of the region's volume.
     ///
     /// # Source
     /// Naylor 1993, "Constructing good partitioning trees", with the number of pieces instead of the unknown
@@ -39,7 +41,8 @@ pub enum Policy {
     LeastCost(Sample),
 }
 
-/// The numbers of pieces with parts on the minus side of a hyperplane, on its plus side, and on both.
+/// The numbers of pieces (convex parts of facets) with parts on the minus side of a hyperplane, on its plus
+/// side, and on both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Tally {
     pub minus: usize,
@@ -48,7 +51,8 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    /// Counts the pieces on each side of a hyperplane; a piece that it cuts counts on both sides.
+    /// Counts the pieces (convex parts of facets) on each side of a hyperplane; a piece that it cuts counts
+    /// on both sides.
     pub fn of<S: Affine>(pieces: &[Piece<S>], cut: &S::Hyperplane) -> Self {
         let mut tally = Self::default();
         for piece in pieces {
@@ -75,19 +79,20 @@ impl Tally {
         }
     }
 
-    /// Return whether a hyperplane with this tally does not leave all of `count` pieces on one side.
+    /// Return whether a hyperplane with this tally does not leave all of `count` pieces (convex parts of
+    /// facets) on one side.
     pub fn divides(&self, count: usize) -> bool {
         let one_sided = |all: usize, none: usize| all == count && none == 0;
         !one_sided(self.minus, self.plus) && !one_sided(self.plus, self.minus)
     }
 
-    /// The difference between the numbers of pieces on the two sides.
+    /// The difference between the numbers of pieces (convex parts of facets) on the two sides.
     fn skew(&self) -> f64 {
         self.minus.abs_diff(self.plus) as f64
     }
 
-    /// The number of pieces on the side that has more.
-    pub fn larger(&self) -> usize {
+    /// The number of pieces (convex parts of facets) on the side that has more.
+    pub fn larger_side(&self) -> usize {
         self.minus.max(self.plus)
     }
 }
@@ -110,7 +115,8 @@ impl Policy {
         }
     }
 
-    /// The index of the piece that the policy chooses as pivot; `pieces` must not be empty.
+    /// The index of the piece (a convex part of a facet) that the policy chooses as pivot; `pieces` must not
+    /// be empty.
     pub(super) fn pivot<S: Affine>(
         &self,
         pieces: &[Piece<S>],

@@ -116,10 +116,10 @@ fn uncovered<'a, S: Space>(
 /// their minus sides.
 fn walls<S: Space>(cut: &Cut<S>, piece: S::Fragment) -> Result<Vec<S::Fragment>> {
     let mut walls = Vec::new();
-    for (part, minus) in cut.child(Half::Minus).beside(piece)? {
-        for (part, plus) in cut.child(Half::Plus).beside(part)? {
+    for (part, minus) in cut.child(Half::Minus).labels_beside(piece)? {
+        for (part, plus) in cut.child(Half::Plus).labels_beside(part)? {
             if minus != plus {
-                walls.push(facing::<S>(part, cut.hyperplane(), minus));
+                walls.push(with_inside_below::<S>(part, cut.hyperplane(), minus));
             }
         }
     }
@@ -128,7 +128,11 @@ fn walls<S: Space>(cut: &Cut<S>, piece: S::Fragment) -> Result<Vec<S::Fragment>>
 
 /// A part of the boundary in a cut, oriented with In on its minus side; `minus` is the label on the cut's
 /// minus side.
-fn facing<S: Space>(part: S::Fragment, cut: &S::Hyperplane, minus: Label) -> S::Fragment {
+fn with_inside_below<S: Space>(
+    part: S::Fragment,
+    cut: &S::Hyperplane,
+    minus: Label,
+) -> S::Fragment {
     let as_cut = S::coincide(S::hyperplane(&part), cut) == Some(Orientation::Same);
     if as_cut == (minus == Label::In) {
         part
@@ -143,7 +147,7 @@ impl<S: Space> PartitionTree<S> {
     ///
     /// # Errors
     /// `Internal` if the fragment lies in a cut: no cut lies in the border of its region.
-    pub fn beside(&self, piece: S::Fragment) -> Result<Vec<(S::Fragment, Label)>> {
+    pub fn labels_beside(&self, piece: S::Fragment) -> Result<Vec<(S::Fragment, Label)>> {
         let mut found = Vec::new();
         let mut pending = vec![(self.clone(), piece)];
         while let Some((tree, piece)) = pending.pop() {

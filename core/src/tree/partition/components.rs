@@ -11,7 +11,7 @@ use crate::mesh::handle::NodeId;
 /// A piece of a set's boundary and the connected parts on its two sides.
 #[derive(Clone, Debug)]
 pub struct Wall<S: Space> {
-    /// The piece, with the set on its minus side.
+    /// The convex piece of the boundary, with the set on its minus side.
     pub fragment: S::Fragment,
     /// The connected part of the set on the minus side, by its first leaf.
     pub inside: NodeId,

@@ -29,9 +29,9 @@ pub struct FlatCut<S: Space> {
     pub plus: NodeId,
 }
 
-/// A piece of a cut with one leaf on each side.
+/// A convex piece of a node's cut with one leaf on each side.
 pub struct Contact<S: Space> {
-    /// The piece, with the orientation of the cut.
+    /// The convex piece, with the orientation of the cut.
     pub fragment: S::Fragment,
     /// The number of the leaf on the cut's minus side.
     pub minus: NodeId,
@@ -80,7 +80,7 @@ impl<S: Space> Flat<S> {
 
     /// Return the label of the leaf with this number; `None` for an inner node.
     pub fn label(&self, node: NodeId) -> Option<Label> {
-        match &self.nodes[node.place()] {
+        match &self.nodes[node.index()] {
             FlatNode::Leaf(label) => Some(*label),
             FlatNode::Cut(_) => None,
         }
@@ -89,7 +89,7 @@ impl<S: Space> Flat<S> {
     /// The number of the leaf that a path from the root reaches if `reference` picks the side of each cut.
     pub fn leaf_at(&self, reference: impl Fn(&S::Hyperplane) -> Half) -> NodeId {
         let mut at = NodeId::ROOT;
-        while let FlatNode::Cut(node) = &self.nodes[at.place()] {
+        while let FlatNode::Cut(node) = &self.nodes[at.index()] {
             at = match reference(node.cut.hyperplane()) {
                 Half::Minus => node.minus,
                 Half::Plus => node.plus,
@@ -102,12 +102,16 @@ impl<S: Space> Flat<S> {
     ///
     /// # Errors
     /// `Internal` if a cut lies in the border of its own region.
-    pub fn beside(&self, node: NodeId, piece: S::Fragment) -> Result<Vec<(S::Fragment, NodeId)>> {
+    pub fn leaves_beside(
+        &self,
+        node: NodeId,
+        piece: S::Fragment,
+    ) -> Result<Vec<(S::Fragment, NodeId)>> {
         let mut found = Vec::new();
         let mut pending = vec![(node, piece)];
         while let Some((at, piece)) = pending.pop() {
             poll();
-            let FlatNode::Cut(node) = &self.nodes[at.place()] else {
+            let FlatNode::Cut(node) = &self.nodes[at.index()] else {
                 found.push((piece, at));
                 continue;
             };
@@ -125,7 +129,7 @@ impl<S: Space> Flat<S> {
         Ok(found)
     }
 
-    /// All pieces of cuts that separate two leaves.
+    /// All convex pieces of cuts that separate two leaves.
     ///
     /// # Order
     /// By inner node, in the order of the list.
@@ -137,8 +141,8 @@ impl<S: Space> Flat<S> {
         for node in self.cuts() {
             poll();
             let span = node.cut.sub_hyperplane().span.clone();
-            for (part, minus) in self.beside(node.minus, span)? {
-                for (fragment, plus) in self.beside(node.plus, part)? {
+            for (part, minus) in self.leaves_beside(node.minus, span)? {
+                for (fragment, plus) in self.leaves_beside(node.plus, part)? {
                     contacts.push(Contact {
                         fragment,
                         minus,
@@ -158,7 +162,7 @@ impl<S: Space> Flat<S> {
             trees[i] = match node {
                 FlatNode::Leaf(_) => PartitionTree::Leaf(label(NodeId::of(i))),
                 FlatNode::Cut(node) => {
-                    let [minus, plus] = [node.minus, node.plus].map(|at| trees[at.place()].clone());
+                    let [minus, plus] = [node.minus, node.plus].map(|at| trees[at.index()].clone());
                     node.cut.with_children(minus, plus)
                 }
             };

@@ -35,12 +35,12 @@ impl Label {
     }
 }
 
-/// A fragment and the number of the input element from which it was cut.
+/// A fragment of a set's boundary, and the number of the input facet from which it was cut.
 #[derive(Clone, Debug)]
 pub struct Facet<S: Space> {
     /// The convex piece, oriented with the inside of its set on the minus side.
     pub fragment: S::Fragment,
-    /// The number of the input element; where facets overlap, the one with the smallest number counts.
+    /// The number of the input facet; where facets overlap, the one with the smallest number counts.
     pub source: u64,
 }
 
@@ -152,7 +152,7 @@ impl<S: Space> PartitionTree<S> {
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Leaf(a), Self::Leaf(b)) => a == b,
-            (Self::Cut(a), Self::Cut(b)) => a.shares(b) && a.complemented == b.complemented,
+            (Self::Cut(a), Self::Cut(b)) => a.shares_node(b) && a.complemented == b.complemented,
             _ => false,
         }
     }
@@ -161,7 +161,7 @@ impl<S: Space> PartitionTree<S> {
     pub fn is_complement(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Leaf(a), Self::Leaf(b)) => a != b,
-            (Self::Cut(a), Self::Cut(b)) => a.shares(b) && a.complemented != b.complemented,
+            (Self::Cut(a), Self::Cut(b)) => a.shares_node(b) && a.complemented != b.complemented,
             _ => false,
         }
     }
@@ -227,7 +227,7 @@ impl<S: Space> Cut<S> {
         PartitionTree::cut(Arc::clone(&self.node.sub_hyperplane), minus, plus)
     }
 
-    fn shares(&self, other: &Self) -> bool {
+    fn shares_node(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.node, &other.node)
     }
 }

@@ -100,10 +100,10 @@ struct PreorderReader<'a, S: Space> {
 
 /// The sub-hyperplane of a node's parent, the node's side of it, and the depth of the parent's region; `None`
 /// for the root.
-type Above<S> = Option<(Arc<SubHyperplane<S>>, Half, usize)>;
+type ParentSide<S> = Option<(Arc<SubHyperplane<S>>, Half, usize)>;
 
 enum Step<S: Space> {
-    Visit(NodeId, Above<S>),
+    Visit(NodeId, ParentSide<S>),
     Join(Arc<SubHyperplane<S>>),
 }
 
@@ -118,7 +118,7 @@ impl<S: Space> PreorderReader<'_, S> {
                     .push(PartitionTree::cut(sub_hyperplane, minus, plus));
                 Ok(())
             }
-            Step::Visit(at, above) => match &self.entries[at.place()] {
+            Step::Visit(at, above) => match &self.entries[at.index()] {
                 Entry::Leaf(label) => {
                     self.done.push(PartitionTree::Leaf(*label));
                     Ok(())
@@ -128,17 +128,17 @@ impl<S: Space> PreorderReader<'_, S> {
         }
     }
 
-    fn divide(&mut self, at: NodeId, cut: &S::Hyperplane, above: Above<S>) -> Result<()> {
+    fn divide(&mut self, at: NodeId, cut: &S::Hyperplane, above: ParentSide<S>) -> Result<()> {
         if let Some((sub_hyperplane, half, depth)) = &above {
             self.region.truncate(*depth);
             self.region
                 .push(S::hyperplane(&sub_hyperplane.span).clone(), *half);
         }
-        let minus = NodeId::of(at.place() + 1);
+        let minus = NodeId::of(at.index() + 1);
         let Some(span) = self.region.span(cut) else {
             let only = match side_of_region::<S>(cut, above.as_ref())? {
                 Half::Minus => minus,
-                Half::Plus => self.plus[at.place()],
+                Half::Plus => self.plus[at.index()],
             };
             self.steps.push(Step::Visit(only, above));
             return Ok(());
@@ -149,7 +149,7 @@ impl<S: Space> PreorderReader<'_, S> {
         let below = |half| Some((Arc::clone(&sub_hyperplane), half, depth));
         self.steps.push(Step::Join(Arc::clone(&sub_hyperplane)));
         self.steps
-            .push(Step::Visit(self.plus[at.place()], below(Half::Plus)));
+            .push(Step::Visit(self.plus[at.index()], below(Half::Plus)));
         self.steps.push(Step::Visit(minus, below(Half::Minus)));
         Ok(())
     }
@@ -163,7 +163,8 @@ fn side_of_region<S: Space>(
     above: Option<&(Arc<SubHyperplane<S>>, Half, usize)>,
 ) -> Result<Half> {
     let Some((sub_hyperplane, ..)) = above else {
-        let text = "a moved or refined hyperplane misses the lattice of 2^53 steps";
+        let text = "a moved or refined hyperplane misses the lattice of 2^53 steps; move the set \
+                    less, or choose a coarser pitch";
         return Err(Error::new(ErrorKind::TooLarge, text));
     };
     match S::split(&sub_hyperplane.span, cut) {

@@ -73,11 +73,11 @@ fn check_cut<S: Space>(cut: &Cut<S>, region: &Region<S>) -> Result<()> {
     let Some(expected) = region.span(cut.hyperplane()) else {
         return broken("a cut misses its node's region");
     };
-    if !holds::<S>(span, &expected) || !holds::<S>(&expected, span) {
+    if !contains::<S>(span, &expected) || !contains::<S>(&expected, span) {
         return broken("a stored span is not the cut inside its region");
     }
     let in_span = |piece: &S::Fragment| {
-        S::coincide(S::hyperplane(piece), cut.hyperplane()).is_some() && holds::<S>(span, piece)
+        S::coincide(S::hyperplane(piece), cut.hyperplane()).is_some() && contains::<S>(span, piece)
     };
     if !cut
         .sub_hyperplane()
@@ -95,7 +95,7 @@ fn check_cut<S: Space>(cut: &Cut<S>, region: &Region<S>) -> Result<()> {
 }
 
 /// Return whether the fragment `outer` covers the coplanar fragment `inner`.
-fn holds<S: Space>(outer: &S::Fragment, inner: &S::Fragment) -> bool {
+fn contains<S: Space>(outer: &S::Fragment, inner: &S::Fragment) -> bool {
     let (inside, outside) = overlay::<S>(inner.clone(), outer);
     inside.is_some() && outside.is_empty()
 }

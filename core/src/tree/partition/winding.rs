@@ -35,19 +35,19 @@ pub fn winding_tree<S: Space>(
     inside: impl Fn(i32) -> bool,
 ) -> Result<Winding<S>> {
     let flat = Flat::new(tree);
-    let (jumps, disjoint) = flat.jumps()?;
-    let numbers = flat.numbers(&jumps, flat.leaf_at(reference), number)?;
+    let (changes, disjoint) = flat.winding_changes()?;
+    let numbers = flat.numbers(&changes, flat.leaf_at(reference), number)?;
     let simple = disjoint
         && flat
             .leaves()
-            .all(|leaf| matches!(numbers[leaf.place()], 0 | 1));
-    let tree = flat.relabelled(|leaf| Label::from_inside(inside(numbers[leaf.place()])));
+            .all(|leaf| matches!(numbers[leaf.index()], 0 | 1));
+    let tree = flat.relabelled(|leaf| Label::from_inside(inside(numbers[leaf.index()])));
     Ok(Winding { tree, simple })
 }
 
 /// Two leaves on the sides of a piece of a cut, and by how much the winding number on the minus side exceeds
 /// that on the plus side.
-struct Jump {
+struct WindingChange {
     minus: NodeId,
     plus: NodeId,
     rise: i32,
@@ -55,46 +55,51 @@ struct Jump {
 
 impl<S: Space> Flat<S> {
     /// The jumps of the winding number between all neighbouring leaves, and whether no two facets overlap.
-    fn jumps(&self) -> Result<(Vec<Jump>, bool)> {
-        let mut jumps = Vec::new();
+    fn winding_changes(&self) -> Result<(Vec<WindingChange>, bool)> {
+        let mut changes = Vec::new();
         let mut disjoint = true;
         for node in self.cuts() {
             poll();
             for piece in covered_pieces(&node.cut) {
                 disjoint &= piece.layers <= 1;
-                self.cross(node, piece, &mut jumps)?;
+                self.cross(node, piece, &mut changes)?;
             }
         }
-        Ok((jumps, disjoint))
+        Ok((changes, disjoint))
     }
 
-    fn cross(&self, node: &FlatCut<S>, piece: Piece<S>, jumps: &mut Vec<Jump>) -> Result<()> {
+    fn cross(
+        &self,
+        node: &FlatCut<S>,
+        piece: Piece<S>,
+        changes: &mut Vec<WindingChange>,
+    ) -> Result<()> {
         let rise = piece.rise;
-        for (part, minus) in self.beside(node.minus, piece.fragment)? {
-            for (_, plus) in self.beside(node.plus, part)? {
-                jumps.push(Jump { minus, plus, rise });
+        for (part, minus) in self.leaves_beside(node.minus, piece.fragment)? {
+            for (_, plus) in self.leaves_beside(node.plus, part)? {
+                changes.push(WindingChange { minus, plus, rise });
             }
         }
         Ok(())
     }
 
     /// The winding number of each leaf, by node number; zero for inner nodes.
-    fn numbers(&self, jumps: &[Jump], start: NodeId, number: i32) -> Result<Vec<i32>> {
+    fn numbers(&self, changes: &[WindingChange], start: NodeId, number: i32) -> Result<Vec<i32>> {
         let mut neighbours = vec![Vec::new(); self.len()];
-        for jump in jumps {
-            neighbours[jump.minus.place()].push((jump.plus, -jump.rise));
-            neighbours[jump.plus.place()].push((jump.minus, jump.rise));
+        for jump in changes {
+            neighbours[jump.minus.index()].push((jump.plus, -jump.rise));
+            neighbours[jump.plus.index()].push((jump.minus, jump.rise));
         }
         let mut numbers = vec![None; self.len()];
-        numbers[start.place()] = Some(number);
+        numbers[start.index()] = Some(number);
         let mut pending = vec![(start, number)];
         while let Some((leaf, number)) = pending.pop() {
             poll();
-            for &(next, rise) in &neighbours[leaf.place()] {
+            for &(next, rise) in &neighbours[leaf.index()] {
                 let expected = number + rise;
-                match numbers[next.place()] {
+                match numbers[next.index()] {
                     None => {
-                        numbers[next.place()] = Some(expected);
+                        numbers[next.index()] = Some(expected);
                         pending.push((next, expected));
                     }
                     Some(known) if known != expected => return Err(not_closed()),
@@ -113,7 +118,7 @@ fn not_closed() -> Error {
     )
 }
 
-/// A piece of a span that each facet covers entirely or not at all.
+/// A convex piece of a cut that each facet covers entirely or not at all.
 struct Piece<S: Space> {
     fragment: S::Fragment,
     rise: i32,
@@ -143,8 +148,8 @@ fn covered_pieces<S: Space>(cut: &Cut<S>) -> Vec<Piece<S>> {
         })
 }
 
-/// The parts of a piece that a facet covers and those that it does not cover, with their changed rise and
-/// layers.
+/// The parts of a convex piece of a cut that a facet covers and the parts that it does not cover, with the
+/// new winding number change and number of facets of each.
 fn cover<S: Space>(piece: Piece<S>, facet: &Facet<S>, rise: i32) -> Vec<Piece<S>> {
     let (under, beside) = overlay::<S>(piece.fragment, &facet.fragment);
     let beside = beside.into_iter().map(|fragment| Piece {

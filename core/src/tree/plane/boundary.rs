@@ -182,7 +182,7 @@ impl Boundary {
     }
 }
 
-/// Joins pieces of one line where one ends, the next begins and no other piece meets them.
+/// Joins boundary segments of one line where one ends, the next begins and no other segment meets them.
 fn joined(pieces: &[Wall<Dim2>]) -> Vec<Wall<Dim2>> {
     let next = successors(pieces);
     let mut follows = vec![false; pieces.len()];
@@ -198,7 +198,7 @@ fn joined(pieces: &[Wall<Dim2>]) -> Vec<Wall<Dim2>> {
     heads.map(edge).collect()
 }
 
-/// For each piece, the index of the piece that continues it on the same line, if any.
+/// For each boundary segment, the index of the segment that continues it on the same line, if any.
 fn successors(pieces: &[Wall<Dim2>]) -> Vec<Option<usize>> {
     let mut ends: Vec<(&Point2, usize, usize)> = Vec::with_capacity(2 * pieces.len());
     for (i, piece) in pieces.iter().enumerate() {

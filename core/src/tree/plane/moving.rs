@@ -1,6 +1,6 @@
 //! Images of boundaries of plane sets under lattice motions.
 
-use crate::arith::bounds::REACH;
+use crate::arith::bounds::MAX_COORDINATE;
 use crate::arith::convert::as_number;
 use crate::geometry::spaces::dim2::Point2;
 use crate::geometry::spaces::motion::Motion;
@@ -54,9 +54,9 @@ impl Corner {
     }
 }
 
-/// Return whether a point lies in the square |x|, |y| ≤ [`REACH`].
+/// Return whether a point lies in the square |x|, |y| ≤ [`MAX_COORDINATE`].
 fn is_near(point: &Point2) -> bool {
-    let [low, high] = [-REACH, REACH].map(|k| Point2::lattice([k, k]));
+    let [low, high] = [-MAX_COORDINATE, MAX_COORDINATE].map(|k| Point2::lattice([k, k]));
     let near =
         |axis: usize| point.compare(&low, axis).is_ge() && point.compare(&high, axis).is_le();
     near(0) && near(1)

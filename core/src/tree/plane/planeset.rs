@@ -28,7 +28,7 @@ pub struct PlaneSet {
     /// The work of the operations that made this set.
     pub spent: WorkSinceRebuild,
     /// The number of times that sweeps over all edges answered questions about a small number of points.
-    asked: Arc<AtomicUsize>,
+    queried_points: Arc<AtomicUsize>,
 }
 
 /// The number of sweeps over n edges that cost about as much as building a tree of these edges: 16 µs against
@@ -71,7 +71,7 @@ impl PlaneSet {
             form,
             size,
             spent: WorkSinceRebuild::default(),
-            asked: Arc::default(),
+            queried_points: Arc::default(),
         }
     }
 
@@ -116,12 +116,12 @@ impl PlaneSet {
 
     /// Return whether to find points by the tree: it exists, or small numbers of points were asked for so
     /// often that sweeps have cost more. Counts each such question.
-    pub fn wants_tree(&self, points: usize) -> bool {
+    pub fn should_build_tree(&self, points: usize) -> bool {
         if self.known_tree().is_some() {
             return true;
         }
         let few = points < self.size;
-        few && self.asked.fetch_add(1, Ordering::Relaxed) >= SWEEPS_PER_TREE
+        few && self.queried_points.fetch_add(1, Ordering::Relaxed) >= SWEEPS_PER_TREE
     }
 
     /// The tree if it is already computed, else `None`.
@@ -169,7 +169,7 @@ impl PlaneSet {
     fn with(&self, form: Form) -> Self {
         Self {
             form,
-            asked: Arc::default(),
+            queried_points: Arc::default(),
             ..*self
         }
     }

@@ -60,7 +60,7 @@ pub(super) fn wedges<R: Radial>(
     match_wedges(&spokes)
 }
 
-/// Matches each forward half-edge with the last unmatched backward one, in cyclic order.
+/// Matches each forward half-edge around an edge with the last unmatched backward one, in cyclic order.
 fn match_wedges(spokes: &[Spoke]) -> Vec<(usize, usize)> {
     let mut pairs = Vec::with_capacity(spokes.len() / 2);
     let mut begun = Vec::new();
@@ -75,7 +75,8 @@ fn match_wedges(spokes: &[Spoke]) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// Returns the index from which, in cyclic order, no wedge ends before it has begun.
+/// Returns the index from which, in cyclic order around an edge, no wedge of the inside ends before it has
+/// begun.
 fn start(spokes: &[Spoke]) -> usize {
     let (mut depth, mut lowest, mut start) = (0_i64, 0_i64, 0);
     for (k, spoke) in spokes.iter().enumerate() {

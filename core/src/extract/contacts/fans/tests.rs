@@ -17,7 +17,7 @@ struct Surface {
 impl Radial for Surface {
     fn normal(&self, triangle: u32) -> [i128; 3] {
         let [a, b, c] =
-            self.triangles[triangle as usize].map(|v| self.points[v.place()].map(i128::from));
+            self.triangles[triangle as usize].map(|v| self.points[v.index()].map(i128::from));
         let (u, v) = (
             [0, 1, 2].map(|k| b[k] - a[k]),
             [0, 1, 2].map(|k| c[k] - a[k]),
@@ -27,7 +27,7 @@ impl Radial for Surface {
     }
 
     fn direction(&self, a: VertexId, b: VertexId) -> [Sign; 3] {
-        let (p, q) = (self.points[a.place()], self.points[b.place()]);
+        let (p, q) = (self.points[a.index()], self.points[b.index()]);
         [0, 1, 2].map(|k| Sign::of(q[k] - p[k]))
     }
 }
@@ -66,7 +66,7 @@ impl Surface {
         let count = u32::try_from(self.points.len()).unwrap();
         let split = split_fans(&self.triangles, count, self).unwrap();
         check_manifold(&split.corners);
-        let old = |corners: [VertexId; 3]| corners.map(|v| split.origin[v.place()]);
+        let old = |corners: [VertexId; 3]| corners.map(|v| split.origin[v.index()]);
         assert!(split
             .corners
             .iter()
@@ -113,17 +113,17 @@ fn bodies(split: &Split) -> usize {
     while changed {
         changed = false;
         for corners in &split.corners {
-            let lowest = corners.iter().map(|&v| body[v.place()]).min().unwrap();
+            let lowest = corners.iter().map(|&v| body[v.index()]).min().unwrap();
             for &v in corners {
-                changed |= body[v.place()] != lowest;
-                body[v.place()] = lowest;
+                changed |= body[v.index()] != lowest;
+                body[v.index()] = lowest;
             }
         }
     }
     split
         .corners
         .iter()
-        .map(|corners| body[corners[0].place()])
+        .map(|corners| body[corners[0].index()])
         .collect::<BTreeSet<_>>()
         .len()
 }
@@ -307,7 +307,7 @@ fn doubled_walls_separate() {
     let mut touching = cells(&BTreeSet::from([[0, 0, 0]]));
     for corners in cells(&BTreeSet::from([[1, 0, 0]])).triangles {
         let other = cells(&BTreeSet::from([[1, 0, 0]]));
-        touching.push_polygon(&corners.map(|v| other.points[v.place()]));
+        touching.push_polygon(&corners.map(|v| other.points[v.index()]));
     }
     assert_eq!(bodies(&touching.split()), 2);
     let mut sheet = Surface::default();

@@ -32,7 +32,7 @@ impl Mending {
             .filter_map(|t| self.triangles[*t as usize])
             .flatten()
             .collect();
-        corners.sort_unstable_by_key(|v| (self.given[v.place()], *v));
+        corners.sort_unstable_by_key(|v| (self.given[v.index()], *v));
         corners.dedup();
         let mut edits = self.merges(&corners);
         edits.extend(
@@ -46,13 +46,13 @@ impl Mending {
 
     /// Returns the merges of two corners within reach of each other, the nearest pairs first.
     fn merges(&self, corners: &[VertexId]) -> Vec<Edit> {
-        let place = |v: VertexId| &self.vertices[v.place()];
+        let place = |v: VertexId| &self.vertices[v.index()];
         let mut pairs: Vec<(f64, VertexId, VertexId)> = Vec::new();
         for (k, &v) in corners.iter().enumerate() {
             for &w in &corners[..k] {
                 let gap = distance(place(v), place(w));
                 if gap <= self.reach() {
-                    let stays = self.given[v.place()] && !self.given[w.place()];
+                    let stays = self.given[v.index()] && !self.given[w.index()];
                     let (from, to) = if stays { (w, v) } else { (v, w) };
                     pairs.extend([(gap, from, to), (gap, to, from)]);
                 }
@@ -60,7 +60,7 @@ impl Mending {
         }
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
         let near = |p: &&(f64, VertexId, VertexId)| self.drift(p.1, place(p.2)) <= self.reach();
-        let free = pairs.iter().filter(|p| !self.fixed[p.1.place()]);
+        let free = pairs.iter().filter(|p| !self.fixed[p.1.index()]);
         free.filter(near)
             .filter_map(|&(_, from, to)| self.merge(from, to))
             .collect()
@@ -89,7 +89,7 @@ impl Mending {
         }
         let mut edit = Edit {
             triangles: made,
-            drift: Some((to, self.drift(from, &self.vertices[to.place()]))),
+            drift: Some((to, self.drift(from, &self.vertices[to.index()]))),
             ..Edit::default()
         };
         self.part_fans(&mut edit, to)?;
@@ -120,7 +120,7 @@ impl Mending {
             if around.is_empty() {
                 continue;
             }
-            if self.fixed[v.place()] && !self.is_whole(v) {
+            if self.fixed[v.index()] && !self.is_whole(v) {
                 continue;
             }
             for fan in fans(v, around)?.into_iter().skip(1) {
@@ -162,7 +162,7 @@ impl Mending {
         let others = self.triangles[mate as usize]?;
         let d = *others.iter().find(|v| **v != a && **v != b)?;
         let taken = self.halves.contains_key(&[c, d]) || self.halves.contains_key(&[d, c]);
-        let [p, q, r, s] = [a, b, c, d].map(|v| &self.vertices[v.place()]);
+        let [p, q, r, s] = [a, b, c, d].map(|v| &self.vertices[v.index()]);
         if c == d || taken || !diagonals_meet([p, q, r, s], self.reach()) {
             return None;
         }
@@ -174,10 +174,10 @@ impl Mending {
 
     /// Returns the translations of a vertex by one spacing that stay within reach.
     fn moves(&self, v: VertexId) -> Vec<Edit> {
-        if self.fixed[v.place()] {
+        if self.fixed[v.index()] {
             return Vec::new();
         }
-        let place = self.vertices[v.place()];
+        let place = self.vertices[v.index()];
         let moved = |step: &[f64; 3]| {
             let place = [0, 1, 2].map(|i| self.precision.round(place[i] + step[i] * self.spacing));
             Edit {

@@ -76,10 +76,10 @@ impl Mending {
             self.flat.extend(flat);
             for (v, old) in &undo.moves {
                 self.moved.insert(*v);
-                self.drifts[v.place()] += distance(old, &self.vertices[v.place()]);
+                self.drifts[v.index()] += distance(old, &self.vertices[v.index()]);
             }
             if let Some((v, drift)) = edit.drift {
-                self.drifts[v.place()] = self.drifts[v.place()].max(drift);
+                self.drifts[v.index()] = self.drifts[v.index()].max(drift);
             }
             return true;
         }

@@ -115,14 +115,14 @@ impl Mending {
             .iter()
             .flatten()
             .fold(0.0f64, |m, x| m.max(x.abs()));
-        let corners = |t: &[VertexId; 3]| t.map(|v| vertices[v.place()]);
+        let corners = |t: &[VertexId; 3]| t.map(|v| vertices[v.index()]);
         let extents: Vec<Extent> = triangles.iter().map(|t| Extent::of(&corners(t))).collect();
         let mut stars = vec![Star::new(); vertices.len()];
         for (t, &v) in (0u32..)
             .zip(&triangles)
             .flat_map(|(t, c)| c.iter().map(move |v| (t, v)))
         {
-            stars[v.place()].push(t);
+            stars[v.index()].push(t);
         }
         let ends = |(t, c): (usize, &[VertexId; 3])| edges(*c).map(|e| (e, as_number(t)));
         let drifts = vec![0.0; vertices.len()];
@@ -161,7 +161,7 @@ impl Mending {
     /// Bounds how far a vertex would be, moved to `place`, from its original position and from those of
     /// vertices merged into it.
     pub(super) fn drift(&self, v: VertexId, place: &Point) -> f64 {
-        self.drifts[v.place()] + distance(&self.vertices[v.place()], place)
+        self.drifts[v.index()] + distance(&self.vertices[v.index()], place)
     }
 
     pub(super) fn reach(&self) -> f64 {
@@ -170,7 +170,7 @@ impl Mending {
 
     /// The triangles around a vertex, ascending.
     pub(super) fn star(&self, v: VertexId) -> Star {
-        self.stars[v.place()].clone()
+        self.stars[v.index()].clone()
     }
 
     /// Yields the pairs of triangles that contain `t` and cross, the lower number of each pair first.
@@ -181,7 +181,7 @@ impl Mending {
 
     pub(super) fn corners(&self, t: u32) -> Option<Triangle> {
         let corners = self.triangles[t as usize]?;
-        Some(corners.map(|v| self.vertices[v.place()]))
+        Some(corners.map(|v| self.vertices[v.index()]))
     }
 }
 

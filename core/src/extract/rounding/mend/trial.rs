@@ -13,15 +13,15 @@ impl Mending {
     pub(super) fn apply(&mut self, edit: &Edit) -> Edit {
         let mut undo = Edit::default();
         for &v in &edit.copies {
-            self.vertices.push(self.vertices[v.place()]);
-            self.fixed.push(self.fixed[v.place()]);
-            self.given.push(self.given[v.place()]);
-            self.drifts.push(self.drifts[v.place()]);
+            self.vertices.push(self.vertices[v.index()]);
+            self.fixed.push(self.fixed[v.index()]);
+            self.given.push(self.given[v.index()]);
+            self.drifts.push(self.drifts[v.index()]);
             self.stars.push(Star::new());
         }
         for &(v, place) in &edit.moves {
-            undo.moves.push((v, self.vertices[v.place()]));
-            self.vertices[v.place()] = place;
+            undo.moves.push((v, self.vertices[v.index()]));
+            self.vertices[v.index()] = place;
         }
         self.exchange(&edit.triangles, &mut undo);
         let moved: Vec<u32> = edit.moves.iter().flat_map(|m| self.star(m.0)).collect();
@@ -34,7 +34,7 @@ impl Mending {
     pub(super) fn revert(&mut self, edit: &Edit, undo: &Edit) {
         let mut nothing = Edit::default();
         for &(v, place) in undo.moves.iter().rev() {
-            self.vertices[v.place()] = place;
+            self.vertices[v.index()] = place;
         }
         self.exchange(&undo.triangles, &mut nothing);
         let moved: Vec<u32> = edit.moves.iter().flat_map(|m| self.star(m.0)).collect();
@@ -57,7 +57,7 @@ impl Mending {
                 self.halves.remove(&edge);
             }
             for v in old.into_iter().flatten() {
-                self.stars[v.place()].retain(|other| *other != *t);
+                self.stars[v.index()].retain(|other| *other != *t);
             }
         }
         for &(t, corners) in triangles {
@@ -66,7 +66,7 @@ impl Mending {
                 self.halves.insert(edge, t);
             }
             for v in corners.into_iter().flatten() {
-                let star = &mut self.stars[v.place()];
+                let star = &mut self.stars[v.index()];
                 star.insert(star.partition_point(|other| *other < t), t);
             }
             self.measure(t);
@@ -134,7 +134,7 @@ impl Mending {
             let [a, b] = self.ends(pair[which], edge)?;
             let mate = self.triangles[*self.halves.get(&[b, a])? as usize]?;
             let apex = mate.iter().find(|v| **v != a && **v != b)?;
-            Some(self.vertices[apex.place()])
+            Some(self.vertices[apex.index()])
         };
         let sheets = |which: usize, edge: usize| {
             let own = [&p, &q][which][(edge + 2) % 3];

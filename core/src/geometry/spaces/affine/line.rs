@@ -3,7 +3,7 @@
 use num_bigint::BigInt;
 
 use super::Affine;
-use crate::arith::bounds::REACH;
+use crate::arith::bounds::MAX_COORDINATE;
 use crate::arith::convert::as_double;
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Split;
@@ -19,7 +19,7 @@ fn sign(point: &Point1) -> i64 {
 
 impl Affine for Dim1 {
     const EVERYTHING: () = ();
-    const REACH: i64 = REACH;
+    const MAX_COORDINATE: i64 = MAX_COORDINATE;
 
     fn fragment(corners: &[Lattice]) -> Option<Point1> {
         corners.first().map(|p| Point1::new(p[0], Direction::Below))
@@ -36,14 +36,14 @@ impl Affine for Dim1 {
     }
 
     fn axis_cut(axis: usize, at: i64) -> Option<Point1> {
-        (axis == 0 && at.abs() <= Self::REACH).then(|| Point1::new(at, Direction::Below))
+        (axis == 0 && at.abs() <= Self::MAX_COORDINATE).then(|| Point1::new(at, Direction::Below))
     }
 
     fn corners(piece: &Point1) -> Vec<[f64; 3]> {
         vec![[as_double(piece.at()), 0.0, 0.0]]
     }
 
-    fn original(_: &Point1, _: &[Lattice], _: &[bool]) -> Vec<bool> {
+    fn original_edges(_: &Point1, _: &[Lattice], _: &[bool]) -> Vec<bool> {
         vec![true]
     }
 
@@ -59,7 +59,7 @@ impl Affine for Dim1 {
         1.0
     }
 
-    fn cone(piece: &Point1, apex: &[f64; 3]) -> f64 {
+    fn cone_measure(piece: &Point1, apex: &[f64; 3]) -> f64 {
         (as_double(piece.at()) - apex[0]) * as_double(sign(piece))
     }
 }

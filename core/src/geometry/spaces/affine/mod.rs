@@ -26,7 +26,7 @@ pub trait Affine: Space {
     const EVERYTHING: Self::Frame;
 
     /// The largest coordinate, in magnitude, of a hyperplane across an axis.
-    const REACH: i64;
+    const MAX_COORDINATE: i64;
 
     /// The convex fragment with these corners; `None` if it has no relative interior.
     ///
@@ -42,17 +42,18 @@ pub trait Affine: Space {
 
     /// The hyperplane x[axis] = at, with smaller coordinates on its minus side.
     ///
-    /// `None` if |at| exceeds [`Affine::REACH`] or there is no such axis.
+    /// `None` if |at| exceeds [`Affine::MAX_COORDINATE`] or there is no such axis.
     fn axis_cut(axis: usize, at: i64) -> Option<Self::Hyperplane>;
 
     /// The corners of a fragment in order, each coordinate within a few units in the last place.
     fn corners(piece: &Self::Fragment) -> Vec<[f64; 3]>;
 
-    /// For each corner of a piece of a facet, whether the edge that leaves it lies on an edge of the facet.
+    /// For each corner of a piece of a facet, whether the edge that leaves the corner lies on an edge of the
+    /// facet.
     ///
     /// `facet` has the facet's corners; edges that `seams` marks do not count. In 2D: for each end of the
     /// piece, whether it is an end of the facet.
-    fn original(piece: &Self::Fragment, facet: &[Lattice], seams: &[bool]) -> Vec<bool>;
+    fn original_edges(piece: &Self::Fragment, facet: &[Lattice], seams: &[bool]) -> Vec<bool>;
 
     /// Return how `piece` lies relative to `cut`, without computing its parts.
     fn relation(piece: &Self::Fragment, cut: &Self::Hyperplane) -> Split<()>;
@@ -62,7 +63,7 @@ pub trait Affine: Space {
 
     /// The signed length, area or volume of the cone from `apex` over a fragment; positive if `apex` is on
     /// the minus side.
-    fn cone(piece: &Self::Fragment, apex: &[f64; 3]) -> f64;
+    fn cone_measure(piece: &Self::Fragment, apex: &[f64; 3]) -> f64;
 
     /// The least and the greatest coordinates of a fragment's corners, as rounded in [`Affine::corners`].
     fn bounds(piece: &Self::Fragment) -> [[f64; 3]; 2] {
@@ -77,7 +78,7 @@ pub trait Affine: Space {
     }
 }
 
-/// How a convex piece lies relative to a hyperplane, from the sides of its corners.
+/// The position of a convex set relative to a hyperplane, from the sides on which its corners lie.
 fn relation_of(sides: impl Iterator<Item = Side>) -> Split<()> {
     let (mut minus, mut plus) = (false, false);
     for side in sides {

@@ -3,7 +3,7 @@
 use num_bigint::BigInt;
 
 use super::Affine;
-use crate::arith::bounds::REACH;
+use crate::arith::bounds::MAX_COORDINATE;
 use crate::arith::convert::as_double;
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Split;
@@ -26,7 +26,7 @@ fn turn(a: &[f64; 3], b: &[f64; 3], apex: &[f64; 3]) -> f64 {
 
 impl Affine for Dim2 {
     const EVERYTHING: Square = Square;
-    const REACH: i64 = REACH;
+    const MAX_COORDINATE: i64 = MAX_COORDINATE;
 
     fn fragment(corners: &[Lattice]) -> Option<Segment2> {
         match corners {
@@ -46,14 +46,14 @@ impl Affine for Dim2 {
     }
 
     fn axis_cut(axis: usize, at: i64) -> Option<Line2> {
-        (axis < 2 && at.abs() <= Self::REACH).then(|| Line2::axis_cut(axis, at))
+        (axis < 2 && at.abs() <= Self::MAX_COORDINATE).then(|| Line2::axis_cut(axis, at))
     }
 
     fn corners(piece: &Segment2) -> Vec<[f64; 3]> {
         piece.points().iter().map(position).collect()
     }
 
-    fn original(piece: &Segment2, facet: &[Lattice], _: &[bool]) -> Vec<bool> {
+    fn original_edges(piece: &Segment2, facet: &[Lattice], _: &[bool]) -> Vec<bool> {
         let is_end = |p: &Point2| facet.iter().any(|end| is_lattice(p, end));
         piece.points().iter().map(is_end).collect()
     }
@@ -71,7 +71,7 @@ impl Affine for Dim2 {
         (x * x + y * y).sqrt()
     }
 
-    fn cone(piece: &Segment2, apex: &[f64; 3]) -> f64 {
+    fn cone_measure(piece: &Segment2, apex: &[f64; 3]) -> f64 {
         let [a, b] = [0, 1].map(|i| position(&piece.points()[i]));
         turn(&a, &b, apex) / 2.0
     }

@@ -11,7 +11,8 @@ pub struct Polytope<S: Affine> {
 }
 
 impl<S: Affine> Polytope<S> {
-    /// The box from the lattice point `low` to `high`; `None` if it is flat or exceeds [`Affine::REACH`].
+    /// The box from the lattice point `low` to `high`; `None` if it is flat or exceeds
+    /// [`Affine::MAX_COORDINATE`].
     ///
     /// # Example
     /// ```
@@ -99,7 +100,11 @@ impl<S: Affine> Polytope<S> {
     pub fn volume(&self) -> f64 {
         let apex = self.walls.first().and_then(|w| S::corners(w).pop());
         let apex = apex.unwrap_or_default();
-        let sum: f64 = self.walls.iter().map(|wall| S::cone(wall, &apex)).sum();
+        let sum: f64 = self
+            .walls
+            .iter()
+            .map(|wall| S::cone_measure(wall, &apex))
+            .sum();
         sum.max(0.0)
     }
 

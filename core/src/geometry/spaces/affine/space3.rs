@@ -5,9 +5,9 @@ use std::sync::Arc;
 use num_bigint::BigInt;
 
 use super::Affine;
-use crate::arith::bounds::REACH;
+use crate::arith::bounds::MAX_COORDINATE;
 use crate::geometry::cell::Cell;
-use crate::geometry::doubles::vector::{cross, dot, less};
+use crate::geometry::doubles::vector::{cross, difference, dot};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon};
 use crate::geometry::side::Split;
@@ -27,7 +27,7 @@ fn plane_of(corners: &[Lattice]) -> Option<Plane> {
 fn area_vector(corners: &[[f64; 3]]) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for pair in corners.get(1..).unwrap_or_default().windows(2) {
-        let arm = |p: &[f64; 3]| less(p, &corners[0]);
+        let arm = |p: &[f64; 3]| difference(p, &corners[0]);
         let normal = cross(&arm(&pair[0]), &arm(&pair[1]));
         for i in 0..3 {
             sum[i] += normal[i];
@@ -38,7 +38,7 @@ fn area_vector(corners: &[[f64; 3]]) -> [f64; 3] {
 
 impl Affine for Dim3 {
     const EVERYTHING: Cell = Cell::UNIVERSE;
-    const REACH: i64 = REACH - 1;
+    const MAX_COORDINATE: i64 = MAX_COORDINATE - 1;
 
     fn fragment(corners: &[Lattice]) -> Option<Polygon> {
         let support = Arc::new(plane_of(corners)?);
@@ -61,14 +61,15 @@ impl Affine for Dim3 {
     }
 
     fn axis_cut(axis: usize, at: i64) -> Option<Arc<Plane>> {
-        (axis < 3 && at.abs() <= Self::REACH).then(|| Arc::new(Plane::axis_cut(axis, 2 * at)))
+        (axis < 3 && at.abs() <= Self::MAX_COORDINATE)
+            .then(|| Arc::new(Plane::axis_cut(axis, 2 * at)))
     }
 
     fn corners(piece: &Polygon) -> Vec<[f64; 3]> {
         piece.corners().iter().map(|c| c.at.approx()).collect()
     }
 
-    fn original(piece: &Polygon, facet: &[Lattice], seams: &[bool]) -> Vec<bool> {
+    fn original_edges(piece: &Polygon, facet: &[Lattice], seams: &[bool]) -> Vec<bool> {
         let on_edge = |carrier: &Carrier| match carrier {
             Carrier::Edge(edge) => facet
                 .iter()
@@ -91,11 +92,11 @@ impl Affine for Dim3 {
         dot(&normal, &normal).sqrt() / 2.0
     }
 
-    fn cone(piece: &Polygon, apex: &[f64; 3]) -> f64 {
+    fn cone_measure(piece: &Polygon, apex: &[f64; 3]) -> f64 {
         let corners = Self::corners(piece);
         let Some(first) = corners.first() else {
             return 0.0;
         };
-        dot(&less(first, apex), &area_vector(&corners)) / 6.0
+        dot(&difference(first, apex), &area_vector(&corners)) / 6.0
     }
 }

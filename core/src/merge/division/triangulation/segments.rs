@@ -6,14 +6,14 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::{Defect, Place, Run, Triangulation, NONE};
+use super::{Defect, EdgeSegment, ProjectedPoint, Triangulation, NONE};
 use crate::arith::Sign;
 use crate::geometry::plane::Plane;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 
 /// The first section of the path of a segment through the triangulation.
-enum Way {
+enum PathSection {
     /// The path reaches this point and crosses only these edges, given by their end points, none of which is
     /// part of a segment.
     Free(u32, Vec<[u32; 2]>),
@@ -22,7 +22,7 @@ enum Way {
 }
 
 /// How the path of a segment leaves a point.
-enum Start {
+enum PathStart {
     /// It crosses an edge of a triangle at the point: the triangle, and the index of the edge.
     Edge(u32, usize),
     /// It runs along the edge to this point.
@@ -53,14 +53,14 @@ impl Triangulation {
                 at = goal;
                 continue;
             }
-            match self.way(at, goal, cut)? {
-                Way::Free(end, crossed) => {
+            match self.path_section(at, goal, cut)? {
+                PathSection::Free(end, crossed) => {
                     self.remove(crossed, [at, end], cut);
                     let edges = self.edges_between(at, end).ok_or(Defect)?;
                     self.mark(edges, segment)?;
                     at = end;
                 }
-                Way::Blocked(cell, edge) => {
+                PathSection::Blocked(cell, edge) => {
                     let mark = self.cells[cell as usize].marks[edge];
                     let (other, _) = self.along(mark).next().ok_or(Defect)?;
                     let point = self.add(meet(other).ok_or(Defect)?, [NONE; 2]);
@@ -78,7 +78,7 @@ impl Triangulation {
         let is_turned = mark < 0;
         let mut next = mark.unsigned_abs();
         std::iter::from_fn(move || {
-            let run = self.runs[next.checked_sub(1)? as usize];
+            let run = self.edge_segments[next.checked_sub(1)? as usize];
             next = run.before.unsigned_abs();
             Some((run.segment, run.is_forward != is_turned))
         })
@@ -96,13 +96,13 @@ impl Triangulation {
         let before = known(&edges[0])
             .or_else(|| known(&edges[1]).map(|m| -m))
             .unwrap_or(0);
-        self.runs.push(Run {
+        self.edge_segments.push(EdgeSegment {
             segment,
             is_forward: before >= 0,
             before,
         });
         let sign = if before < 0 { -1 } else { 1 };
-        let mark = i32::try_from(self.runs.len()).map_err(|_| Defect)? * sign;
+        let mark = i32::try_from(self.edge_segments.len()).map_err(|_| Defect)? * sign;
         for (at, mark) in edges.into_iter().zip([mark, -mark]) {
             if let Some((cell, edge)) = at {
                 self.cells[cell as usize].marks[edge] = mark;
@@ -112,19 +112,19 @@ impl Triangulation {
     }
 
     /// Returns the first section of the path from one point to another that no edge connects.
-    fn way(&self, from: u32, to: u32, cut: &Plane) -> Result<Way, Defect> {
+    fn path_section(&self, from: u32, to: u32, cut: &Plane) -> Result<PathSection, Defect> {
         let (mut at, mut edge) = match self.first_crossed(from, to, cut)? {
-            Start::Edge(cell, edge) => (cell, edge),
-            Start::Along(point) => return Ok(Way::Free(point, Vec::new())),
+            PathStart::Edge(cell, edge) => (cell, edge),
+            PathStart::Along(point) => return Ok(PathSection::Free(point, Vec::new())),
         };
         let mut crossed = Vec::new();
         loop {
             poll();
             let cell = self.cells[at as usize];
             if cell.marks[edge] != 0 {
-                return Ok(Way::Blocked(at, edge));
+                return Ok(PathSection::Blocked(at, edge));
             }
-            let across = cell.mates[edge];
+            let across = cell.neighbours[edge];
             if across == NONE {
                 return Err(Defect);
             }
@@ -132,11 +132,11 @@ impl Triangulation {
             let back = self.edge_to(across, at);
             let next = self.cells[across as usize].corners[(back + 2) % 3];
             if next == to {
-                return Ok(Way::Free(to, crossed));
+                return Ok(PathSection::Free(to, crossed));
             }
             at = across;
             edge = match self.turn_beside(cut, [from, to, next]) {
-                Sign::Zero => return Ok(Way::Free(next, crossed)),
+                Sign::Zero => return Ok(PathSection::Free(next, crossed)),
                 Sign::Positive => (back + 1) % 3,
                 Sign::Negative => (back + 2) % 3,
             };
@@ -144,18 +144,18 @@ impl Triangulation {
     }
 
     /// Returns the first edge that the path from one point to another crosses or runs along.
-    fn first_crossed(&self, from: u32, to: u32, cut: &Plane) -> Result<Start, Defect> {
+    fn first_crossed(&self, from: u32, to: u32, cut: &Plane) -> Result<PathStart, Defect> {
         for (number, k) in self.fan(from) {
             let corners = self.cells[number as usize].corners;
             let [right, left] = [1, 2].map(|i| corners[(k + i) % 3]);
             let sides = [right, left].map(|corner| self.turn_beside(cut, [from, to, corner]));
             for (corner, side) in [right, left].into_iter().zip(sides) {
                 if side == Sign::Zero && self.is_ahead(from, to, corner) {
-                    return Ok(Start::Along(corner));
+                    return Ok(PathStart::Along(corner));
                 }
             }
             if sides == [Sign::Negative, Sign::Positive] {
-                return Ok(Start::Edge(number, (k + 1) % 3));
+                return Ok(PathStart::Edge(number, (k + 1) % 3));
             }
         }
         Err(Defect)
@@ -163,9 +163,9 @@ impl Triangulation {
 
     /// Returns true if a point of the line through `from` and `to` lies on the same side of `from` as `to`.
     fn is_ahead(&self, from: u32, to: u32, point: u32) -> bool {
-        let [from, to, point] = [from, to, point].map(|p| &self.places[p as usize]);
+        let [from, to, point] = [from, to, point].map(|p| &self.points[p as usize]);
         let axis = from.vertex.axis_to(&to.vertex);
-        let order = |p: &Place| from.vertex.compare_along(&p.vertex, axis);
+        let order = |p: &ProjectedPoint| from.vertex.compare_along(&p.vertex, axis);
         order(point) == order(to)
     }
 
@@ -243,8 +243,8 @@ mod tests {
     fn all_segments_between_points_become_edges() {
         for k in 0..200i64 {
             let mut cells = face();
-            let places = (0..12).map(|i| [1 + (k * 5 + i * 17) % 31, 1 + (k * 3 + i * 11) % 29]);
-            let points: Vec<u32> = places
+            let positions = (0..12).map(|i| [1 + (k * 5 + i * 17) % 31, 1 + (k * 3 + i * 11) % 29]);
+            let points: Vec<u32> = positions
                 .map(|p| cells.insert(vertex(p)).expect("inside"))
                 .collect();
             let pairs = points

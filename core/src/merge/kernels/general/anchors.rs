@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use super::scene::{is_well_inside, Element, Name, Place, Scene, Triangle};
+use super::scene::{is_well_inside, Element, ElementKind, PointName, Scene, Triangle};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::{Carrier, Corner, Polygon};
@@ -14,27 +14,28 @@ use crate::geometry::vertices::VertexTable;
 use crate::mesh::handle::{Slot, VertexId};
 use crate::tree::node::Part;
 
-/// A point inside the cell that several elements of an operand may share.
+/// A point inside the cell at which the faces of one operand, or pieces of its cut faces, may meet.
 #[derive(Clone)]
 pub(super) struct Anchor {
-    pub(super) name: Name,
-    pub(super) place: Spot,
+    pub(super) name: PointName,
+    pub(super) position: AnchorPosition,
 }
 
-/// The position of an anchor.
+/// The position of an anchor (a point at which faces of one operand may meet): a lattice point or a
+/// constructed point.
 #[derive(Clone)]
-pub(super) enum Spot {
+pub(super) enum AnchorPosition {
     Lattice(Lattice),
     Exact(Arc<Vertex>),
 }
 
 /// Gives names to the corners of parts of faces; equal points of different parts get the same name.
-pub(super) struct Names<'a> {
+pub(super) struct PointNames<'a> {
     parts: &'a [(&'a Arc<Part>, Slot)],
     points: VertexTable,
 }
 
-impl<'a> Names<'a> {
+impl<'a> PointNames<'a> {
     /// Starts to name the corners of all parts in a scene.
     pub(super) fn of(scene: &'a Scene) -> Self {
         Self {
@@ -47,63 +48,68 @@ impl<'a> Names<'a> {
         let (part, slot) = self.parts[part];
         let own = vertex.as_lattice().and_then(|p| vertex_at(part, p));
         let name = match own {
-            Some(vertex) => Name::Vertex(slot, vertex),
-            None => Name::Point(self.points.number(vertex)),
+            Some(vertex) => PointName::Vertex(slot, vertex),
+            None => PointName::Point(self.points.number_of(vertex)),
         };
-        let place = Spot::Exact(Arc::clone(vertex));
-        Anchor { name, place }
+        let position = AnchorPosition::Exact(Arc::clone(vertex));
+        Anchor { name, position }
     }
 }
 
 /// Returns the vertex of a part's face at a lattice point; `None` if the face has no corner there.
-fn vertex_at(part: &Part, place: &Lattice) -> Option<VertexId> {
+fn vertex_at(part: &Part, position: &Lattice) -> Option<VertexId> {
     let mesh = part.source.mesh()?;
-    let corner = mesh.corners(part.face).iter().position(|c| c == place)?;
+    let corner = mesh.corners(part.face).iter().position(|c| c == position)?;
     Some(mesh.vertices_of(part.face)[corner])
 }
 
 impl Element<'_> {
-    /// Returns the corners of the element inside the cell, which other elements of the operand may share.
-    pub(super) fn anchors(&self, cell: &Cell, names: &mut Names) -> Vec<Anchor> {
-        match &self.place {
-            Place::Face(triangle) => self
+    /// Returns the corners inside the cell of this face, or piece of a cut face, at which other faces of the
+    /// operand may meet it.
+    pub(super) fn anchors(&self, cell: &Cell, names: &mut PointNames) -> Vec<Anchor> {
+        match &self.kind {
+            ElementKind::Face(triangle) => self
                 .vertices_in(cell)
                 .map(|i| Anchor::at_vertex(triangle, i))
                 .collect(),
-            Place::Piece(part, shape) => {
+            ElementKind::Piece(part, shape) => {
                 let corners = shape.polygon.corners().iter().map(|c| &c.at);
                 corners
                     .filter(|v| is_well_inside(v, cell))
                     .map(|v| names.anchor(*part, v))
                     .collect()
             }
-            Place::Part(number, apart) => {
+            ElementKind::Part(number, apart) => {
                 let corners = apart.part().edges.iter().map(|e| &e.from);
                 corners
                     .filter(|v| is_well_inside(v, cell))
                     .map(|v| names.anchor(*number, v))
                     .collect()
             }
-            Place::Plane(..) => Vec::new(),
+            ElementKind::Plane(..) => Vec::new(),
         }
     }
 
-    /// Returns the points in which edges of the element leave the cell, which neighbouring elements share;
-    /// `clipped` is the part of the element in the cell.
-    pub(super) fn anchors_at_walls(&self, clipped: &Polygon, names: &mut Names) -> Vec<Anchor> {
+    /// Returns the points in which edges of this face, or piece of a cut face, leave the cell, and which
+    /// neighbouring faces share; `clipped` is its part in the cell.
+    pub(super) fn anchors_at_walls(
+        &self,
+        clipped: &Polygon,
+        names: &mut PointNames,
+    ) -> Vec<Anchor> {
         let corners = clipped.corners();
         let n = corners.len();
-        match &self.place {
-            Place::Face(triangle) => {
+        match &self.kind {
+            ElementKind::Face(triangle) => {
                 let at_wall =
                     |i: usize| Anchor::at_wall(triangle, &corners[(i + n - 1) % n], &corners[i]);
                 (0..n).filter_map(at_wall).collect()
             }
-            Place::Piece(part, _) => {
+            ElementKind::Piece(part, _) => {
                 let mut at_corner = |c: &Corner| names.anchor(*part, &c.at);
                 corners.iter().map(&mut at_corner).collect()
             }
-            Place::Plane(..) | Place::Part(..) => Vec::new(),
+            ElementKind::Plane(..) | ElementKind::Part(..) => Vec::new(),
         }
     }
 }
@@ -111,13 +117,13 @@ impl Element<'_> {
 impl Anchor {
     fn at_vertex(triangle: &Triangle, corner: usize) -> Self {
         Self {
-            name: triangle.name(corner),
-            place: Spot::Lattice(triangle.corners[corner]),
+            name: triangle.point_name(corner),
+            position: AnchorPosition::Lattice(triangle.corners[corner]),
         }
     }
 
-    /// Returns an anchor at a corner of a clipped face in which one of the face's edges meets a wall of the
-    /// cell; `None` for other corners.
+    /// Returns, as an anchor, the point in which an edge of a face meets a wall of the cell at the given
+    /// corner of the clipped face; `None` if the corner is no such point.
     #[allow(clippy::cast_possible_truncation, reason = "one of three axes")]
     fn at_wall(triangle: &Triangle, before: &Corner, corner: &Corner) -> Option<Self> {
         let (edge, wall) = match (&before.edge, &corner.edge) {
@@ -129,16 +135,16 @@ impl Anchor {
         let wall = 2 * axis as u8 + u8::from(wall.normal()[axis] > 0);
         let [a, b] = triangle.ends_of([edge.0, edge.1])?;
         Some(Self {
-            name: Name::Crossing(triangle.face.slot, [a.min(b), a.max(b)], wall),
-            place: Spot::Exact(Arc::clone(&corner.at)),
+            name: PointName::Crossing(triangle.face.slot, [a.min(b), a.max(b)], wall),
+            position: AnchorPosition::Exact(Arc::clone(&corner.at)),
         })
     }
 
-    /// Returns true if a corner is at the anchor's position.
+    /// Returns true if a corner is at this point.
     pub(super) fn is_at(&self, corner: &Arc<Vertex>) -> bool {
-        match &self.place {
-            Spot::Lattice(p) => corner.as_lattice() == Some(p),
-            Spot::Exact(vertex) => Arc::ptr_eq(vertex, corner),
+        match &self.position {
+            AnchorPosition::Lattice(p) => corner.as_lattice() == Some(p),
+            AnchorPosition::Exact(vertex) => Arc::ptr_eq(vertex, corner),
         }
     }
 }
@@ -163,7 +169,7 @@ mod tests {
     #[test]
     fn equal_corners_have_one_name_however_they_are_made() {
         let part = part();
-        let mut names = Names {
+        let mut names = PointNames {
             parts: &[(&part, Slot(0))],
             points: VertexTable::default(),
         };
@@ -176,7 +182,7 @@ mod tests {
         // A vertex of the face has the same name as for whole faces.
         let mesh = part.source.mesh().expect("a mesh");
         let (corner, vertex) = (mesh.corners(part.face)[1], mesh.vertices_of(part.face)[1]);
-        assert!(name(Vertex::lattice(corner)) == Name::Vertex(Slot(0), vertex));
+        assert!(name(Vertex::lattice(corner)) == PointName::Vertex(Slot(0), vertex));
     }
 
     /// A small cell around a corner of a solid contains this corner, and edges that leave the cell.
@@ -186,7 +192,7 @@ mod tests {
         let (operands, cell) = (shared.operands(), Cell::around(&[0; 3], &[3; 3]));
         let scene = Scene::new(&cell, &operands[..1], &shared.sources);
         let faces = &scene.elements[..3];
-        let mut names = Names::of(&scene);
+        let mut names = PointNames::of(&scene);
         assert!(faces
             .iter()
             .all(|face| face.anchors(&cell, &mut names).len() == 1));

@@ -8,7 +8,7 @@ use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{straddle, Corner, Polygon, Sides};
 use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
-use crate::geometry::winding::path::polygon_on_path;
+use crate::geometry::winding::path::polygon_change_on_path;
 
 /// A convex polygon and, computed at first use, the planes through its sides.
 #[derive(Debug)]
@@ -34,12 +34,12 @@ impl<'a> Face<'a> {
 
     /// Returns the change of the winding number where a path crosses the face, or that it is doubtful;
     /// `geometry::winding::path` describes the path.
-    pub fn on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
-        polygon_on_path(self.polygon.support(), || self.rims(), from, to)
+    pub fn change_on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
+        polygon_change_on_path(self.polygon.support(), || self.rims(), from, to)
     }
 
     /// Returns true if a point of the face's plane lies in the face or on its border.
-    fn holds(&self, point: &Vertex) -> bool {
+    fn contains(&self, point: &Vertex) -> bool {
         self.rims()
             .iter()
             .all(|rim| point.side_of(rim) != Side::Plus)
@@ -50,7 +50,7 @@ impl<'a> Face<'a> {
 /// it, or segments contradict each other. Local trees solve such cells.
 ///
 /// The position is certain, unlike `Filtered::Doubtful`: computing with more digits would not change it.
-pub(super) struct Special;
+pub(super) struct Degenerate;
 
 /// How a face meets a polygon.
 #[derive(Debug)]
@@ -61,7 +61,7 @@ pub enum Contact {
     /// the sides of the polygon's plane on which the face's corners lie.
     Crossing(Sides, Sides),
     /// The face may touch the polygon without crossing it.
-    Special,
+    Degenerate,
 }
 
 /// Returns how a face meets a polygon, by the sides of each plane on which the other's corners lie.
@@ -75,12 +75,12 @@ pub fn contact(polygon: &Polygon, face: &Face<'_>) -> Contact {
         return if apart || flat && lie_apart(polygon, &face.polygon) {
             Contact::None
         } else {
-            Contact::Special
+            Contact::Degenerate
         };
     }
     let mut corners = ours.iter().zip(polygon.corners());
-    if corners.any(|(side, corner)| *side == Side::On && face.holds(&corner.at)) {
-        return Contact::Special;
+    if corners.any(|(side, corner)| *side == Side::On && face.contains(&corner.at)) {
+        return Contact::Degenerate;
     }
     if crossed && straddle(&ours) == (true, true) {
         return Contact::Crossing(ours, theirs);
@@ -107,7 +107,7 @@ mod tests {
     fn a_face_in_the_plane_of_the_polygon_is_special() {
         let polygon = triangle([[0, 0, 0], [8, 0, 0], [0, 8, 0]]);
         let flat = Face::new(Cow::Owned(triangle([[1, 1, 0], [2, 1, 0], [1, 2, 0]])));
-        assert!(matches!(contact(&polygon, &flat), Contact::Special));
+        assert!(matches!(contact(&polygon, &flat), Contact::Degenerate));
     }
 
     #[test]
@@ -117,10 +117,10 @@ mod tests {
         let flat = [[9, 1, 0], [12, 1, 0], [9, 4, 0]];
         assert!(matches!(meets(flat), Contact::None));
         let touching = [[8, 0, 0], [12, 1, 0], [9, 4, 0]];
-        assert!(matches!(meets(touching), Contact::Special));
+        assert!(matches!(meets(touching), Contact::Degenerate));
         let upright = [[9, 1, 0], [9, 4, 0], [9, 2, 5]];
         assert!(matches!(meets(upright), Contact::None));
         let across = [[4, -1, 0], [4, 2, 0], [4, 1, 5]];
-        assert!(matches!(meets(across), Contact::Special));
+        assert!(matches!(meets(across), Contact::Degenerate));
     }
 }

@@ -3,33 +3,37 @@
 use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;
 
-use super::fates::Fate;
-use super::scene::{Element, Place, Scene};
-use super::{Labels, OnPieces};
-use crate::merge::kernels::kept::Kept;
-use crate::merge::kernels::stays::{kept, Owner, Stays};
+use super::cut_status::CutStatus;
+use super::scene::{Element, ElementKind, Scene};
+use super::{Labels, PieceLabels};
+use crate::merge::kernels::kept::KeptPart;
+use crate::merge::kernels::stays::{kept, Owner, StayingRegion};
 use crate::mesh::handle::{FaceId, SourceFace};
 
 impl Scene<'_> {
-    /// Returns the parts of all elements that bound the result, given the labels of their pieces; `value`
-    /// returns the expression's value for a label.
+    /// Returns the parts of all faces in the cell that bound the result, given how each face is cut and in
+    /// which operands its parts lie (`labels`); `value` returns the expression's value for a label.
     pub(super) fn keep(
         &self,
-        fates: Vec<Fate>,
-        labels: &[OnPieces],
+        statuses: Vec<CutStatus>,
+        labels: &[PieceLabels],
         value: &mut impl FnMut(Labels) -> bool,
-    ) -> Vec<Kept> {
-        let present = fates.into_iter().enumerate();
-        let present = present.filter(|(_, fate)| !matches!(fate, Fate::Absent));
+    ) -> Vec<KeptPart> {
+        let present = statuses.into_iter().enumerate();
+        let present = present.filter(|(_, status)| !matches!(status, CutStatus::Absent));
         let mut values = Values::of(value);
-        let settled = present.map(|(i, fate)| {
+        let settled = present.map(|(i, status)| {
             let element = &self.elements[i];
-            let owner = match &element.place {
-                Place::Face(t) => Owner::Face(t.face),
-                Place::Plane(slot, _) => Owner::Face(SourceFace::new(*slot, FaceId::ONLY)),
-                Place::Piece(part, _) | Place::Part(part, _) => Owner::Part(*part),
+            let owner = match &element.kind {
+                ElementKind::Face(t) => Owner::Face(t.face),
+                ElementKind::Plane(slot, _) => Owner::Face(SourceFace::new(*slot, FaceId::ONLY)),
+                ElementKind::Piece(part, _) | ElementKind::Part(part, _) => Owner::Part(*part),
             };
-            (i, owner, element.stays(fate, &labels[i], &mut values))
+            (
+                i,
+                owner,
+                element.staying_regions(status, &labels[i], &mut values),
+            )
         });
         kept(settled, &self.parts, |i| {
             self.elements[i].polygon_in(self.cell)
@@ -38,44 +42,45 @@ impl Scene<'_> {
 }
 
 impl Element<'_> {
-    /// Returns the parts of the element that bound the result in its source's orientation and in the opposite
-    /// one, given the labels of its pieces.
-    fn stays(
+    /// Returns the parts of the face that bound the result in its source's orientation and in the opposite
+    /// one; `labels` says for each part of the face in which operands it lies.
+    fn staying_regions(
         &self,
-        fate: Fate,
+        status: CutStatus,
         labels: &[Labels],
         values: &mut Values<impl FnMut(Labels) -> bool>,
-    ) -> [Stays; 2] {
+    ) -> [StayingRegion; 2] {
         let mut side = |others: &Labels| self.side(*others, values);
         if let [only] = labels {
-            return side(only).map_or([Stays::Nothing, Stays::Nothing], all_on);
+            return side(only).map_or([StayingRegion::Nothing, StayingRegion::Nothing], all_on);
         }
         let sides: SmallVec<[Option<usize>; 4]> = labels.iter().map(side).collect();
         match sides[0] {
             Some(first) if sides.iter().all(|s| *s == Some(first)) => all_on(first),
-            _ => stays_of_parts(fate, &sides),
+            _ => staying_regions_of_parts(status, &sides),
         }
     }
 
-    /// Returns the orientation in which a piece of the element stays, given the bits of the other operands: 0
-    /// for the source's orientation, 1 for the opposite one; `None` if the piece goes.
+    /// Returns the orientation in which a part of the face stays, given the bits of the other operands: 0 for
+    /// the source's orientation, 1 for the opposite one; `None` if it does not stay.
     fn side(
         &self,
         others: Labels,
         values: &mut Values<impl FnMut(Labels) -> bool>,
     ) -> Option<usize> {
         let own: Labels = 1 << self.operand;
-        let [inside, outside] = values.on_sides(own, others & !own);
+        let [inside, outside] = values.values_on_sides(own, others & !own);
         let turned = outside != (self.weight < 0);
         (inside != outside).then_some(usize::from(turned))
     }
 }
 
-/// A cache of an expression's values for labels.
+/// A cache of an expression's values for labels, each of which has a bit for every operand: whether a point
+/// is inside it.
 struct Values<F> {
     value: F,
     known: HashMap<Labels, bool>,
-    /// The last request and its result: consecutive elements mostly ask for the same.
+    /// The last request and its result: consecutive faces mostly ask for the same.
     last: Option<((Labels, Labels), [bool; 2])>,
 }
 
@@ -90,7 +95,7 @@ impl<F: FnMut(Labels) -> bool> Values<F> {
 
     /// Returns the expression's values inside and outside the operand with the bit `own`, given the bits of
     /// the other operands.
-    fn on_sides(&mut self, own: Labels, others: Labels) -> [bool; 2] {
+    fn values_on_sides(&mut self, own: Labels, others: Labels) -> [bool; 2] {
         if let Some((_, found)) = self.last.filter(|(asked, _)| *asked == (own, others)) {
             return found;
         }
@@ -103,25 +108,25 @@ impl<F: FnMut(Labels) -> bool> Values<F> {
     }
 }
 
-/// Returns that all of an element stays in the orientation `side`, and nothing in the other one.
-fn all_on(side: usize) -> [Stays; 2] {
-    let mut stays = [Stays::Nothing, Stays::Nothing];
-    stays[side] = Stays::All;
+/// Returns that all of a face stays in the orientation `side`, and nothing in the other one.
+fn all_on(side: usize) -> [StayingRegion; 2] {
+    let mut stays = [StayingRegion::Nothing, StayingRegion::Nothing];
+    stays[side] = StayingRegion::All;
     stays
 }
 
-/// Returns the parts of a divided element that bound the result in each orientation; `sides` has for each
-/// part the orientation in which it bounds the result, or `None`.
-fn stays_of_parts(fate: Fate, sides: &[Option<usize>]) -> [Stays; 2] {
-    let Fate::Cut(mut cut) = fate else {
-        return [Stays::Nothing, Stays::Nothing];
+/// Returns the parts of a divided face that bound the result in each orientation; `sides` has for each part
+/// the orientation in which it bounds the result, or `None`.
+fn staying_regions_of_parts(status: CutStatus, sides: &[Option<usize>]) -> [StayingRegion; 2] {
+    let CutStatus::Cut(mut cut) = status else {
+        return [StayingRegion::Nothing, StayingRegion::Nothing];
     };
     [0, 1].map(|side| {
         let stays: SmallVec<[bool; 4]> = sides.iter().map(|s| *s == Some(side)).collect();
         if stays.contains(&true) {
-            Stays::Outline(cut.trace.outline(&stays))
+            StayingRegion::Outline(cut.trace.outline(&stays))
         } else {
-            Stays::Nothing
+            StayingRegion::Nothing
         }
     })
 }
@@ -137,9 +142,9 @@ mod tests {
             asked.push(labels);
             labels == 0b11
         });
-        assert_eq!(values.on_sides(0b01, 0b00), [false, false]);
-        assert_eq!(values.on_sides(0b01, 0b10), [true, false]);
-        assert_eq!(values.on_sides(0b10, 0b01), [true, false]);
+        assert_eq!(values.values_on_sides(0b01, 0b00), [false, false]);
+        assert_eq!(values.values_on_sides(0b01, 0b10), [true, false]);
+        assert_eq!(values.values_on_sides(0b10, 0b01), [true, false]);
         assert_eq!(asked, [0b01, 0b00, 0b11, 0b10]);
     }
 }

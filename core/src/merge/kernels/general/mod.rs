@@ -7,9 +7,9 @@
 
 mod anchors;
 mod contact;
-mod fates;
+mod cut_status;
 mod keep;
-mod known;
+mod known_labels;
 mod labels;
 mod points;
 mod scene;
@@ -18,7 +18,7 @@ mod trace;
 
 use smallvec::SmallVec;
 
-use super::kept::{assemble, Kept};
+use super::kept::{assemble, KeptPart};
 use super::problem::{CellProblem, Kernel};
 use crate::merge::rule::Rule;
 use crate::tree::node::Node;
@@ -31,8 +31,9 @@ pub const MAX_OPERANDS: usize = 64;
 /// The label of a region: for each operand of the cell a bit that says whether the region is inside it.
 type Labels = u64;
 
-/// The labels of an element's pieces: one if nothing cuts the element, otherwise usually two.
-type OnPieces = SmallVec<[Labels; 2]>;
+/// The labels of the parts into which other operands cut a face: one if nothing cuts it, otherwise usually
+/// two.
+type PieceLabels = SmallVec<[Labels; 2]>;
 
 /// The kernel that divides only faces that truly cross, and needs no trees.
 ///
@@ -66,16 +67,16 @@ impl Kernel for GeneralPosition {
 
 /// Returns the parts of the operands' faces that bound the result, and the expression's value at the cell's
 /// corner (1 for inside); `None` if the kernel refuses the cell.
-fn kept_and_corner(scene: &Scene, problem: &CellProblem) -> Option<(Vec<Kept>, i32)> {
+fn kept_and_corner(scene: &Scene, problem: &CellProblem) -> Option<(Vec<KeptPart>, i32)> {
     let operands = &problem.operands;
-    let fates = scene.fates()?;
-    let labels = scene.labels(&fates)?;
-    let place = |number: u32| operands.partition_point(|l| l.number < number);
+    let statuses = scene.cut_statuses()?;
+    let labels = scene.labels(&statuses)?;
+    let operand_index = |number: u32| operands.partition_point(|l| l.number < number);
     let scratch = &mut Vec::new();
     let expression = problem.expression;
-    let mut value = |bits: Labels| expression.value(|k| bits >> place(k) & 1 == 1, scratch);
+    let mut value = |bits: Labels| expression.value(|k| bits >> operand_index(k) & 1 == 1, scratch);
     let corner = i32::from(value(scene.at_corner()));
-    let kept = scene.keep(fates, &labels, &mut value);
+    let kept = scene.keep(statuses, &labels, &mut value);
     Some((kept, corner))
 }
 

@@ -8,10 +8,10 @@ use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon};
 use crate::geometry::vertex::Vertex;
 
-/// The points in which edges cross the planes of elements, as far as computed.
+/// The points in which edges cross the planes of faces, as far as computed.
 #[derive(Default)]
 pub(super) struct Points {
-    /// The points by the name of the edge and the number of the crossed element.
+    /// The points by the name of the edge and the number of the crossed face.
     on_edges: HashMap<(EdgeName, u32), Point>,
 }
 
@@ -21,7 +21,7 @@ struct Point {
     _planes: Option<[Arc<Plane>; 2]>,
 }
 
-/// The name of an edge, the same for all elements that have this edge.
+/// The name of an edge, the same for all faces in the cell that have this edge.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum EdgeName {
     /// The ends of a lattice edge, the lower one first in lexicographic order.
@@ -47,8 +47,8 @@ impl EdgeName {
 }
 
 impl Points {
-    /// Returns the point in which an edge of a polygon crosses the plane of the element with the given
-    /// number; `None` if they are parallel.
+    /// Returns the point in which an edge of a polygon crosses the plane of the face with the given number;
+    /// `None` if they are parallel.
     pub(super) fn at(
         &mut self,
         (polygon, edge): (&Polygon, usize),

@@ -15,57 +15,58 @@ use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
-use crate::merge::kernels::problem::Listed;
-use crate::merge::lists::list::{List, PartRecord, Record, Sources};
-use crate::merge::pairs::Swept;
+use crate::merge::kernels::problem::ListedOperand;
+use crate::merge::lists::list::{FaceRecord, List, PartRecord, Sources};
+use crate::merge::pairs::BoundedElement;
 use crate::mesh::handle::{Slot, SourceFace, VertexId};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
 
-/// The elements of all operands in a cell.
+/// The faces, and convex pieces of cut faces, of all operands in a cell.
 pub(super) struct Scene<'a> {
     pub(super) cell: &'a Cell,
     /// The cell's low corner, in half lattice steps.
     pub(super) corner: Lattice,
     /// The operands' winding numbers at the cell's low corner.
     pub(super) corners: Vec<i32>,
-    /// The elements, sorted by operand.
+    /// The faces and convex pieces of cut faces, sorted by operand.
     pub(super) elements: Vec<Element<'a>>,
-    /// For each operand the index of the end of its elements.
+    /// For each operand the index in `elements` after its last face or piece.
     ends: Vec<usize>,
-    /// For each operand the low and the high corner of a box around its elements.
+    /// For each operand the low and the high corner of a box around its faces.
     pub(super) boxes: Vec<[Lattice; 2]>,
-    /// The listed parts of faces, with the slots of their sources.
+    /// The parts of cut faces that the operands list, with the slots of their sources.
     pub(super) parts: Vec<(&'a Arc<Part>, Slot)>,
     /// The index of an operand for which a winding number other than 0 and 1 was found.
     pub(super) overlapping: OnceCell<usize>,
 }
 
-/// A whole face, or a part of a face or a convex piece of a part.
+/// A whole face of an operand, or a part of a cut face, or a convex piece of such a part, in a cell.
 pub(super) struct Element<'a> {
     pub(super) operand: usize,
     /// The winding number behind the face minus the number in front of it.
     pub(super) weight: i32,
-    pub(super) place: Place<'a>,
-    /// True if all of the element is known to lie in the cell.
+    pub(super) kind: ElementKind<'a>,
+    /// True if the whole face, part or piece is known to lie in the cell.
     inside: bool,
     pub(super) low: Lattice,
     pub(super) high: Lattice,
 }
 
-/// The kind of an element, with its geometry.
-pub(super) enum Place<'a> {
+/// The geometry of a whole face of an operand, or of a part or piece of a cut face.
+pub(super) enum ElementKind<'a> {
     Face(Triangle<'a>),
     /// The face of a half-space: the slot of the half-space, and the part of its plane in the cell.
     Plane(Slot, Box<Face<'a>>),
-    /// A convex piece of a part: the part's number in `Scene::parts`, and the piece.
+    /// A convex piece of a part of a cut face: the part's number in `Scene::parts`, and the piece.
     Piece(usize, Box<Face<'a>>),
-    /// A part whose box meets no box of another operand: the part's number in `Scene::parts`, and the part.
+    /// A part of a cut face whose box meets no box of another operand: the part's number in `Scene::parts`,
+    /// and the part.
     Part(usize, ApartPart<'a>),
 }
 
-/// A part that no face of another operand can cross; its convex pieces are computed only if a path may cross
-/// it.
+/// A part of a cut face that no face of another operand can cross; its convex pieces are computed only if a
+/// path may cross it.
 pub(super) struct ApartPart<'a> {
     record: &'a PartRecord,
     pieces: OnceCell<Vec<Face<'a>>>,
@@ -81,7 +82,7 @@ pub(super) struct Triangle<'a> {
 }
 
 impl<'a> Scene<'a> {
-    pub(super) fn new(cell: &'a Cell, operands: &'a [Listed], sources: &'a Sources) -> Self {
+    pub(super) fn new(cell: &'a Cell, operands: &'a [ListedOperand], sources: &'a Sources) -> Self {
         let mut scene = Self {
             cell,
             corner: cell.corner(),
@@ -112,14 +113,14 @@ impl<'a> Scene<'a> {
             let part = self.parts.len();
             let slot = sources.slot(&p.element.part.source);
             self.parts.push((&p.element.part, slot));
-            let inside = self.cell.holds(&p.element.part.home);
+            let inside = self.cell.contains(&p.element.part.home);
             if self.is_apart(operand, &p.element.part) {
                 let pieces = OnceCell::new();
                 let [low, high] = p.element.part.enclosing();
                 self.elements.push(Element {
                     operand,
                     weight: p.element.orientation.signed(1),
-                    place: Place::Part(part, ApartPart { record: p, pieces }),
+                    kind: ElementKind::Part(part, ApartPart { record: p, pieces }),
                     inside,
                     low,
                     high,
@@ -132,7 +133,10 @@ impl<'a> Scene<'a> {
                 self.elements.push(Element {
                     operand,
                     weight: p.element.orientation.signed(1),
-                    place: Place::Piece(part, Box::new(Face::new(Cow::Borrowed(&piece.polygon)))),
+                    kind: ElementKind::Piece(
+                        part,
+                        Box::new(Face::new(Cow::Borrowed(&piece.polygon))),
+                    ),
                     inside,
                     low,
                     high,
@@ -141,8 +145,8 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Returns true if the box around a part meets no other operand's box, and the part has a corner that
-    /// certainly lies in the cell.
+    /// Returns true if the box around a part of a cut face meets no other operand's box, and the part has a
+    /// corner that certainly lies in the cell.
     fn is_apart(&self, operand: usize, part: &Part) -> bool {
         let [low, high] = part.enclosing();
         let meets =
@@ -152,16 +156,16 @@ impl<'a> Scene<'a> {
         !others.map(|(_, other)| other).any(meets) && corners.any(|c| is_well_inside(c, self.cell))
     }
 
-    /// Returns a triangle that contains the element, for quick tests: an element apart from a face is apart
-    /// from the pieces of this face, too. The face of a half-space is never known to be apart.
-    pub(super) fn near(&self, element: &Element) -> NearTriangle {
-        let corners = match &element.place {
-            Place::Face(triangle) => Some(triangle.corners),
-            Place::Piece(part, _) | Place::Part(part, _) => {
+    /// Returns a triangle that contains the face or piece, for quick tests: what is apart from a face is
+    /// apart from the pieces of this face, too. The face of a half-space is never known to be apart.
+    pub(super) fn near_triangle(&self, element: &Element) -> NearTriangle {
+        let corners = match &element.kind {
+            ElementKind::Face(triangle) => Some(triangle.corners),
+            ElementKind::Piece(part, _) | ElementKind::Part(part, _) => {
                 let part = self.parts[*part].0;
                 part.source.mesh().map(|mesh| mesh.corners(part.face))
             }
-            Place::Plane(..) => None,
+            ElementKind::Plane(..) => None,
         };
         corners.map_or(NearTriangle::UNKNOWN, |c| NearTriangle::of(&c))
     }
@@ -181,19 +185,20 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// The name of a point that several elements of an operand may share.
+/// The name of a point that several faces of an operand may share.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Name {
+pub(super) enum PointName {
     /// A vertex of a mesh, by the mesh's slot and the vertex's number.
     Vertex(Slot, VertexId),
-    /// A corner of a part that is no vertex of its face, by a number for its exact position.
+    /// A corner of a part of a cut face that is no vertex of the face, by a number for its exact position.
     Point(u32),
     /// The point in which an edge of a mesh leaves the cell: the mesh's slot, the edge's ends, and the number
     /// of the wall, which is twice its axis, plus one for the upper wall.
     Crossing(Slot, [VertexId; 2], u8),
 }
 
-/// Returns the bounding box of the listed elements; if there are none, a box with low above high.
+/// Returns the bounding box of the listed faces and parts of faces; if there are none, a box with low above
+/// high.
 fn box_around(list: &List, sources: &Sources) -> [Lattice; 2] {
     let faces = list.records.iter();
     let faces = faces.map(|r| sources.get(r.slot()).face_box(r.face));
@@ -217,12 +222,12 @@ pub(super) fn is_well_inside(vertex: &Vertex, cell: &Cell) -> bool {
 }
 
 impl ApartPart<'_> {
-    /// Returns the part of a face.
+    /// Returns the part of a cut face.
     pub(super) fn part(&self) -> &Part {
         &self.record.element.part
     }
 
-    fn on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
+    fn change_on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
         let pieces = self.pieces.get_or_init(|| {
             let pieces = self.record.pieces().iter();
             pieces
@@ -232,7 +237,7 @@ impl ApartPart<'_> {
         let mut sum = 0;
         for piece in pieces {
             poll();
-            let Filtered::Certain(change) = piece.on_path(from, to) else {
+            let Filtered::Certain(change) = piece.change_on_path(from, to) else {
                 return Filtered::Doubtful;
             };
             sum += change;
@@ -243,8 +248,8 @@ impl ApartPart<'_> {
 
 impl Triangle<'_> {
     /// Returns the name of the vertex at a corner.
-    pub(super) fn name(&self, corner: usize) -> Name {
-        Name::Vertex(self.face.slot, self.vertices[corner])
+    pub(super) fn point_name(&self, corner: usize) -> PointName {
+        PointName::Vertex(self.face.slot, self.vertices[corner])
     }
 
     /// Returns the number of vertices of the face's mesh.
@@ -255,22 +260,23 @@ impl Triangle<'_> {
     /// Returns the vertices at the ends of one of the face's edges, given by its end points; `None` if an end
     /// is no corner of the face.
     pub(super) fn ends_of(&self, edge: [&Lattice; 2]) -> Option<[VertexId; 2]> {
-        let at = |place: &Lattice| self.corners.iter().position(|c| c == place);
+        let at = |point: &Lattice| self.corners.iter().position(|c| c == point);
         Some([self.vertices[at(edge[0])?], self.vertices[at(edge[1])?]])
     }
 }
 
 impl<'a> Element<'a> {
-    /// Makes the element of a listed face; `None` for the face of a half-space that misses the cell.
+    /// Makes the entry of a listed face for a scene; `None` for the face of a half-space that misses the
+    /// cell.
     fn of_record(
         operand: usize,
-        record: &Record,
+        record: &FaceRecord,
         cell: &Cell,
         sources: &'a Sources,
     ) -> Option<Self> {
         let source = sources.get(record.slot());
-        let place = match source.shape() {
-            Shape::Mesh(mesh) => Place::Face(Triangle {
+        let kind = match source.shape() {
+            Shape::Mesh(mesh) => ElementKind::Face(Triangle {
                 source,
                 face: SourceFace::new(record.slot(), record.face),
                 vertices: mesh.vertices_of(record.face),
@@ -279,34 +285,35 @@ impl<'a> Element<'a> {
             }),
             Shape::HalfSpace(plane) => {
                 let polygon = Polygon::span(plane, cell)?;
-                Place::Plane(record.slot(), Box::new(Face::new(Cow::Owned(polygon))))
+                ElementKind::Plane(record.slot(), Box::new(Face::new(Cow::Owned(polygon))))
             }
         };
         let (low, high) = source.face_box(record.face);
         Some(Self {
             operand,
             weight: record.orientation().signed(1),
-            place,
-            inside: cell.holds_box(&low, &high),
+            kind,
+            inside: cell.contains_box(&low, &high),
             low,
             high,
         })
     }
 
-    /// Returns the indices of the corners of a whole face that lie in the cell; none for other elements.
+    /// Returns the indices of the corners of a whole face that lie in the cell; none for a part or piece of a
+    /// face.
     pub(super) fn vertices_in(&self, cell: &Cell) -> impl Iterator<Item = usize> {
-        let inside = match &self.place {
-            Place::Face(_) if self.inside => [true; 3],
-            Place::Face(triangle) => triangle.corners.map(|p| cell.holds_box(&p, &p)),
-            Place::Plane(..) | Place::Piece(..) | Place::Part(..) => [false; 3],
+        let inside = match &self.kind {
+            ElementKind::Face(_) if self.inside => [true; 3],
+            ElementKind::Face(triangle) => triangle.corners.map(|p| cell.contains_box(&p, &p)),
+            ElementKind::Plane(..) | ElementKind::Piece(..) | ElementKind::Part(..) => [false; 3],
         };
         (0..3).filter(move |i| inside[*i])
     }
 
-    /// Returns the low and the high corner of the element's box, clipped to the cell extended by one step,
-    /// relative to the cell's low corner.
+    /// Returns the low and the high corner of the box around the face or piece, clipped to the cell extended
+    /// by one step, relative to the cell's low corner.
     pub(super) fn extent(&self, cell: &Cell) -> [Lattice; 2] {
-        if self.inside && matches!(self.place, Place::Face(_)) {
+        if self.inside && matches!(self.kind, ElementKind::Face(_)) {
             return [&self.low, &self.high].map(|p| each_axis(|i| p[i] - cell.low()[i]));
         }
         let (low, high) = (cell.low(), cell.high());
@@ -314,47 +321,48 @@ impl<'a> Element<'a> {
         [&self.low, &self.high].map(|p| each_axis(|i| within(p, i)))
     }
 
-    /// Returns the element in the form that the search for pairs uses.
-    pub(super) fn swept(&self, cell: &Cell) -> Swept {
+    /// Returns the face or piece in the form that the search for pairs uses.
+    pub(super) fn bounded(&self, cell: &Cell) -> BoundedElement {
         let origin = cell.low();
         let relative = |p: &Lattice| each_axis(|i| as_double(p[i] - origin[i]));
         let [low, high] = self.extent(cell);
-        Swept {
+        BoundedElement {
             operand: self.operand,
             low,
             high,
-            corners: match &self.place {
-                Place::Face(t) => Some(each_axis(|i| relative(&t.corners[i]))),
-                Place::Plane(..) | Place::Piece(..) | Place::Part(..) => None,
+            corners: match &self.kind {
+                ElementKind::Face(t) => Some(each_axis(|i| relative(&t.corners[i]))),
+                ElementKind::Plane(..) | ElementKind::Piece(..) | ElementKind::Part(..) => None,
             },
         }
     }
 
-    /// Returns true if the element is a part whose box meets no box of another operand.
+    /// Returns true if this is a part of a cut face whose box meets no box of another operand.
     pub(super) fn is_apart(&self) -> bool {
-        matches!(self.place, Place::Part(..))
+        matches!(self.kind, ElementKind::Part(..))
     }
 
-    /// Returns the change of the winding number where a path crosses the element, or that it is doubtful, as
-    /// [`Face::on_path`].
-    pub(super) fn on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
-        match &self.place {
-            Place::Part(_, part) => part.on_path(from, to),
+    /// Returns the change of the winding number where a path crosses the face or piece, or that it is
+    /// doubtful, as [`Face::change_on_path`].
+    pub(super) fn change_on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
+        match &self.kind {
+            ElementKind::Part(_, part) => part.change_on_path(from, to),
             _ => self
                 .shape()
-                .map_or(Filtered::Certain(0), |s| s.on_path(from, to)),
+                .map_or(Filtered::Certain(0), |s| s.change_on_path(from, to)),
         }
     }
 
-    /// Returns the element as a convex polygon; `None` for a part that is apart from all other operands.
+    /// Returns the face or piece as a convex polygon; `None` for a part that is apart from all other
+    /// operands.
     pub(super) fn shape(&self) -> Option<&Face<'a>> {
-        Some(match &self.place {
-            Place::Face(t) => t.shape.get_or_init(|| {
+        Some(match &self.kind {
+            ElementKind::Face(t) => t.shape.get_or_init(|| {
                 let plane = t.source.plane(t.face.id);
                 Box::new(Face::new(Cow::Owned(Polygon::triangle(&t.corners, plane))))
             }),
-            Place::Plane(_, shape) | Place::Piece(_, shape) => shape,
-            Place::Part(..) => return None,
+            ElementKind::Plane(_, shape) | ElementKind::Piece(_, shape) => shape,
+            ElementKind::Part(..) => return None,
         })
     }
 
@@ -371,7 +379,7 @@ impl<'a> Element<'a> {
 mod tests {
     use super::*;
     use crate::merge::expression::Term;
-    use crate::merge::kernels::general::fates::Fate;
+    use crate::merge::kernels::general::cut_status::CutStatus;
     use crate::merge::scenes::{crossing, made_of, tetrahedra, tetrahedron, Shared};
 
     #[test]
@@ -399,19 +407,19 @@ mod tests {
         // the first may meet the small one.
         let apart = |e: &&Element| e.is_apart();
         assert_eq!(scene.elements.iter().filter(apart).count(), 3);
-        let fates = scene.fates().expect("general position");
+        let statuses = scene.cut_statuses().expect("general position");
         let uncut = scene
             .elements
             .iter()
-            .zip(&fates)
+            .zip(&statuses)
             .filter(|(e, _)| e.is_apart());
         assert!(uncut
             .clone()
-            .all(|(_, fate)| matches!(fate, Fate::Uncut(_))));
+            .all(|(_, status)| matches!(status, CutStatus::Uncut(_))));
         let winding = |point: Lattice| {
             let point = Vertex::lattice(point);
             let crossed = scene.of_operand(0).iter().map(|e| {
-                let Filtered::Certain(change) = e.on_path(&scene.corner, &point) else {
+                let Filtered::Certain(change) = e.change_on_path(&scene.corner, &point) else {
                     panic!("the path is in general position");
                 };
                 e.weight * change

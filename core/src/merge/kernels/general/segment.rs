@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::contact::{Face, Special};
+use super::contact::{Degenerate, Face};
 use super::points::Points;
 use super::Labels;
 use crate::arith::Sign;
@@ -12,63 +12,65 @@ use crate::geometry::polygon::{Carrier, Polygon, Sides};
 use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::geometry::winding::path::determinant;
-use crate::merge::division::Spot;
+use crate::merge::division::PositionInPolygon;
 
-/// The segment in which a face of another operand crosses an element; the minus side of that face is on its
-/// left.
+/// The segment in which a face of one operand crosses a face of another; the minus side of the crossing face
+/// is on the segment's left.
 pub(super) struct Segment {
-    pub(super) ends: [End; 2],
-    /// The index of the other operand.
+    pub(super) ends: [SegmentEnd; 2],
+    /// The index of the operand that has the crossing face.
     pub(super) operand: usize,
     /// The plane of the crossing face.
     pub(super) plane: Arc<Plane>,
-    /// True if the other operand's inside is on the plus side of this plane.
+    /// True if the inside of the crossing face's operand is on the plus side of this plane.
     pub(super) plus: bool,
 }
 
-/// An end of a segment on an element.
+/// An end of the segment in which a face of another operand crosses a face.
 #[derive(Clone)]
-pub(super) struct End {
+pub(super) struct SegmentEnd {
     pub(super) at: Arc<Vertex>,
-    /// Whether the end is a corner of the element, on one of its sides, or inside.
-    pub(super) spot: Spot,
+    /// Whether the end is a corner of the crossed face, on one of its sides, or inside.
+    pub(super) position: PositionInPolygon,
 }
 
-/// A face of another operand that may cross a given element.
-pub(super) struct Crosser<'a> {
+/// A face of one operand that may cross the face or piece in a [`CrossedElement`], which belongs to another
+/// operand.
+pub(super) struct CrossingFace<'a> {
     pub(super) face: &'a Face<'a>,
-    /// The number of the face among the elements of the cell.
+    /// The number of the face among the faces and pieces of faces in the cell.
     pub(super) number: u32,
     pub(super) operand: usize,
     /// The winding number on the minus side of the face, minus the number on its plus side.
     pub(super) weight: i32,
-    /// The sides of the face's plane on which the element's corners lie.
+    /// The sides of this face's plane on which the corners of the crossed face lie.
     pub(super) ours: Sides,
-    /// The sides of the element's plane on which the face's corners lie.
+    /// The sides of the crossed face's plane on which the corners of this face lie.
     pub(super) theirs: Sides,
 }
 
 impl Segment {
-    /// Returns the bit of the other operand in labels.
+    /// Returns the label with the bit of the operand that has the crossing face.
     pub(super) fn bit(&self) -> Labels {
         1 << self.operand
     }
 }
 
-/// An element that faces of other operands may cross.
-pub(super) struct Crossed<'a> {
+/// A whole face, or a convex piece of a cut face, of one operand in a cell, which faces of other operands may
+/// cross.
+pub(super) struct CrossedElement<'a> {
     pub(super) polygon: &'a Polygon,
     pub(super) number: u32,
 }
 
-impl Crossed<'_> {
-    /// Returns the segment in which a face crosses the element; `None` if it does not, an error if their
-    /// position is degenerate.
+impl CrossedElement<'_> {
+    /// Returns the segment in which a face of another operand crosses this face; `None` if it does not, an
+    /// error if the two touch in a degenerate position.
     pub(super) fn segment(
         &self,
-        other: &Crosser,
+        other: &CrossingFace,
         points: &mut Points,
-    ) -> Result<Option<Segment>, Special> {
+    ) -> Result<Option<Segment>, Degenerate> {
         let has_corner = other.ours.contains(&Side::On) || other.theirs.contains(&Side::On);
         let ends = if has_corner {
             self.ends_by_order(other, points)?
@@ -83,13 +85,17 @@ impl Crossed<'_> {
         }))
     }
 
-    /// Returns the ends of the segment in which a face crosses the element, if no corner of either lies in
-    /// the other's plane; `None` if it does not cross.
+    /// Returns the ends of the segment in which a face of another operand crosses this face, if no corner of
+    /// either lies in the other's plane; `None` if it does not cross.
     ///
-    /// Along the common line of both planes, with the face's minus side on the left, the element reaches from
-    /// x to x′ and the face from y to y′. If both borders meet in a point, the segment ends on the element's
-    /// border. A single point is no segment.
-    fn ends(&self, other: &Crosser, points: &mut Points) -> Result<Option<[End; 2]>, Special> {
+    /// Along the common line of both planes, with the crossing face's minus side on the left, this face
+    /// reaches from x to x′ and the crossing face from y to y′. If both borders meet in a point, the segment
+    /// ends on the border of this face. A single point is no segment.
+    fn ends(
+        &self,
+        other: &CrossingFace,
+        points: &mut Points,
+    ) -> Result<Option<[SegmentEnd; 2]>, Degenerate> {
         let face = &other.face.polygon;
         let [x, x_end] = [rise(&other.ours)?, fall(&other.ours)?].map(|p| p.edge);
         let [y, y_end] = [fall(&other.theirs)?, rise(&other.theirs)?].map(|p| p.edge);
@@ -107,8 +113,12 @@ impl Crossed<'_> {
             } else {
                 points.at((face, theirs), (self.polygon.support(), self.number))
             };
-            let spot = if here { Spot::Side(own) } else { Spot::Inside };
-            at.map(|at| End { at, spot }).ok_or(Special)
+            let position = if here {
+                PositionInPolygon::Side(own)
+            } else {
+                PositionInPolygon::Inside
+            };
+            at.map(|at| SegmentEnd { at, position }).ok_or(Degenerate)
         };
         Ok(Some([
             end(starts_here, x, y)?,
@@ -116,29 +126,30 @@ impl Crossed<'_> {
         ]))
     }
 
-    /// Returns the ends of the segment in which a face crosses the element, if corners may lie in the other's
-    /// plane; `None` if it does not cross. It compares the order of points along the common line.
+    /// Returns the ends of the segment in which a face of another operand crosses this face, if corners may
+    /// lie in the other's plane; `None` if it does not cross. It compares the order of points along the
+    /// common line.
     fn ends_by_order(
         &self,
-        other: &Crosser,
+        other: &CrossingFace,
         points: &mut Points,
-    ) -> Result<Option<[End; 2]>, Special> {
+    ) -> Result<Option<[SegmentEnd; 2]>, Degenerate> {
         let ours = (self.polygon, self.number);
         let theirs = (&*other.face.polygon, other.number);
         let mut end = |change: Change, of: (&Polygon, u32), across: (&Polygon, u32)| {
             let plane = (across.0.support(), across.1);
-            change.point(of.0, plane, points).ok_or(Special)
+            change.point(of.0, plane, points).ok_or(Degenerate)
         };
         let (rises, falls) = (rise(&other.ours)?, fall(&other.ours)?);
         let own = [end(rises, ours, theirs)?, end(falls, ours, theirs)?];
         let (falls, rises) = (fall(&other.theirs)?, rise(&other.theirs)?);
         let others = [end(falls, theirs, ours)?, end(rises, theirs, ours)?];
         let axis = own[0].at.axis_to(&own[1].at);
-        let order = |p: &End, q: &End| p.at.compare_along(&q.at, axis);
+        let order = |p: &SegmentEnd, q: &SegmentEnd| p.at.compare_along(&q.at, axis);
         let onward = order(&own[0], &own[1]);
         let [x, x_end] = own;
-        let [y, y_end] = others.map(|end| End {
-            spot: Spot::Inside,
+        let [y, y_end] = others.map(|end| SegmentEnd {
+            position: PositionInPolygon::Inside,
             ..end
         });
         let from = if order(&x, &y) == onward { y } else { x };
@@ -150,27 +161,27 @@ impl Crossed<'_> {
         Ok((order(&from, &to) == onward).then_some([from, to]))
     }
 
-    /// Returns the side of the face's edge `rim` on which an edge of the element crosses the face's plane:
-    /// positive on the inner side, zero on the edge. The flag says whether the element's edge leads to the
-    /// plus side of the plane.
+    /// Returns the side of the other face's edge `rim` on which an edge of this face crosses the other face's
+    /// plane: positive on the inner side, zero on the edge. The flag says whether this face's edge leads to
+    /// the plus side of the plane.
     fn inside(
         &self,
         (edge, rises): (usize, bool),
-        other: &Crosser,
+        other: &CrossingFace,
         rim: usize,
         points: &mut Points,
-    ) -> Result<Sign, Special> {
+    ) -> Result<Sign, Degenerate> {
         let face = &other.face.polygon;
         let carriers = (
             &self.polygon.corners()[edge].edge,
             &face.corners()[rim].edge,
         );
         if let (Carrier::Edge(edge), Carrier::Edge(rim)) = carriers {
-            let turn = passes(edge.ends(), rim.ends());
+            let turn = passing_side(edge.ends(), rim.ends());
             return Ok(if rises { turn } else { -turn });
         }
         let plane = (face.support(), other.number);
-        let at = points.at((self.polygon, edge), plane).ok_or(Special)?;
+        let at = points.at((self.polygon, edge), plane).ok_or(Degenerate)?;
         Ok(-at.side_of(&other.face.rims()[rim]).sign())
     }
 }
@@ -189,31 +200,31 @@ impl Change {
         polygon: &Polygon,
         plane: (&Arc<Plane>, u32),
         points: &mut Points,
-    ) -> Option<End> {
+    ) -> Option<SegmentEnd> {
         let edge = self.edge;
         Some(if self.is_at_corner {
             let at = Arc::clone(&polygon.corners()[edge].at);
-            let spot = Spot::Corner(edge);
-            End { at, spot }
+            let position = PositionInPolygon::Corner(edge);
+            SegmentEnd { at, position }
         } else {
             let at = points.at((polygon, edge), plane)?;
-            let spot = Spot::Side(edge);
-            End { at, spot }
+            let position = PositionInPolygon::Side(edge);
+            SegmentEnd { at, position }
         })
     }
 }
 
 /// Returns where a polygon, whose corners lie on these sides of a plane, changes to the plus side.
-fn rise(sides: &[Side]) -> Result<Change, Special> {
+fn rise(sides: &[Side]) -> Result<Change, Degenerate> {
     change(sides, (Side::Minus, Side::Plus))
 }
 
 /// Returns where a polygon, whose corners lie on these sides of a plane, changes to the minus side.
-fn fall(sides: &[Side]) -> Result<Change, Special> {
+fn fall(sides: &[Side]) -> Result<Change, Degenerate> {
     change(sides, (Side::Plus, Side::Minus))
 }
 
-fn change(sides: &[Side], (from, to): (Side, Side)) -> Result<Change, Special> {
+fn change(sides: &[Side], (from, to): (Side, Side)) -> Result<Change, Degenerate> {
     let n = sides.len();
     let at = |edge: usize| {
         let (here, next) = (sides[edge], sides[(edge + 1) % n]);
@@ -221,12 +232,12 @@ fn change(sides: &[Side], (from, to): (Side, Side)) -> Result<Change, Special> {
         let changes = next == to && (here == from || is_at_corner);
         changes.then_some(Change { edge, is_at_corner })
     };
-    (0..n).find_map(at).ok_or(Special)
+    (0..n).find_map(at).ok_or(Degenerate)
 }
 
 /// Returns the side on which the line from a to b passes the directed edge from c to d: the sign of the
 /// determinant of d − c, a − c and b − c.
-fn passes((a, b): (&Lattice, &Lattice), (c, d): (&Lattice, &Lattice)) -> Sign {
+fn passing_side((a, b): (&Lattice, &Lattice), (c, d): (&Lattice, &Lattice)) -> Sign {
     let from = |p: &Lattice| each_axis(|i| p[i] - c[i]);
     determinant(&from(d), &from(a), &from(b))
 }
@@ -245,7 +256,7 @@ mod tests {
         let Contact::Crossing(ours, theirs) = contact(&crossed, &face) else {
             panic!("the face crosses the element");
         };
-        let crosser = Crosser {
+        let crossing_face = CrossingFace {
             face: &face,
             number: 1,
             operand: 1,
@@ -253,18 +264,21 @@ mod tests {
             ours,
             theirs,
         };
-        let element = Crossed {
+        let element = CrossedElement {
             polygon: &crossed,
             number: 0,
         };
-        let found = element.segment(&crosser, &mut Points::default()).ok();
+        let found = element.segment(&crossing_face, &mut Points::default()).ok();
         let segment = found.flatten().expect("they cross");
         let ends = segment.ends;
         // The segment begins on an edge of the face, inside the element, and ends on the element's border.
         let [inner, outer] = [[1, 1, 0], [1, 7, 0]].map(Vertex::lattice);
-        let at_outer = ends.each_ref().map(|end| end.at.same(&outer));
-        assert!(ends.iter().any(|end| end.at.same(&inner)) && at_outer.contains(&true));
-        assert_eq!(ends.map(|end| end.spot != Spot::Inside), at_outer);
+        let at_outer = ends.each_ref().map(|end| end.at.equals(&outer));
+        assert!(ends.iter().any(|end| end.at.equals(&inner)) && at_outer.contains(&true));
+        assert_eq!(
+            ends.map(|end| end.position != PositionInPolygon::Inside),
+            at_outer
+        );
     }
 
     #[test]

@@ -9,44 +9,46 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;
 
-use super::contact::Special;
+use super::contact::Degenerate;
 use super::points::Points;
-use super::segment::{Crossed, Crosser, End, Segment};
+use super::segment::{CrossedElement, CrossingFace, Segment, SegmentEnd};
 use super::Labels;
 use crate::geometry::outline::BareEdge;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
-use crate::merge::division::{Defect, Division, Spot};
+use crate::merge::division::{Defect, Division, PositionInPolygon};
 
-/// An element divided by the surfaces of other operands.
+/// A face, or convex piece of a cut face, divided by the surfaces of other operands.
 pub(super) struct Trace {
-    /// The bits of the operands whose faces cross the element.
+    /// The bits of the operands whose faces cross the divided face.
     pub(super) operands: Labels,
-    /// The labels of the parts of the element, ascending; a part is all cells with the same label.
+    /// The labels of the parts of the face, ascending: in which operands each part lies. A part is all
+    /// triangles of the division with the same label.
     pub(super) parts: SmallVec<[Labels; 2]>,
-    /// The division of the element; `None` if no face crosses it.
+    /// The division of the face; `None` if no face of another operand crosses it.
     divided: Option<Divided>,
 }
 
-/// An element divided into cells.
+/// A face divided into triangles.
 struct Divided {
     division: Division,
-    /// For each cell its label.
+    /// For each triangle of the division its label: in which operands it lies.
     labels: Vec<Labels>,
 }
 
 impl Trace {
-    /// Divides an element by the faces that may cross it; an error if they contradict each other.
+    /// Divides a face by the faces of other operands that may cross it; an error if they contradict each
+    /// other.
     pub(super) fn new(
-        crossed: &Crossed,
-        crossers: &[Crosser],
+        crossed: &CrossedElement,
+        crossing_faces: &[CrossingFace],
         points: &mut Points,
-    ) -> Result<Self, Special> {
-        let mut segments = Vec::with_capacity(crossers.len());
-        for crosser in crossers {
+    ) -> Result<Self, Degenerate> {
+        let mut segments = Vec::with_capacity(crossing_faces.len());
+        for crossing_face in crossing_faces {
             poll();
-            segments.extend(crossed.segment(crosser, points)?);
+            segments.extend(crossed.segment(crossing_face, points)?);
         }
         if segments.is_empty() {
             let parts = SmallVec::from_slice(&[0]);
@@ -70,7 +72,7 @@ impl Trace {
         })
     }
 
-    /// Returns the index of the part at a corner of the element.
+    /// Returns the index of the part at a corner of the divided face.
     pub(super) fn part_at_corner(&self, corner: usize) -> Option<usize> {
         let Some(Divided { division, labels }) = &self.divided else {
             return Some(0);
@@ -88,45 +90,46 @@ impl Trace {
             return Vec::new();
         };
         let parts = &self.parts;
-        let holds = |labels: &Labels| parts.binary_search(labels).is_ok_and(|i| stays[i]);
-        let holds: Vec<bool> = labels.iter().map(holds).collect();
-        division.outline(&holds)
+        let is_kept = |labels: &Labels| parts.binary_search(labels).is_ok_and(|i| stays[i]);
+        let is_kept: Vec<bool> = labels.iter().map(is_kept).collect();
+        division.outline(&is_kept)
     }
 }
 
-impl From<Defect> for Special {
+impl From<Defect> for Degenerate {
     fn from(_: Defect) -> Self {
         Self
     }
 }
 
-/// Divides an element along segments.
-fn divided<'s>(polygon: &Polygon, segments: &'s [Segment]) -> Result<Division, Special> {
+/// Divides a polygon along segments.
+fn divided<'s>(polygon: &Polygon, segments: &'s [Segment]) -> Result<Division, Degenerate> {
     let corners = polygon.corners().iter();
     let corners = corners.map(|c| (Arc::clone(&c.at), c.edge.clone()));
     let mut division = Division::of(polygon.support(), corners)?;
-    let mut points: SmallVec<[(&Arc<Vertex>, Spot); 16]> = SmallVec::new();
+    let mut points: SmallVec<[(&Arc<Vertex>, PositionInPolygon); 16]> = SmallVec::new();
     let mut numbers: HashMap<*const Vertex, usize> = HashMap::default();
-    let number = |end: &'s End| {
+    let number = |end: &'s SegmentEnd| {
         let add = || {
-            points.push((&end.at, end.spot));
+            points.push((&end.at, end.position));
             points.len() - 1
         };
         *numbers.entry(Arc::as_ptr(&end.at)).or_insert_with(add)
     };
     let ends = segments.iter().flat_map(|s| &s.ends).map(number);
     let ends: SmallVec<[usize; 16]> = ends.collect();
-    let places = division.insert(&points)?;
+    let numbers = division.insert(&points)?;
     for (segment, ends) in segments.iter().zip(ends.chunks_exact(2)) {
         poll();
         let plane = Arc::clone(&segment.plane);
-        division.cut_along([0, 1].map(|i| places[ends[i]]), plane)?;
+        division.cut_along([0, 1].map(|i| numbers[ends[i]]), plane)?;
     }
     Ok(division)
 }
 
-/// Returns for each cell its label; an error if segments contradict each other.
-fn labels(division: &Division, segments: &[Segment]) -> Result<Vec<Labels>, Special> {
+/// Returns for each triangle of a divided face its label relative to the first one: in which operands it
+/// lies; an error if segments contradict each other.
+fn labels(division: &Division, segments: &[Segment]) -> Result<Vec<Labels>, Degenerate> {
     let change = |cell: usize, edge: usize| {
         let along = division.along_edge(cell, edge);
         along.fold(0, |all, (segment, _)| all ^ segments[segment].bit())
@@ -138,18 +141,18 @@ fn labels(division: &Division, segments: &[Segment]) -> Result<Vec<Labels>, Spec
         *all ^= in_first;
     }
     let agree = |cell: usize| {
-        let mut mates = division.mates(cell);
-        mates.all(|(edge, mate)| {
+        let mut neighbours = division.neighbours(cell);
+        neighbours.all(|(edge, neighbour)| {
             are_of_different_operands(division, segments, cell, edge)
-                && labels[mate] == labels[cell] ^ change(cell, edge)
+                && labels[neighbour] == labels[cell] ^ change(cell, edge)
         }) && sides(division, segments, cell).all(|(bit, inside)| labels[cell] & bit == inside)
     };
     let is_certain = (0..labels.len()).all(agree);
-    is_certain.then_some(labels).ok_or(Special)
+    is_certain.then_some(labels).ok_or(Degenerate)
 }
 
-/// Returns true if all segments along an edge of a cell belong to different operands. Three coincident faces
-/// of one operand would otherwise give the same bits as a single face.
+/// Returns true if all segments along an edge of a triangle of the division belong to different operands.
+/// Three coincident faces of one operand would otherwise give the same bits as a single face.
 fn are_of_different_operands(
     division: &Division,
     segments: &[Segment],
@@ -165,7 +168,8 @@ fn are_of_different_operands(
     })
 }
 
-/// Returns the label of the first cell, given the labels of all cells relative to it.
+/// Returns the label of the first triangle of the division (in which operands it lies), given the labels of
+/// all triangles relative to it.
 fn labels_of_first(division: &Division, segments: &[Segment], relative: &[Labels]) -> Labels {
     let (mut known, mut labels): (Labels, Labels) = (0, 0);
     for (cell, relative) in relative.iter().enumerate() {
@@ -177,14 +181,14 @@ fn labels_of_first(division: &Division, segments: &[Segment], relative: &[Labels
     labels
 }
 
-/// Returns for each segment along an inner edge of a cell the bit of its operand, and this bit again if the
-/// cell lies inside the operand, otherwise 0.
+/// Returns for each segment along an inner edge of a triangle of the division the bit of its operand, and
+/// this bit again if the triangle lies inside the operand, otherwise 0.
 fn sides<'a>(
     division: &'a Division,
     segments: &'a [Segment],
     cell: usize,
 ) -> impl Iterator<Item = (Labels, Labels)> + 'a {
-    let edges = division.mates(cell).map(|(edge, _)| edge);
+    let edges = division.neighbours(cell).map(|(edge, _)| edge);
     let along = edges.flat_map(move |edge| division.along_edge(cell, edge));
     along.map(|(segment, is_along)| {
         let segment = &segments[segment];
@@ -209,11 +213,11 @@ mod tests {
         Polygon::triangle(corners, Arc::new(plane))
     }
 
-    fn crosser<'a>(polygon: &Polygon, face: &'a Face<'a>, number: u32) -> Crosser<'a> {
+    fn crossing_face<'a>(polygon: &Polygon, face: &'a Face<'a>, number: u32) -> CrossingFace<'a> {
         let Contact::Crossing(ours, theirs) = contact(polygon, face) else {
             panic!("the face crosses the polygon's plane");
         };
-        Crosser {
+        CrossingFace {
             face,
             number,
             operand: 1,
@@ -226,15 +230,15 @@ mod tests {
     /// Returns the division of a polygon by faces of one operand; `None` if they contradict each other.
     fn trace<const N: usize>(crossed: &Polygon, faces: [[Lattice; 3]; N]) -> Option<Trace> {
         let faces = faces.map(|corners| Face::new(Cow::Owned(polygon(&corners))));
-        let crossers: Vec<Crosser> = (1..)
+        let crossing_faces: Vec<CrossingFace> = (1..)
             .zip(&faces)
-            .map(|(number, face)| crosser(crossed, face, number))
+            .map(|(number, face)| crossing_face(crossed, face, number))
             .collect();
-        let element = Crossed {
+        let element = CrossedElement {
             polygon: crossed,
             number: 0,
         };
-        Trace::new(&element, &crossers, &mut Points::default()).ok()
+        Trace::new(&element, &crossing_faces, &mut Points::default()).ok()
     }
 
     /// The common edge of two faces passes through the border of a polygon, at (4, 4, 0).

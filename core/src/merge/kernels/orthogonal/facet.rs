@@ -8,16 +8,16 @@ use crate::geometry::cell::Cell;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon};
 use crate::interrupt::poll;
-use crate::merge::kernels::problem::Listed;
+use crate::merge::kernels::problem::ListedOperand;
 use crate::merge::kernels::stays::Owner;
-use crate::merge::lists::list::{PartRecord, Record, Sources};
+use crate::merge::lists::list::{FaceRecord, PartRecord, Sources};
 use crate::mesh::handle::{FaceId, Slot, SourceFace};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
 
 /// For each axis, the two axes of a plane perpendicular to it: first the axis along which rows of rectangles
 /// follow each other, then the axis along which a row's bits do.
-pub(super) const ACROSS: [(usize, usize); 3] = [(1, 2), (0, 2), (0, 1)];
+pub(super) const OTHER_AXES: [(usize, usize); 3] = [(1, 2), (0, 2), (0, 1)];
 
 /// A face, or a convex piece of a part of a face, that is perpendicular to an axis.
 pub(super) struct Facet<'a> {
@@ -29,12 +29,12 @@ pub(super) struct Facet<'a> {
     pub(super) upward: bool,
     /// The winding number behind the face minus the number in front of it.
     weight: i32,
-    slants: SmallVec<[Slant; 1]>,
-    pub(super) place: Place<'a>,
+    slanted_edges: SmallVec<[SlantedEdge; 1]>,
+    pub(super) origin: FacetOrigin<'a>,
 }
 
 /// The face or part of a face that a facet comes from.
-pub(super) enum Place<'a> {
+pub(super) enum FacetOrigin<'a> {
     /// A triangle of a mesh, with its corners.
     Face(&'a Source, SourceFace, [Lattice; 3]),
     /// The face of a half-space.
@@ -46,7 +46,7 @@ pub(super) enum Place<'a> {
 /// An edge of a facet that is not parallel to an axis, in the two coordinates of the facet's plane; the facet
 /// is on its left.
 #[derive(Clone, Copy)]
-struct Slant {
+struct SlantedEdge {
     from: [i64; 2],
     to: [i64; 2],
 }
@@ -59,9 +59,13 @@ pub(super) struct Facets<'a> {
 }
 
 impl<'a> Facets<'a> {
-    /// Makes the facets of all operands; `None` if a listed element is not perpendicular to an axis, or has a
-    /// slanted edge that is no edge of its face.
-    pub(super) fn new(cell: &Cell, operands: &'a [Listed], sources: &'a Sources) -> Option<Self> {
+    /// Makes the facets of all operands; `None` if a listed element (a face or part of a face) is not
+    /// perpendicular to an axis, or has a slanted edge that is no edge of its face.
+    pub(super) fn new(
+        cell: &Cell,
+        operands: &'a [ListedOperand],
+        sources: &'a Sources,
+    ) -> Option<Self> {
         let mut facets = Self {
             all: Vec::with_capacity(operands.iter().map(|l| l.list.len()).sum()),
             parts: Vec::new(),
@@ -100,14 +104,14 @@ impl<'a> Facets<'a> {
 }
 
 impl<'a> Facet<'a> {
-    fn of_record(operand: usize, record: &Record, sources: &'a Sources) -> Option<Self> {
+    fn of_record(operand: usize, record: &FaceRecord, sources: &'a Sources) -> Option<Self> {
         let weight = record.orientation().signed(1);
         let (slot, source) = (record.slot(), &**sources.get(record.slot()));
         match source.shape() {
             Shape::Mesh(mesh) => {
                 let corners = mesh.corners(record.face);
-                let place = Place::Face(source, SourceFace::new(slot, record.face), corners);
-                Self::of_triangle(operand, weight, &corners, place)
+                let origin = FacetOrigin::Face(source, SourceFace::new(slot, record.face), corners);
+                Self::of_triangle(operand, weight, &corners, origin)
             }
             Shape::HalfSpace(plane) => {
                 let (axis, at, upward) = upright(plane)?;
@@ -117,8 +121,8 @@ impl<'a> Facet<'a> {
                     at,
                     upward,
                     weight,
-                    slants: SmallVec::new(),
-                    place: Place::Plane(source, slot),
+                    slanted_edges: SmallVec::new(),
+                    origin: FacetOrigin::Plane(source, slot),
                 })
             }
         }
@@ -128,36 +132,36 @@ impl<'a> Facet<'a> {
         operand: usize,
         weight: i32,
         corners: &[Lattice; 3],
-        place: Place<'a>,
+        origin: FacetOrigin<'a>,
     ) -> Option<Self> {
         let [a, b, c] = corners;
         let axis = (0..3).find(|i| a[*i] == b[*i] && b[*i] == c[*i])?;
-        let (row, bit) = ACROSS[axis];
+        let (row, bit) = OTHER_AXES[axis];
         let flat = corners.map(|p| [p[row], p[bit]]);
         let counterclockwise = turn(&flat[0], &flat[1], &flat[2]) > 0;
-        let edges = (0..3).map(|i| Slant::new(flat[i], flat[(i + 1) % 3], counterclockwise));
+        let edges = (0..3).map(|i| SlantedEdge::new(flat[i], flat[(i + 1) % 3], counterclockwise));
         Some(Self {
             operand,
             axis,
             at: a[axis],
             upward: counterclockwise != (axis == 1),
             weight,
-            slants: edges.flatten().collect(),
-            place,
+            slanted_edges: edges.flatten().collect(),
+            origin,
         })
     }
 
     fn of_piece(operand: usize, weight: i32, part: usize, piece: &'a Polygon) -> Option<Self> {
         let (axis, at, upward) = upright(piece.support())?;
-        let (row, bit) = ACROSS[axis];
+        let (row, bit) = OTHER_AXES[axis];
         let counterclockwise = upward != (axis == 1);
-        let mut slants = SmallVec::new();
+        let mut slanted_edges = SmallVec::new();
         for corner in piece.corners() {
             match &corner.edge {
                 Carrier::Edge(edge) => {
                     let (a, b) = edge.ends();
                     let (a, b) = ([a[row], a[bit]], [b[row], b[bit]]);
-                    slants.extend(Slant::new(a, b, counterclockwise));
+                    slanted_edges.extend(SlantedEdge::new(a, b, counterclockwise));
                 }
                 Carrier::Cut(plane, _) => {
                     plane.only_axis()?;
@@ -170,8 +174,8 @@ impl<'a> Facet<'a> {
             at,
             upward,
             weight,
-            slants,
-            place: Place::Piece(part, piece),
+            slanted_edges,
+            origin: FacetOrigin::Piece(part, piece),
         })
     }
 
@@ -180,20 +184,20 @@ impl<'a> Facet<'a> {
         let (low, high) = (cell.low(), cell.high());
         let within = |i: usize, p: &Lattice| p[i] >= low[i];
         let below = |i: usize, p: &Lattice| p[i] <= high[i];
-        let bounded = match &self.place {
-            Place::Face(_, _, corners) => (0..3).all(|i| {
+        let bounded = match &self.origin {
+            FacetOrigin::Face(_, _, corners) => (0..3).all(|i| {
                 corners.iter().any(|p| within(i, p)) && corners.iter().any(|p| below(i, p))
             }),
-            Place::Plane(..) | Place::Piece(..) => true,
+            FacetOrigin::Plane(..) | FacetOrigin::Piece(..) => true,
         };
         bounded && (low[self.axis]..=high[self.axis]).contains(&self.at)
     }
 
     pub(super) fn owner(&self) -> Owner {
-        match &self.place {
-            Place::Face(_, face, _) => Owner::Face(*face),
-            Place::Plane(_, slot) => Owner::Face(SourceFace::new(*slot, FaceId::ONLY)),
-            Place::Piece(part, _) => Owner::Part(*part),
+        match &self.origin {
+            FacetOrigin::Face(_, face, _) => Owner::Face(*face),
+            FacetOrigin::Plane(_, slot) => Owner::Face(SourceFace::new(*slot, FaceId::ONLY)),
+            FacetOrigin::Piece(part, _) => Owner::Part(*part),
         }
     }
 
@@ -208,26 +212,26 @@ impl<'a> Facet<'a> {
 
     /// Returns true if the point just above `corner` in both coordinates, given in half lattice steps, is
     /// inside all slanted edges.
-    pub(super) fn holds(&self, corner: [i64; 2]) -> bool {
-        self.slants.iter().all(|s| s.is_left(corner))
+    pub(super) fn contains(&self, corner: [i64; 2]) -> bool {
+        self.slanted_edges.iter().all(|s| s.is_left(corner))
     }
 
     /// Returns true if a part of a rectangle is inside all slanted edges.
     pub(super) fn touches(&self, low: [i64; 2], high: [i64; 2]) -> bool {
-        self.slants.iter().all(|s| s.reaches(low, high))
+        self.slanted_edges.iter().all(|s| s.reaches(low, high))
     }
 
     /// Returns true if the facet has no slanted edge.
     pub(super) fn is_rectangle(&self) -> bool {
-        self.slants.is_empty()
+        self.slanted_edges.is_empty()
     }
 
     /// Returns the part of the facet inside the cell; `None` if there is none.
     pub(super) fn polygon_in(&self, cell: &Cell) -> Option<Polygon> {
-        match &self.place {
-            Place::Face(source, face, _) => source.clip(face.id, cell),
-            Place::Plane(source, _) => source.clip(FaceId::ONLY, cell),
-            Place::Piece(_, polygon) => (*polygon).clone().clipped(cell),
+        match &self.origin {
+            FacetOrigin::Face(source, face, _) => source.clip(face.id, cell),
+            FacetOrigin::Plane(source, _) => source.clip(FaceId::ONLY, cell),
+            FacetOrigin::Piece(_, polygon) => (*polygon).clone().clipped(cell),
         }
     }
 }
@@ -246,7 +250,7 @@ fn turn(a: &[i64; 2], b: &[i64; 2], c: &[i64; 2]) -> i128 {
     d(b, 0) * d(c, 1) - d(b, 1) * d(c, 0)
 }
 
-impl Slant {
+impl SlantedEdge {
     /// Makes an edge with the facet on its left; `left` says whether the facet is on the left of the
     /// direction given. `None` if the edge is parallel to an axis.
     fn new(from: [i64; 2], to: [i64; 2], left: bool) -> Option<Self> {
@@ -303,7 +307,7 @@ mod tests {
         let facets = Facets::new(&scene.cell, &operands, &scene.sources).expect("upright");
         for pair in facets.all.chunks(2) {
             for corner in (0..8).flat_map(|row| (0..8).map(move |bit| [row, bit])) {
-                assert_eq!(pair.iter().filter(|f| f.holds(corner)).count(), 1);
+                assert_eq!(pair.iter().filter(|f| f.contains(corner)).count(), 1);
             }
         }
     }

@@ -62,34 +62,34 @@ impl Grid {
     }
 
     /// Returns the number of the plane at a lattice coordinate on an axis.
-    pub(super) fn find(&self, axis: usize, at: i64) -> usize {
+    pub(super) fn number_of_plane(&self, axis: usize, at: i64) -> usize {
         self.lines[axis].partition_point(|l| *l < 2 * at)
     }
 
     /// Returns the intervals that overlap the range between two coordinates, given in half lattice steps.
-    pub(super) fn between(&self, axis: usize, low: i64, high: i64) -> Reach {
+    pub(super) fn intervals_between(&self, axis: usize, low: i64, high: i64) -> IntervalRange {
         let lines = &self.lines[axis];
         let below = |at: i64| lines.partition_point(|l| *l < at);
         let low = below(low)..lines.partition_point(|l| *l <= low);
-        Reach::new(&low, below(high), self.count(axis))
+        IntervalRange::new(&low, below(high), self.count(axis))
     }
 
     /// Returns the intervals on an axis that a polygon's bounds overlap.
-    pub(super) fn under(&self, axis: usize, polygon: &Polygon) -> Reach {
+    pub(super) fn intervals_under(&self, axis: usize, polygon: &Polygon) -> IntervalRange {
         let (mut low, mut below) = (usize::MAX..usize::MAX, 0);
         for corner in polygon.corners() {
-            let place = self.place(axis, &corner.at);
-            low = low.start.min(place.start)..low.end.min(place.end);
-            below = below.max(place.start);
+            let planes = self.planes_up_to(axis, &corner.at);
+            low = low.start.min(planes.start)..low.end.min(planes.end);
+            below = below.max(planes.start);
         }
-        Reach::new(&low, below, self.count(axis))
+        IntervalRange::new(&low, below, self.count(axis))
     }
 
     /// Returns the number of planes on an axis below a point, and the number of planes below it or through
     /// it.
-    fn place(&self, axis: usize, point: &Vertex) -> Range<usize> {
+    fn planes_up_to(&self, axis: usize, point: &Vertex) -> Range<usize> {
         let lines = &self.lines[axis];
-        if let Some(at) = point.doubled(axis) {
+        if let Some(at) = point.doubled_coordinate(axis) {
             return lines.partition_point(|l| *l < at)..lines.partition_point(|l| *l <= at);
         }
         let least = 2.0 * point.bounds().0[axis];
@@ -129,14 +129,14 @@ impl Grid {
 }
 
 /// The intervals on an axis of the grid that overlap the bounds of a facet.
-pub(super) struct Reach {
+pub(super) struct IntervalRange {
     /// The intervals that share more than a point with the facet's bounds.
     pub(super) touched: Range<usize>,
     /// The first interval that begins inside the facet's bounds.
     first: usize,
 }
 
-impl Reach {
+impl IntervalRange {
     /// Makes the intervals for bounds whose low end has `low.start` planes below it and `low.end` below or
     /// through it, and whose high end has `below` planes below it; `count` is the number of intervals.
     fn new(low: &Range<usize>, below: usize, count: usize) -> Self {
@@ -156,14 +156,14 @@ impl Reach {
     }
 
     /// Returns the intervals that begin inside the facet's bounds.
-    pub(super) fn begun(&self) -> Range<usize> {
+    pub(super) fn begun_inside(&self) -> Range<usize> {
         self.first.min(self.touched.end)..self.touched.end
     }
 }
 
 /// Returns the number of leading planes for which `holds` is true.
-fn count(planes: &[Arc<Plane>], holds: impl Fn(&Arc<Plane>) -> bool) -> usize {
-    planes.iter().take_while(|line| holds(line)).count()
+fn count(planes: &[Arc<Plane>], is_counted: impl Fn(&Arc<Plane>) -> bool) -> usize {
+    planes.iter().take_while(|line| is_counted(line)).count()
 }
 
 /// Returns a word with the bits of a range set.
@@ -187,8 +187,11 @@ mod tests {
         let grid = Grid::new(&scene.cell, &facets).expect("a coarse grid");
         let lines: Vec<i64> = (0..4).map(|line| grid.line(0, line)).collect();
         assert_eq!(lines, [-1, 2, 6, 7]);
-        assert_eq!((grid.count(0), grid.columns(), grid.find(0, 3)), (3, 9, 2));
-        assert_eq!(grid.between(0, 2, 6).touched, 1..2);
+        assert_eq!(
+            (grid.count(0), grid.columns(), grid.number_of_plane(0, 3)),
+            (3, 9, 2)
+        );
+        assert_eq!(grid.intervals_between(0, 2, 6).touched, 1..2);
     }
 
     #[test]

@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
-use super::extent::Extent;
-use super::facet::{Facet, ACROSS};
-use super::grid::{mask, Grid, Reach};
+use super::facet::{Facet, OTHER_AXES};
+use super::grid::{mask, Grid, IntervalRange};
+use super::position::FacetPosition;
 use crate::interrupt::poll;
 
 /// The coarser grid of one operand's own planes, with the operand's winding number in each box.
-struct Own<'a> {
+struct OperandGrid<'a> {
     grid: &'a Grid,
     /// For each axis, the numbers of the planes of the finer grid at which the operand's intervals begin; at
     /// the end, the finer grid's number of intervals.
@@ -20,26 +20,29 @@ struct Own<'a> {
 /// winding number is neither 0 nor 1. `corner` is the winding number at the cell's corner.
 pub(super) fn field<'b>(
     grid: &Grid,
-    facets: impl Iterator<Item = (&'b Facet<'b>, &'b Extent)> + Clone,
+    facets: impl Iterator<Item = (&'b Facet<'b>, &'b FacetPosition)> + Clone,
     corner: i32,
 ) -> Option<Vec<u64>> {
-    let mut own = Own::new(grid, facets.clone());
+    let mut own = OperandGrid::new(grid, facets.clone());
     own.numbers[0] = corner;
-    for (facet, extent) in facets {
+    for (facet, position) in facets {
         poll();
-        own.enter(facet, extent);
+        own.enter(facet, position);
     }
     own.add_up();
     let simple = own.numbers.iter().all(|w| (0..=1).contains(w));
     simple.then(|| own.field())
 }
 
-impl<'a> Own<'a> {
-    fn new<'b>(grid: &'a Grid, facets: impl Iterator<Item = (&'b Facet<'b>, &'b Extent)>) -> Self {
+impl<'a> OperandGrid<'a> {
+    fn new<'b>(
+        grid: &'a Grid,
+        facets: impl Iterator<Item = (&'b Facet<'b>, &'b FacetPosition)>,
+    ) -> Self {
         let mut starts = [0, 1, 2].map(|axis| vec![0, grid.count(axis)]);
-        for (facet, extent) in facets {
+        for (facet, position) in facets {
             poll();
-            starts[facet.axis].push(extent.line);
+            starts[facet.axis].push(position.line);
         }
         for starts in &mut starts {
             starts.sort_unstable();
@@ -57,7 +60,7 @@ impl<'a> Own<'a> {
         self.starts[axis].len() - 1
     }
 
-    fn place(&self, [x, y, z]: [usize; 3]) -> usize {
+    fn box_index(&self, [x, y, z]: [usize; 3]) -> usize {
         (x * self.count(1) + y) * self.count(2) + z
     }
 
@@ -70,28 +73,28 @@ impl<'a> Own<'a> {
 
     /// Records the change of the winding number across a facet. A facet across z changes all its boxes, a
     /// facet across y only boxes at the lowest z, and a facet across x only the box at the lowest y and z.
-    fn enter(&mut self, facet: &Facet, extent: &Extent) {
+    fn enter(&mut self, facet: &Facet, position: &FacetPosition) {
         let axis = facet.axis;
-        let at = self.starts[axis].partition_point(|s| *s < extent.line);
-        let (row, bit) = ACROSS[axis];
-        let cross = |along: usize, reach: &Reach| {
-            let all = self.within(along, &reach.begun());
+        let at = self.starts[axis].partition_point(|s| *s < position.line);
+        let (row, bit) = OTHER_AXES[axis];
+        let cross = |along: usize, range: &IntervalRange| {
+            let all = self.within(along, &range.begun_inside());
             if along > axis {
                 all.start..all.end.min(1)
             } else {
                 all
             }
         };
-        let (rows, bits) = (cross(row, &extent.rows), cross(bit, &extent.bits));
+        let (rows, bits) = (cross(row, &position.rows), cross(bit, &position.bits));
         for r in rows {
             for b in bits.clone() {
                 let corner = [(row, r), (bit, b)]
                     .map(|(axis, i)| self.grid.line(axis, self.starts[axis][i]));
-                if facet.holds(corner) {
-                    let mut place = [at; 3];
-                    (place[row], place[bit]) = (r, b);
-                    let place = self.place(place);
-                    self.numbers[place] += facet.change();
+                if facet.contains(corner) {
+                    let mut index = [at; 3];
+                    (index[row], index[bit]) = (r, b);
+                    let index = self.box_index(index);
+                    self.numbers[index] += facet.change();
                 }
             }
         }
@@ -126,7 +129,7 @@ impl<'a> Own<'a> {
         for x in 0..self.count(0) {
             for y in 0..self.count(1) {
                 poll();
-                let inside = |z: &usize| self.numbers[self.place([x, y, *z])] == 1;
+                let inside = |z: &usize| self.numbers[self.box_index([x, y, *z])] == 1;
                 let bits = (0..self.count(2)).filter(inside);
                 let word = bits.fold(0, |all, z| all | mask(&self.interval(2, z)));
                 for i in self.interval(0, x) {
@@ -152,8 +155,8 @@ mod tests {
         let operands = scene.operands();
         let facets = Facets::new(&scene.cell, &operands, &scene.sources).expect("upright");
         let grid = Grid::new(&scene.cell, &facets).expect("a coarse grid");
-        let extents: Vec<Extent> = facets.all.iter().map(|f| f.extent(&grid)).collect();
-        let field = |corner: i32| field(&grid, facets.all.iter().zip(&extents), corner);
+        let positions: Vec<FacetPosition> = facets.all.iter().map(|f| f.position(&grid)).collect();
+        let field = |corner: i32| field(&grid, facets.all.iter().zip(&positions), corner);
         assert_eq!(field(0), Some(vec![0, 0, 0, 0, 0b010, 0, 0, 0, 0]));
         // With 1 at the corner the box has the number 2, which is refused.
         assert_eq!(field(1), None);

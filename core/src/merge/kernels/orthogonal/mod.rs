@@ -5,21 +5,21 @@
 //! plane need no care. The rectangles of the grid in a face's plane determine which parts of the face bound
 //! the result.
 
-mod extent;
 mod facet;
 mod grid;
 mod keep;
 mod labels;
 mod pieces;
+mod position;
 
-use super::kept::{assemble, Kept};
-use super::problem::{CellProblem, Kernel, Listed};
+use super::kept::{assemble, KeptPart};
+use super::problem::{CellProblem, Kernel, ListedOperand};
 use crate::merge::expression::Expression;
 use crate::tree::node::Node;
-use extent::Extent;
 use facet::Facets;
 use grid::Grid;
 use keep::Scene;
+use position::FacetPosition;
 
 /// The most 64-bit words for the grid columns of all operands: two megabytes, which fit into a cache.
 const MAX_WORDS: usize = 1 << 18;
@@ -41,26 +41,31 @@ impl Kernel for Orthogonal {
 
 /// Returns the parts of the operands' faces that bound the result, and the expression's value at the cell's
 /// corner (1 for inside); `None` if the kernel refuses the cell.
-fn kept_and_corner(problem: &CellProblem) -> Option<(Vec<Kept>, i32)> {
+fn kept_and_corner(problem: &CellProblem) -> Option<(Vec<KeptPart>, i32)> {
     let operands = &problem.operands;
     let facets = Facets::new(problem.cell, operands, problem.sources)?;
     let grid = Grid::new(problem.cell, &facets)?;
     if operands.len() * grid.columns() > MAX_WORDS {
         return None;
     }
-    let extents: Vec<Extent> = facets.all.iter().map(|f| f.extent(&grid)).collect();
-    let fields = fields(&grid, &facets, &extents, operands)?;
-    let places = places(operands);
-    let value = value(problem.expression, &places, &fields, grid.columns());
+    let positions: Vec<FacetPosition> = facets.all.iter().map(|f| f.position(&grid)).collect();
+    let fields = fields(&grid, &facets, &positions, operands)?;
+    let operand_indices = operand_indices(operands);
+    let value = value(
+        problem.expression,
+        &operand_indices,
+        &fields,
+        grid.columns(),
+    );
     let scene = Scene {
         cell: problem.cell,
         grid: &grid,
         facets: &facets,
-        extents: &extents,
+        positions: &positions,
         fields: &fields,
         value: &value,
         expression: problem.expression,
-        places: &places,
+        operand_indices: &operand_indices,
     };
     let kept = scene.keep()?;
     Some((kept, i32::from(value[0] & 1 != 0)))
@@ -71,39 +76,39 @@ fn kept_and_corner(problem: &CellProblem) -> Option<(Vec<Kept>, i32)> {
 fn fields(
     grid: &Grid,
     facets: &Facets,
-    extents: &[Extent],
-    operands: &[Listed],
+    positions: &[FacetPosition],
+    operands: &[ListedOperand],
 ) -> Option<Vec<Vec<u64>>> {
     let mut start = 0;
-    let field = |(operand, listed): (usize, &Listed)| {
+    let field = |(operand, listed): (usize, &ListedOperand)| {
         let end = facets.all.partition_point(|f| f.operand <= operand);
         let own = std::mem::replace(&mut start, end)..end;
-        let facets = facets.all[own.clone()].iter().zip(&extents[own]);
+        let facets = facets.all[own.clone()].iter().zip(&positions[own]);
         labels::field(grid, facets, listed.list.corner)
     };
     operands.iter().enumerate().map(field).collect()
 }
 
 /// Returns a table that maps the numbers of operands in the expression to their indices in the list.
-fn places(operands: &[Listed]) -> Vec<usize> {
+fn operand_indices(operands: &[ListedOperand]) -> Vec<usize> {
     let last = operands.last().map_or(0, |l| l.number as usize);
-    let mut places = vec![0; last + 1];
-    for (place, listed) in operands.iter().enumerate() {
-        places[listed.number as usize] = place;
+    let mut operand_indices = vec![0; last + 1];
+    for (index, listed) in operands.iter().enumerate() {
+        operand_indices[listed.number as usize] = index;
     }
-    places
+    operand_indices
 }
 
 /// Returns the boxes of the grid in which an expression is true, as a word of bits for each column along z.
 fn value(
     expression: &Expression,
-    places: &[usize],
+    operand_indices: &[usize],
     fields: &[Vec<u64>],
     columns: usize,
 ) -> Vec<u64> {
     let scratch = &mut Vec::new();
     let word = |i: usize, scratch: &mut _| {
-        expression.words(|k: u32| fields[places[k as usize]][i], scratch)
+        expression.words(|k: u32| fields[operand_indices[k as usize]][i], scratch)
     };
     (0..columns).map(|i| word(i, scratch)).collect()
 }

@@ -1,16 +1,16 @@
 //! Cuts a facet (a face perpendicular to an axis) into the pieces that bound the result.
 
-use super::facet::{Facet, ACROSS};
+use super::facet::{Facet, OTHER_AXES};
 use super::grid::Grid;
 use crate::geometry::cell::Cell;
 use crate::geometry::polygon::{Polygon, PolygonSplit};
 use crate::interrupt::poll;
 
-/// Returns pieces of a facet that cover its rectangles that stay in the result.
+/// Returns polygons that cover those rectangles of a facet that stay in the result.
 ///
-/// Rectangles of the grid are bits in rows, from row `first` on; `touched` marks those that the facet
-/// touches, and `stay` those that stay. Compatible rows form one slab, and each run of bits in a slab one
-/// piece.
+/// Rectangles of the grid are bits in rows, from row `first` on; `touched` marks the ones that the facet
+/// touches, and `stay` the ones that stay. Compatible rows form one slab, and each sequence of adjacent set
+/// bits in a slab one polygon.
 pub(super) fn pieces(
     cell: &Cell,
     grid: &Grid,
@@ -19,7 +19,7 @@ pub(super) fn pieces(
     touched: &[u64],
     stay: &[u64],
 ) -> Vec<Polygon> {
-    let (row, bit) = ACROSS[facet.axis];
+    let (row, bit) = OTHER_AXES[facet.axis];
     let mut found = Vec::new();
     let mut rest = facet.polygon_in(cell);
     let mut start = 0;
@@ -64,8 +64,8 @@ impl Slab {
         Self { rows, stay, go }
     }
 
-    /// Returns the next run of rectangles that stay, from bit `from` on: its first bit, and the first later
-    /// bit that goes; `None` if there is no further run.
+    /// Returns the next sequence of adjacent rectangles that stay, from bit `from` on: its first bit, and the
+    /// first later bit that goes; `None` if there is none.
     fn run(&self, from: u32) -> Option<(u32, u32)> {
         let rest = self.stay & u64::MAX.checked_shl(from)?;
         if rest == 0 {
@@ -77,8 +77,8 @@ impl Slab {
     }
 }
 
-/// Adds the pieces for the runs of rectangles that stay in one slab of a facet; `polygon` is the part of the
-/// facet in the slab.
+/// Adds the polygons for the sequences of adjacent rectangles that stay in one slab of a facet; `polygon` is
+/// the part of the facet in the slab.
 fn cut_slab(
     polygon: Option<Polygon>,
     grid: &Grid,

@@ -16,8 +16,8 @@ use crate::geometry::polygon::{straddle, Polygon, PolygonSplit};
 use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
 
-/// Makes the fragments of one plane disjoint: where fragments overlap, the piece has the sum of their weights
-/// and the face of the first one.
+/// Makes the fragments of one plane (polygons with weights) disjoint: where fragments overlap, their
+/// intersection gets the sum of their weights and the face of the first one.
 pub(super) fn partitioned(fragments: &[Fragment]) -> Vec<Fragment> {
     let Some(region) = fragments
         .first()
@@ -33,7 +33,7 @@ pub(super) fn partitioned(fragments: &[Fragment]) -> Vec<Fragment> {
     partition.pieces(fragments)
 }
 
-/// A fragment, given by planes through its edges.
+/// A fragment (a polygon with a weight), given by planes through its edges.
 struct Shape {
     /// For each edge a plane through it, with the fragment on its minus side.
     walls: SmallVec<[Arc<Plane>; 4]>,
@@ -67,15 +67,15 @@ struct Cover {
 }
 
 impl Cover {
-    fn with(self, place: u32, weight: i32) -> Self {
+    fn with(self, number: u32, weight: i32) -> Self {
         Self {
             weight: self.weight + weight,
-            first: Some(self.first.map_or(place, |first| first.min(place))),
+            first: Some(self.first.map_or(number, |first| first.min(number))),
         }
     }
 
-    /// Returns true if two adjacent cells can be merged: they have the same weight and, unless this is 0, the
-    /// same first fragment.
+    /// Returns true if two adjacent cells of the plane can be merged: they have the same weight and, unless
+    /// this is 0, the same first fragment.
     fn is_like(self, other: Self) -> bool {
         self.weight == other.weight && (self.weight == 0 || self.first == other.first)
     }
@@ -85,8 +85,8 @@ impl Cover {
 struct Covered {
     region: Polygon,
     cover: Cover,
-    /// The indices of the halves on the minus and the plus side of the cell's cut; `None` if the cell is not
-    /// divided.
+    /// The indices of the halves on the minus and the plus side of the line that cuts the cell; `None` if the
+    /// cell is not divided.
     children: Option<[usize; 2]>,
 }
 
@@ -100,10 +100,11 @@ impl Covered {
     }
 }
 
-/// A fragment that covers a part of a cell, and the indices of its edges that may cross the cell.
+/// A fragment that covers a part of a cell of the plane, and the indices of its edges that may cross the
+/// cell.
 #[derive(Clone)]
 struct Crossing {
-    place: u32,
+    number: u32,
     walls: SmallVec<[u32; 4]>,
 }
 
@@ -113,10 +114,10 @@ struct Partition {
 }
 
 impl Partition {
-    /// Divides the whole plane until no edge of a fragment crosses a cell.
+    /// Divides the whole plane until no edge of a fragment crosses a cell of it.
     fn grow(&mut self) {
-        let all = (0u32..).zip(&self.shapes).map(|(place, shape)| Crossing {
-            place,
+        let all = (0u32..).zip(&self.shapes).map(|(number, shape)| Crossing {
+            number,
             walls: (0..as_number(shape.walls.len())).collect(),
         });
         let mut open = vec![(0, all.collect::<Vec<_>>())];
@@ -136,8 +137,8 @@ impl Partition {
         }
     }
 
-    /// Adds the fragments that cover all of a cell to its cover, and returns the fragments that cover only a
-    /// part of it.
+    /// Adds to a cell's cover the fragments that cover all of this cell of the plane, and returns the
+    /// fragments that cover only a part of it.
     fn settle(&mut self, cell: usize, crossing: Vec<Crossing>) -> Vec<Crossing> {
         let mut left = Vec::with_capacity(crossing.len());
         for one in crossing {
@@ -147,7 +148,7 @@ impl Partition {
             };
             if walls.is_empty() {
                 let cover = &mut self.cells[cell].cover;
-                *cover = cover.with(one.place, self.shapes[one.place as usize].weight);
+                *cover = cover.with(one.number, self.shapes[one.number as usize].weight);
             } else {
                 left.push(Crossing { walls, ..one });
             }
@@ -155,9 +156,10 @@ impl Partition {
         left
     }
 
-    /// Returns the edges of a fragment that cross a cell; `None` if the cell lies outside the fragment.
+    /// Returns the edges of a fragment that cross a cell of the plane; `None` if the cell lies outside the
+    /// fragment.
     fn walls_across(&self, cell: usize, crossing: &Crossing) -> Option<SmallVec<[u32; 4]>> {
-        let shape = &self.shapes[crossing.place as usize];
+        let shape = &self.shapes[crossing.number as usize];
         let mut across = SmallVec::new();
         for &wall in &crossing.walls {
             let sides = self.cells[cell].region.sides(&shape.walls[wall as usize]);
@@ -170,19 +172,19 @@ impl Partition {
         Some(across)
     }
 
-    /// Returns the halves of a cell, cut along an edge of the fragment in the middle of the list; `None` if
-    /// the list is empty.
+    /// Returns the halves of a cell of the plane, cut along an edge of the fragment in the middle of the
+    /// list; `None` if the list is empty.
     fn halves(&self, cell: usize, crossing: &[Crossing]) -> Option<[Polygon; 2]> {
         let one = crossing.get(crossing.len() / 2)?;
         let wall = *one.walls.first()?;
-        let cut = &self.shapes[one.place as usize].walls[wall as usize];
+        let cut = &self.shapes[one.number as usize].walls[wall as usize];
         match self.cells[cell].region.split(cut) {
             PolygonSplit::Both(minus, plus) => Some([minus, plus]),
             _ => None,
         }
     }
 
-    /// Returns the covered cells as pieces of fragments; halves with the same cover are merged.
+    /// Returns the covered cells of the plane as fragments; halves with the same cover are merged.
     fn pieces(mut self, fragments: &[Fragment]) -> Vec<Fragment> {
         for cell in (0..self.cells.len()).rev() {
             poll();
@@ -217,7 +219,7 @@ impl Partition {
     }
 }
 
-/// Returns a region of the plane as a piece of a fragment, with the fragment's orientation.
+/// Returns a region of the plane as a fragment with the face and the orientation of the fragment `of`.
 fn piece(region: &Polygon, weight: i32, of: &Fragment) -> Fragment {
     let same = of.polygon.support().coincides(region.support()) == Some(Orientation::Same);
     Fragment {

@@ -17,21 +17,21 @@ use crate::geometry::side::{Half, Orientation, Side};
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 
-/// A convex piece of boundary, with the jump of the winding number across it.
+/// A convex piece of an operand's boundary, with the jump of the winding number across it.
 ///
 /// The winding number on the minus side of the polygon's plane exceeds the number on its plus side by
 /// `weight`.
 #[derive(Clone, Debug)]
-pub struct Weighted {
+pub struct WeightedPolygon {
     /// The polygon of the piece.
     pub polygon: Polygon,
     /// The winding number on the minus side of the polygon's plane, minus the number on its plus side.
     pub weight: i32,
 }
 
-/// A piece of a polygon, and the winding numbers of an operand on the minus and the plus side of its plane.
+/// A part of a polygon, and the winding numbers of an operand on the minus and the plus side of its plane.
 #[derive(Debug)]
-pub struct Sided {
+pub struct LabelledPolygon {
     /// The polygon of the piece.
     pub polygon: Polygon,
     /// The winding number on the minus side of the polygon's plane.
@@ -42,10 +42,10 @@ pub struct Sided {
 
 /// A region (leaf) of the tree, by the index of its winding number.
 #[derive(Clone, Copy, Debug)]
-struct Region(u32);
+struct LeafIndex(u32);
 
-impl Region {
-    fn place(self) -> usize {
+impl LeafIndex {
+    fn index(self) -> usize {
         self.0 as usize
     }
 }
@@ -54,7 +54,7 @@ impl Region {
 #[derive(Clone, Copy, Debug)]
 enum Child {
     Node(NodeId),
-    Leaf(Region),
+    Leaf(LeafIndex),
 }
 
 #[derive(Debug)]
@@ -72,13 +72,14 @@ pub struct LocalTree {
     labels: Vec<i32>,
 }
 
-/// A fragment, or a piece of a fragment, while the tree is built.
+/// A fragment of an operand's boundary, or a piece of it, while the tree is built.
 struct PendingFragment {
-    fragment: Weighted,
+    fragment: WeightedPolygon,
     extent: Extent,
 }
 
-/// The fragments and their pieces while the tree is built; tasks refer to them by index.
+/// The fragments of an operand's boundary and their pieces while the tree is built; tasks refer to them by
+/// index.
 struct TreeBuilder {
     all: Vec<PendingFragment>,
     /// For each node one fragment in its plane, which relates the winding numbers on both sides of the node.
@@ -95,7 +96,7 @@ impl LocalTree {
     /// Builds the tree of fragments in a cell, no two of which overlap.
     ///
     /// `corner` is the cell's low corner in half lattice steps, and `label` the winding number there.
-    pub fn build(fragments: Vec<Weighted>, corner: &Lattice, label: i32) -> Self {
+    pub fn build(fragments: Vec<WeightedPolygon>, corner: &Lattice, label: i32) -> Self {
         let mut tree = Self {
             nodes: Vec::new(),
             labels: Vec::new(),
@@ -105,12 +106,12 @@ impl LocalTree {
             poll();
             let child = if task.pieces.is_empty() {
                 tree.labels.push(0);
-                Child::Leaf(Region(as_number(tree.labels.len()) - 1))
+                Child::Leaf(LeafIndex(as_number(tree.labels.len()) - 1))
             } else {
                 tree.grow(task.pieces, &mut builder)
             };
             if let Some((node, side)) = task.parent {
-                tree.nodes[node.place()].children[side] = child;
+                tree.nodes[node.index()].children[side] = child;
             }
         }
         tree.spread_labels(&builder, corner, label);
@@ -132,7 +133,7 @@ impl LocalTree {
 
     fn root(&self) -> Child {
         if self.nodes.is_empty() {
-            Child::Leaf(Region(0))
+            Child::Leaf(LeafIndex(0))
         } else {
             Child::Node(NodeId::ROOT)
         }
@@ -148,7 +149,7 @@ impl LocalTree {
         builder.links.push(pivot);
         self.nodes.push(LocalNode {
             cut,
-            children: [Child::Leaf(Region(0)); 2],
+            children: [Child::Leaf(LeafIndex(0)); 2],
             extent: extent.unwrap_or(builder.all[pivot].extent),
         });
         for (side, pieces) in [(1, plus), (0, minus)] {
@@ -166,24 +167,24 @@ impl LocalTree {
     /// A link is a fragment in a node's plane, between a region of the minus subtree and one of the plus
     /// subtree. There is one for each node, so the links connect all regions.
     fn spread_labels(&mut self, builder: &TreeBuilder, corner: &Lattice, label: i32) {
-        let mut neighbours: Vec<Vec<(Region, i32)>> = vec![Vec::new(); self.labels.len()];
+        let mut neighbours: Vec<Vec<(LeafIndex, i32)>> = vec![Vec::new(); self.labels.len()];
         for (node, link) in self.nodes.iter().zip(&builder.links) {
             poll();
-            let Weighted { polygon, weight } = &builder.all[*link].fragment;
+            let WeightedPolygon { polygon, weight } = &builder.all[*link].fragment;
             let [below, above] = node.children.map(|child| self.leaf_beside(child, polygon));
-            neighbours[below.place()].push((above, -weight));
-            neighbours[above.place()].push((below, *weight));
+            neighbours[below.index()].push((above, -weight));
+            neighbours[above.index()].push((below, *weight));
         }
         let start = self.leaf_at(corner);
         let mut known = vec![false; self.labels.len()];
-        known[start.place()] = true;
-        self.labels[start.place()] = label;
+        known[start.index()] = true;
+        self.labels[start.index()] = label;
         let mut open = vec![start];
         while let Some(leaf) = open.pop() {
-            let here = self.labels[leaf.place()];
-            for (next, change) in &neighbours[leaf.place()] {
-                if !std::mem::replace(&mut known[next.place()], true) {
-                    self.labels[next.place()] = here + change;
+            let here = self.labels[leaf.index()];
+            for (next, change) in &neighbours[leaf.index()] {
+                if !std::mem::replace(&mut known[next.index()], true) {
+                    self.labels[next.index()] = here + change;
                     open.push(*next);
                 }
             }
@@ -195,7 +196,7 @@ impl LocalTree {
     ///
     /// A point of the polygon near a corner, next to the edge that leaves it, lies in a plane only if the
     /// whole polygon does.
-    fn leaf_beside(&self, from: Child, polygon: &Polygon) -> Region {
+    fn leaf_beside(&self, from: Child, polygon: &Polygon) -> LeafIndex {
         let corners = polygon.corners();
         let nearest = [0, 1, corners.len() - 1].map(|i| &corners[i].at);
         let mut at = from;
@@ -203,7 +204,7 @@ impl LocalTree {
             poll();
             let node = match at {
                 Child::Leaf(leaf) => return leaf,
-                Child::Node(node) => &self.nodes[node.place()],
+                Child::Node(node) => &self.nodes[node.index()],
             };
             let sides = nearest.iter().map(|corner| corner.side_of(&node.cut));
             let side = sides.into_iter().find(|side| *side != Side::On);
@@ -211,13 +212,13 @@ impl LocalTree {
         }
     }
 
-    fn leaf_at(&self, corner: &Lattice) -> Region {
+    fn leaf_at(&self, corner: &Lattice) -> LeafIndex {
         let mut at = self.root();
         loop {
             match at {
                 Child::Leaf(leaf) => return leaf,
                 Child::Node(node) => {
-                    let node = &self.nodes[node.place()];
+                    let node = &self.nodes[node.index()];
                     at = node.children[usize::from(node.cut.side_of_corner(corner) == Half::Plus)];
                 }
             }
@@ -229,9 +230,9 @@ impl LocalTree {
         let mut at = self.root();
         loop {
             match at {
-                Child::Leaf(leaf) => return self.labels[leaf.place()],
+                Child::Leaf(leaf) => return self.labels[leaf.index()],
                 Child::Node(node) => {
-                    let node = &self.nodes[node.place()];
+                    let node = &self.nodes[node.index()];
                     at = node.children[usize::from(node.cut.side_of_lattice(point) == Side::Plus)];
                 }
             }
@@ -240,7 +241,7 @@ impl LocalTree {
 
     /// Cuts a polygon where winding numbers change, and returns its pieces with the winding numbers on both
     /// sides.
-    pub fn sides(&self, polygon: Polygon) -> Vec<Sided> {
+    pub fn sides(&self, polygon: Polygon) -> Vec<LabelledPolygon> {
         let mut found = Vec::new();
         let mut open = vec![(self.root(), polygon)];
         while let Some((at, polygon)) = open.pop() {
@@ -248,8 +249,8 @@ impl LocalTree {
             let (polygon, ended) = self.descend(at, polygon, &mut open);
             match ended {
                 PathEnd::Within(leaf) => {
-                    let label = self.labels[leaf.place()];
-                    found.push(Sided {
+                    let label = self.labels[leaf.index()];
+                    found.push(LabelledPolygon {
                         polygon,
                         minus: label,
                         plus: label,
@@ -270,7 +271,7 @@ impl LocalTree {
         node: &LocalNode,
         polygon: Polygon,
         orientation: Orientation,
-        found: &mut Vec<Sided>,
+        found: &mut Vec<LabelledPolygon>,
     ) {
         for (piece, below) in self.labelled(node.children[0], polygon) {
             poll();
@@ -279,7 +280,7 @@ impl LocalTree {
                     Orientation::Same => (below, above),
                     Orientation::Opposite => (above, below),
                 };
-                found.push(Sided {
+                found.push(LabelledPolygon {
                     polygon,
                     minus,
                     plus,
@@ -297,7 +298,7 @@ impl LocalTree {
             poll();
             let (polygon, ended) = self.descend(at, polygon, &mut open);
             match ended {
-                PathEnd::Within(leaf) => found.push((polygon, self.labels[leaf.place()])),
+                PathEnd::Within(leaf) => found.push((polygon, self.labels[leaf.index()])),
                 // A polygon in a node's plane is no fragment of its subtrees.
                 PathEnd::Coplanar(node, _) => open.push((node.children[0], polygon)),
             }
@@ -322,7 +323,7 @@ impl LocalTree {
             poll();
             let node = match at {
                 Child::Leaf(leaf) => return (polygon, PathEnd::Within(leaf)),
-                Child::Node(node) => &self.nodes[node.place()],
+                Child::Node(node) => &self.nodes[node.index()],
             };
             if extent.misses(&node.extent) {
                 let leaf = self.leaf_beside(at, &polygon);
@@ -348,13 +349,13 @@ impl LocalTree {
 /// The end of the path of a polygon down a tree.
 enum PathEnd<'t> {
     /// The polygon lies in this region, or in several with the same winding number.
-    Within(Region),
+    Within(LeafIndex),
     /// The polygon lies in the plane of this node, in this orientation.
     Coplanar(&'t LocalNode, Orientation),
 }
 
 impl TreeBuilder {
-    fn of(fragments: Vec<Weighted>) -> Self {
+    fn of(fragments: Vec<WeightedPolygon>) -> Self {
         let all: Vec<PendingFragment> = fragments.into_iter().map(PendingFragment::of).collect();
         let first = Task {
             pieces: (0..all.len()).collect(),
@@ -367,13 +368,13 @@ impl TreeBuilder {
         }
     }
 
-    /// Divides pieces by a plane and returns those on its minus and on its plus side, without pieces that lie
-    /// in it.
+    /// Divides fragments of an operand's boundary by a plane and returns their pieces on the minus and on the
+    /// plus side, without fragments that lie in the plane.
     fn divide(&mut self, pieces: &[usize], cut: &Arc<Plane>) -> [Vec<usize>; 2] {
         let (mut minus, mut plus) = (Vec::new(), Vec::new());
         for &piece in pieces {
             poll();
-            let Weighted { polygon, weight } = &self.all[piece].fragment;
+            let WeightedPolygon { polygon, weight } = &self.all[piece].fragment;
             if polygon.support().coincides(cut).is_some() {
                 continue;
             }
@@ -383,7 +384,7 @@ impl TreeBuilder {
                 PolygonSplit::Both(below, above) => {
                     let part = |polygon: Polygon| {
                         let weight = *weight;
-                        PendingFragment::of(Weighted { polygon, weight })
+                        PendingFragment::of(WeightedPolygon { polygon, weight })
                     };
                     let (below, above) = (part(below), part(above));
                     minus.push(piece);
@@ -398,7 +399,7 @@ impl TreeBuilder {
 }
 
 impl PendingFragment {
-    fn of(fragment: Weighted) -> Self {
+    fn of(fragment: WeightedPolygon) -> Self {
         let extent = extent(&fragment.polygon);
         Self { fragment, extent }
     }
@@ -427,7 +428,7 @@ mod tests {
             let clipped = source
                 .face_ids()
                 .filter_map(|face| source.clip(face, &cell));
-            fragments.extend(clipped.map(|polygon| Weighted {
+            fragments.extend(clipped.map(|polygon| WeightedPolygon {
                 polygon,
                 weight: *weight,
             }));
@@ -452,9 +453,9 @@ mod tests {
         let across = triangle([[2, 2, 5], [14, 2, 5], [2, 4, 5]]);
         let sides = tree.sides(across);
         assert!(sides.iter().all(|s| s.minus == s.plus));
-        let inside = |s: &&Sided| s.minus == 1;
+        let inside = |s: &&LabelledPolygon| s.minus == 1;
         assert!(sides.iter().any(|s| inside(&s)) && sides.iter().any(|s| s.minus == 0));
-        let beyond = |s: &Sided| s.polygon.bounds().1[0] > 9.5;
+        let beyond = |s: &LabelledPolygon| s.polygon.bounds().1[0] > 9.5;
         assert!(sides.iter().filter(inside).all(|s| !beyond(s)));
     }
 }

@@ -11,8 +11,8 @@ mod local_tree;
 mod operand;
 mod overlay;
 
-use super::kept::{assemble, Kept};
-use super::problem::{CellProblem, Kernel, Listed};
+use super::kept::{assemble, KeptPart};
+use super::problem::{CellProblem, Kernel, ListedOperand};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
@@ -20,7 +20,7 @@ use crate::merge::expression::Expression;
 use crate::merge::rule::Rule;
 use crate::tree::node::Node;
 pub(in crate::merge) use fragment::Fragment;
-use local_tree::{LocalTree, Sided};
+use local_tree::{LabelledPolygon, LocalTree};
 pub use operand::LeafTree;
 use operand::Operand;
 
@@ -30,7 +30,8 @@ use operand::Operand;
 #[derive(Debug)]
 pub struct LocalTrees;
 
-/// A piece of a fragment, with the labels on its two sides: for each operand whether this side is inside it.
+/// A piece of a fragment of an operand's boundary, with the labels on its two sides: for each operand whether
+/// this side is inside it.
 pub(in crate::merge) struct Piece {
     pub(in crate::merge) polygon: Polygon,
     pub(in crate::merge) minus: Vec<bool>,
@@ -40,7 +41,7 @@ pub(in crate::merge) struct Piece {
 impl Kernel for LocalTrees {
     fn solve(&self, problem: &CellProblem, overlapping: &mut Vec<u32>) -> Option<Node> {
         let CellProblem { cell, sources, .. } = *problem;
-        let operand = |l: &Listed| Operand::new(l.number, &l.list, cell, sources);
+        let operand = |l: &ListedOperand| Operand::new(l.number, &l.list, cell, sources);
         let operands: Vec<Operand> = problem.operands.iter().map(operand).collect();
         let overlaps = |o: &&Operand| !o.simple;
         overlapping.extend(operands.iter().filter(overlaps).map(|o| o.number));
@@ -51,8 +52,8 @@ impl Kernel for LocalTrees {
 
 /// Returns the parts of all operands' faces that bound the result, and the expression's value at the cell's
 /// corner (1 for inside).
-fn keep_all(operands: &[Operand], expression: &Expression, rule: Rule) -> (Vec<Kept>, i32) {
-    let bounds = Bounds {
+fn keep_all(operands: &[Operand], expression: &Expression, rule: Rule) -> (Vec<KeptPart>, i32) {
+    let bounds = BoundaryTest {
         operands,
         expression,
     };
@@ -73,19 +74,19 @@ fn keep_all(operands: &[Operand], expression: &Expression, rule: Rule) -> (Vec<K
 }
 
 /// Decides which pieces of faces bound the value of an expression.
-struct Bounds<'a> {
+struct BoundaryTest<'a> {
     operands: &'a [Operand],
     expression: &'a Expression,
 }
 
-impl Bounds<'_> {
-    fn place(&self, number: u32) -> usize {
-        let place = self.operands.iter().position(|o| o.number == number);
-        place.unwrap_or(0)
+impl BoundaryTest<'_> {
+    fn operand_index(&self, number: u32) -> usize {
+        let index = self.operands.iter().position(|o| o.number == number);
+        index.unwrap_or(0)
     }
 
     fn value(&self, labels: &[bool], scratch: &mut Vec<u64>) -> bool {
-        let label = |k: u32| labels[self.place(k)];
+        let label = |k: u32| labels[self.operand_index(k)];
         self.expression.value(label, scratch)
     }
 
@@ -101,12 +102,12 @@ impl Bounds<'_> {
     }
 
     fn is_owned(&self, piece: &Piece, own: usize) -> bool {
-        let word = |labels: &[bool], k: u32| u64::from(labels[self.place(k)]);
+        let word = |labels: &[bool], k: u32| u64::from(labels[self.operand_index(k)]);
         let [minus, plus] = [&piece.minus, &piece.plus];
         let owners = self
             .expression
             .owners(|k| word(minus, k), |k| word(plus, k));
-        owners.iter().any(|(k, _)| self.place(*k) == own)
+        owners.iter().any(|(k, _)| self.operand_index(*k) == own)
     }
 }
 
@@ -138,7 +139,7 @@ fn sides(fragment: &Fragment, own: usize, operands: &[Operand], rule: Rule) -> V
         } else {
             pieces = pieces
                 .into_iter()
-                .flat_map(|p| p.pushed(&operand.tree, rule))
+                .flat_map(|p| p.labelled_by(&operand.tree, rule))
                 .collect();
         }
     }
@@ -146,12 +147,12 @@ fn sides(fragment: &Fragment, own: usize, operands: &[Operand], rule: Rule) -> V
 }
 
 impl Piece {
-    fn pushed(self, tree: &LocalTree, rule: Rule) -> Vec<Self> {
+    fn labelled_by(self, tree: &LocalTree, rule: Rule) -> Vec<Self> {
         poll();
         let mut sided = tree.sides(self.polygon);
         // The last piece, usually the only one, reuses the memory of the labels.
         let last = sided.pop();
-        let labelled = |s: Sided, mut minus: Vec<bool>, mut plus: Vec<bool>| {
+        let labelled = |s: LabelledPolygon, mut minus: Vec<bool>, mut plus: Vec<bool>| {
             minus.push(rule.inside(s.minus));
             plus.push(rule.inside(s.plus));
             Self {
@@ -181,7 +182,7 @@ pub(in crate::merge) fn keep(
     fragment: &Fragment,
     pieces: Vec<Piece>,
     mut side: impl FnMut(&Piece) -> Option<Orientation>,
-) -> Vec<Kept> {
+) -> Vec<KeptPart> {
     let total = pieces.len();
     let mut same = Vec::new();
     let mut turned = Vec::new();
@@ -197,9 +198,9 @@ pub(in crate::merge) fn keep(
         .filter(|(polygons, _)| !polygons.is_empty())
         .map(|(polygons, orientation)| {
             if fragment.intact && polygons.len() == total {
-                Kept::whole(fragment.face, orientation)
+                KeptPart::whole(fragment.face, orientation)
             } else {
-                Kept::pieces(fragment.face, orientation, polygons)
+                KeptPart::pieces(fragment.face, orientation, polygons)
             }
         })
         .collect()

@@ -1,7 +1,7 @@
 //! One operand in a small cell: its fragments (convex pieces of faces) and its local tree.
 
 use super::fragment::Fragment;
-use super::local_tree::{LocalTree, Weighted};
+use super::local_tree::{LocalTree, WeightedPolygon};
 use super::overlay::disjoint;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
@@ -28,7 +28,7 @@ impl Operand {
         let (fragments, overlap) = disjoint(fragments(list, cell, sources));
         let weighted = fragments
             .iter()
-            .map(|f| Weighted {
+            .map(|f| WeightedPolygon {
                 polygon: f.polygon.clone(),
                 weight: f.weight,
             })

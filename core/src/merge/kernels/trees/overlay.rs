@@ -9,8 +9,8 @@ use crate::geometry::doubles::extent::Extent;
 use crate::geometry::plane::Plane;
 use crate::interrupt::poll;
 
-/// Makes fragments disjoint: where fragments overlap, a piece of the first one stays, with the sum of the
-/// weights.
+/// Makes fragments of an operand's boundary disjoint: where fragments overlap, a piece of the first one
+/// stays, with the sum of the weights.
 ///
 /// Pieces with the sum 0 bound nothing and are dropped. The returned flag is true if any fragments
 /// overlapped.
@@ -33,7 +33,7 @@ pub fn disjoint(fragments: Vec<Fragment>) -> (Vec<Fragment>, bool) {
     (all, overlap)
 }
 
-/// Groups fragments by their planes.
+/// Groups fragments of an operand's boundary by their planes.
 fn by_planes(fragments: Vec<Fragment>) -> Vec<Vec<Fragment>> {
     let mut groups: Vec<Vec<Fragment>> = Vec::new();
     let mut names: Vec<Arc<Plane>> = Vec::new();
@@ -51,11 +51,11 @@ fn by_planes(fragments: Vec<Fragment>) -> Vec<Vec<Fragment>> {
     groups
 }
 
-/// Returns for each fragment of a plane whether it has an area in common with another one.
+/// Returns for each fragment of a list of coplanar ones whether it has an area in common with another one.
 fn overlapping(group: &[Fragment]) -> Vec<bool> {
     let extents: Vec<Extent> = group.iter().map(|f| extent(&f.polygon)).collect();
     let lie_beside = |i: usize, j: usize| {
-        extents[i].misses(&extents[j]) || group[i].polygon.lies_beside(&group[j].polygon)
+        extents[i].misses(&extents[j]) || group[i].polygon.is_separated_from(&group[j].polygon)
     };
     let mut overlaps = vec![false; group.len()];
     for i in 1..group.len() {

@@ -1,39 +1,39 @@
 //! The positions of facets (faces perpendicular to axes) in the grid of a cell.
 
-use super::facet::{Facet, Place, ACROSS};
-use super::grid::{Grid, Reach};
+use super::facet::{Facet, FacetOrigin, OTHER_AXES};
+use super::grid::{Grid, IntervalRange};
 
 /// The position of a facet in the grid of a cell.
-pub(super) struct Extent {
+pub(super) struct FacetPosition {
     /// The number of the facet's plane among the grid's planes on its axis.
     pub(super) line: usize,
     /// The rows of rectangles that the facet's bounds overlap.
-    pub(super) rows: Reach,
+    pub(super) rows: IntervalRange,
     /// The bits in each row that the facet's bounds overlap.
-    pub(super) bits: Reach,
+    pub(super) bits: IntervalRange,
 }
 
 impl Facet<'_> {
     /// Returns the intervals of the grid on an axis that the facet's bounds overlap.
-    fn reach(&self, grid: &Grid, axis: usize) -> Reach {
-        match &self.place {
-            Place::Face(_, _, corners) => {
+    fn interval_range(&self, grid: &Grid, axis: usize) -> IntervalRange {
+        match &self.origin {
+            FacetOrigin::Face(_, _, corners) => {
                 let along = corners.map(|p| 2 * p[axis]);
                 let [a, b, c] = along;
-                grid.between(axis, a.min(b).min(c), a.max(b).max(c))
+                grid.intervals_between(axis, a.min(b).min(c), a.max(b).max(c))
             }
-            Place::Plane(..) => Reach::all(grid.count(axis)),
-            Place::Piece(_, polygon) => grid.under(axis, polygon),
+            FacetOrigin::Plane(..) => IntervalRange::all(grid.count(axis)),
+            FacetOrigin::Piece(_, polygon) => grid.intervals_under(axis, polygon),
         }
     }
 
     /// Returns the position of the facet in a grid.
-    pub(super) fn extent(&self, grid: &Grid) -> Extent {
-        let (row, bit) = ACROSS[self.axis];
-        Extent {
-            line: grid.find(self.axis, self.at),
-            rows: self.reach(grid, row),
-            bits: self.reach(grid, bit),
+    pub(super) fn position(&self, grid: &Grid) -> FacetPosition {
+        let (row, bit) = OTHER_AXES[self.axis];
+        FacetPosition {
+            line: grid.number_of_plane(self.axis, self.at),
+            rows: self.interval_range(grid, row),
+            bits: self.interval_range(grid, bit),
         }
     }
 }
@@ -51,9 +51,9 @@ mod tests {
         let facets = Facets::new(&scene.cell, &operands, &scene.sources).expect("upright");
         let grid = Grid::new(&scene.cell, &facets).expect("a coarse grid");
         for facet in &facets.all {
-            let extent = facet.extent(&grid);
-            assert_eq!(extent.line, if facet.at == 1 { 1 } else { 2 });
-            assert_eq!((extent.rows.touched, extent.bits.touched), (1..2, 1..2));
+            let position = facet.position(&grid);
+            assert_eq!(position.line, if facet.at == 1 { 1 } else { 2 });
+            assert_eq!((position.rows.touched, position.bits.touched), (1..2, 1..2));
         }
     }
 }

@@ -14,48 +14,49 @@ use crate::tree::solid::Solid;
 /// no longer separates them.
 const MAX_ELEMENTS_STUCK: usize = 256;
 
-/// Returns true if a small cell around one of the points `places` shows that the solid's faces overlap or
+/// Returns true if a small cell around one of the points `points` shows that the solid's faces overlap or
 /// enclose a region twice; false proves nothing.
 ///
 /// # Cost
 /// Divides lists of faces only around the points, and builds at most one local tree for each point.
-pub fn overlaps_at(solid: &Solid, places: &[Lattice]) -> bool {
+pub fn overlaps_itself_at(solid: &Solid, points: &[Lattice]) -> bool {
     let sources = Sources::new(solid.sources().clone());
-    let mut open: Vec<(Branch, Vec<Lattice>)> = vec![(solid.root().clone(), places.to_vec())];
-    while let Some((branch, mut places)) = open.pop() {
+    let mut open: Vec<(Branch, Vec<Lattice>)> = vec![(solid.root().clone(), points.to_vec())];
+    while let Some((branch, mut points)) = open.pop() {
         poll();
-        places.retain(|p| branch.cell.holds_box(p, p));
-        if places.is_empty() {
+        points.retain(|p| branch.cell.contains_box(p, p));
+        if points.is_empty() {
             continue;
         }
         match &*branch.node {
             Node::Leaf(_) => {}
             Node::Deferred(leaf) => {
                 let list = List::open(leaf, &branch, &sources);
-                if overlaps_in(&sources, branch.cell, list, places) {
+                if overlaps_in(&sources, branch.cell, list, points) {
                     return true;
                 }
             }
             Node::Cut(halves) => {
                 let children = halves.children.each_ref();
-                open.extend(children.map(|c| (Branch::child(&branch, c), places.clone())));
+                open.extend(children.map(|c| (Branch::child(&branch, c), points.clone())));
             }
         }
     }
     false
 }
 
-/// Returns true if the local tree of a small cell around one of the points `places` shows that listed
-/// elements overlap or enclose a region twice.
-fn overlaps_in(sources: &Sources, cell: Cell, list: List, places: Vec<Lattice>) -> bool {
-    let mut open = vec![(cell, list, places)];
-    while let Some((cell, list, places)) = open.pop() {
+/// Returns true if the local tree of a small cell around one of the points `points` shows that listed
+/// elements (faces or parts of faces) overlap or enclose a region twice.
+fn overlaps_in(sources: &Sources, cell: Cell, list: List, points: Vec<Lattice>) -> bool {
+    let mut open = vec![(cell, list, points)];
+    while let Some((cell, list, points)) = open.pop() {
         poll();
-        if places.is_empty() || list.is_empty() {
+        if points.is_empty() || list.is_empty() {
             continue;
         }
-        let is_stuck =
-            || list.len() <= MAX_ELEMENTS_STUCK && list.reaching_out(&cell) * 8 > list.len() * 7;
+        let is_stuck = || {
+            list.len() <= MAX_ELEMENTS_STUCK && list.count_reaching_out(&cell) * 8 > list.len() * 7
+        };
         let Some(cut) = cell
             .cut()
             .filter(|_| list.len() > MAX_ELEMENTS_PER_LEAF && !is_stuck())
@@ -66,10 +67,10 @@ fn overlaps_in(sources: &Sources, cell: Cell, list: List, places: Vec<Lattice>) 
             }
             continue;
         };
-        let (below, above) = places.into_iter().partition(|p| p[cut.axis] < cut.at);
+        let (below, above) = points.into_iter().partition(|p| p[cut.axis] < cut.at);
         let (minus, plus) = list.divide(&cell, cut, sources);
-        for (half, list, places) in [(Half::Minus, minus, below), (Half::Plus, plus, above)] {
-            open.push((cell.half(cut, half), list, places));
+        for (half, list, points) in [(Half::Minus, minus, below), (Half::Plus, plus, above)] {
+            open.push((cell.half(cut, half), list, points));
         }
     }
     false
@@ -85,7 +86,7 @@ mod tests {
     fn an_overlap_is_seen_where_it_is_and_nowhere_else() {
         let apart = |i: i64| [[8 * i; 3], [8 * i + 4; 3]];
         let solid = cuboids((0..9).map(apart).chain([[[34; 3], [38; 3]]]));
-        assert!(overlaps_at(&solid, &[[2; 3], [35; 3]]));
-        assert!(!overlaps_at(&solid, &[[2; 3], [66; 3], [900; 3]]));
+        assert!(overlaps_itself_at(&solid, &[[2; 3], [35; 3]]));
+        assert!(!overlaps_itself_at(&solid, &[[2; 3], [66; 3], [900; 3]]));
     }
 }
