@@ -28,7 +28,7 @@ with _Quietly():
 
     import sys as _sys
 
-    from .meant import no_attribute as _no_attribute
+    from .suggestions import attribute_error as _no_attribute
 
 if TYPE_CHECKING:
     from ._core import __version__
@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     from .modelling.bodies.sums import minkowski
     from .modelling.making.edges import EdgeSelection
     from .modelling.making.faces import FaceSelection
-    from .modelling.making.heights import surface
+    from .modelling.making.height_maps import surface
     from .modelling.making.lofting import loft
     from .modelling.making.paths import helix, spline
     from .modelling.making.patterns import grid, linear_pattern, polar_pattern
@@ -64,6 +64,7 @@ if TYPE_CHECKING:
     from .modelling.planar.lettering.text import text
     from .operations.setops import boolean, difference, intersection, union, xor
     from .parameters import set_threads
+    from .progress_display import progress
     from .script.run import run_script, show
     from .shapes.primitives import (
         box,
@@ -79,7 +80,6 @@ if TYPE_CHECKING:
     )
     from .solid.solid import Solid
     from .verify.check import CheckReport, Verdict, validate
-    from .watching import progress
 
 __all__ = [
     "Assembly",
@@ -149,7 +149,7 @@ _MODULES = {
     "bsp.sets.region": "Region",
     "modelling.making.edges": "EdgeSelection",
     "modelling.making.faces": "FaceSelection",
-    "modelling.making.heights": "surface",
+    "modelling.making.height_maps": "surface",
     "modelling.making.lofting": "loft",
     "modelling.making.paths": "helix spline",
     "modelling.making.patterns": "grid linear_pattern polar_pattern",
@@ -168,7 +168,7 @@ _MODULES = {
     "modelling.planar.curves": "arc bezier",
     "modelling.planar.lettering.text": "text",
     "parameters": "set_threads",
-    "watching": "progress",
+    "progress_display": "progress",
     "shapes.primitives": "box cone cube cylinder extrude half_space prism revolve sphere torus",
     "script.run": "run_script show",
     "operations.setops": "boolean difference intersection union xor",

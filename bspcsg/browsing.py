@@ -15,7 +15,7 @@ def has_screen() -> bool:
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
-def opened(address: str) -> str:
+def open_page(address: str) -> str:
     """Open a page in a browser; return an empty text, or the reason why that failed."""
     if not has_screen():
         return (

@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 #: The control characters that a terminal may execute; tabs and line breaks are harmless.
 _CONTROLS = {*range(0x20), *range(0x7F, 0xA0)} - {ord("\t"), ord("\n")}
 
-_HARMLESS = dict.fromkeys(_CONTROLS, "\N{REPLACEMENT CHARACTER}")
+_REPLACEMENTS = dict.fromkeys(_CONTROLS, "\N{REPLACEMENT CHARACTER}")
 
 
-def harmless(text: str) -> str:
+def without_control_characters(text: str) -> str:
     """Return a text with control characters replaced, so that it cannot control a terminal."""
-    return text.translate(_HARMLESS)
+    return text.translate(_REPLACEMENTS)
 
 
 class BspcsgError(Exception):
@@ -48,7 +48,7 @@ class BspcsgError(Exception):
 
     def __init__(self, message: str, code: str = "internal", where: Sequence[int] = ()) -> None:
         # Pass all arguments to the base class, which pickles them.
-        super().__init__(harmless(message), code, tuple(where))
+        super().__init__(without_control_characters(message), code, tuple(where))
 
     @property
     def message(self) -> str:
@@ -95,7 +95,7 @@ class MissingFileError(FormatError, FileNotFoundError):
     def __init__(self, message: str, code: str = "unreadable", where: Sequence[int] = ()) -> None:
         super().__init__(message, code, where)
         # OSError interprets three arguments differently, so set them again.
-        self.args = harmless(message), code, tuple(where)
+        self.args = without_control_characters(message), code, tuple(where)
         self.errno, self.strerror = errno.ENOENT, os.strerror(errno.ENOENT)
 
     @classmethod
@@ -207,7 +207,7 @@ def format_errors(name: str, what: str) -> Iterator[None]:
     except BspcsgError:
         raise
     except Exception as error:
-        reason = f"{type(error).__name__}: {words_of(error)}"
+        reason = f"{type(error).__name__}: {message_of(error)}"
         message = f"{name}: the file cannot be read as {what} ({reason})."
         raise FormatError(message, "malformed") from error
 
@@ -235,14 +235,14 @@ def core_errors() -> AbstractContextManager[None]:
     return _CORE_ERRORS
 
 
-def held(value: _Value | None, name: str) -> _Value:
+def not_none(value: _Value | None, name: str) -> _Value:
     """Return a value that cannot be None; raise `InternalError` if it is None."""
     if value is None:
         raise internal(f"the internal value “{name}” is missing")
     return value
 
 
-def words_of(error: BaseException) -> str:
+def message_of(error: BaseException) -> str:
     """Return another library's error message as one printable line of limited length."""
     text = " ".join(str(error).split())
     printable = "".join(letter for letter in text if letter.isprintable())[:_MAX_QUOTED_CHARACTERS]
@@ -303,7 +303,7 @@ class Finding:
 
     def __post_init__(self) -> None:
         # The message may quote text from a file.
-        object.__setattr__(self, "message", harmless(self.message))
+        object.__setattr__(self, "message", without_control_characters(self.message))
 
     @classmethod
     def from_core(cls, finding: "CoreFinding") -> "Finding":
@@ -322,13 +322,13 @@ class LossWarning(UserWarning):
 
 
 #: The codes of findings about attributes that were not stored.
-_LOSSES = frozenset({"attributes_left_out", "colors_left_out"})
+_LOSS_CODES = frozenset({"attributes_left_out", "colors_left_out"})
 
 
 def warn_of_losses(findings: Iterable[Finding]) -> None:
     """Issue a `LossWarning` for each finding about attributes that were not stored."""
     for finding in findings:
-        if finding.code in _LOSSES:
+        if finding.code in _LOSS_CODES:
             warnings.warn(finding.message, LossWarning, stacklevel=_levels_to_caller())
 
 
@@ -348,11 +348,11 @@ def _levels_to_caller() -> int:
     """
     frame = sys._getframe(1)
     level = 1
-    while frame.f_back is not None and _is_own(str(frame.f_globals.get("__name__", ""))):
+    while frame.f_back is not None and _is_package_module(str(frame.f_globals.get("__name__", ""))):
         frame = frame.f_back
         level += 1
     return level
 
 
-def _is_own(module: str) -> bool:
+def _is_package_module(module: str) -> bool:
     return module.partition(".")[0] == __package__

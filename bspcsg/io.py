@@ -22,8 +22,8 @@ from .formats.files import (
 from .formats.raw import RawMesh
 from .formats.registry import FORMATS
 from .formats.solids import solid_of
-from .parameters import file_path, of_kind, shown, text_value, truth_value
-from .solid.counting import counted
+from .parameters import file_path, instance_of, shown, text_value, truth_value
+from .solid.ledger import counted
 from .solid.solid import Solid
 
 #: Suffixes of scripts, which `load` evaluates.
@@ -161,7 +161,7 @@ def save(solid: Solid, path: str | os.PathLike[str], *, text: bool = False) -> t
         If the format cannot store an attribute, or stores a colour only in part.
     """
     is_text = truth_value(text, "text")
-    own = of_kind(Solid, solid, "solid")
+    own = instance_of(Solid, solid, "solid")
     if Path(file_path(path)).suffix.lower() == ".csg":
         from . import csg
         from .csg.from_solid import lost_attributes

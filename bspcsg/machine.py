@@ -58,13 +58,13 @@ def _installed_gb() -> float:
         return 0.0
 
 
-def held_mb() -> float:
+def memory_mb() -> float:
     """Return the current memory of this process in 10^6 bytes; if unknown, the peak memory."""
     return _status("VmRSS") or peak_mb()
 
 
 def peak_mb() -> float:
-    """Return the peak memory of this process in 10^6 bytes, since its start or `forget_peak`.
+    """Return the peak memory of this process in 10^6 bytes, since its start or `reset_peak`.
 
     It is 0 if unknown.
     """
@@ -88,7 +88,7 @@ def _used_mb() -> float:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e6
 
 
-def forget_peak() -> bool:
+def reset_peak() -> bool:
     """Reset the peak memory to the current memory; return False if the system cannot do that."""
     try:
         _CLEAR.write_text(_FORGET_PEAK, encoding="utf-8")

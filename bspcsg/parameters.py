@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from ._core import set_threads as _set_threads
 from .errors import LimitError, invalid_parameter
-from .meant import question
+from .suggestions import suggestion_text
 
 if TYPE_CHECKING:
     from ._types import SetOp, WindingRule
@@ -168,7 +168,7 @@ def truth_value(value: Any, name: str) -> bool:
     raise invalid_parameter(f"{name} must be True or False, not {shown(value)}.")
 
 
-def radius(r: Any, d: Any, owner: str, *, default: Any = None) -> Any:
+def radius_or_half_diameter(r: Any, d: Any, owner: str, *, default: Any = None) -> Any:
     """Return the given radius, or half of the given diameter; the radius is not checked.
 
     Parameters
@@ -193,7 +193,7 @@ def radius(r: Any, d: Any, owner: str, *, default: Any = None) -> Any:
     return found
 
 
-def pair(value: Any, name: str) -> tuple[Any, Any]:
+def two_values(value: Any, name: str) -> tuple[Any, Any]:
     """Return the two entries of a sequence, or a single value twice; entries are not checked."""
     try:
         entries = tuple(value)
@@ -226,7 +226,7 @@ def text_value(value: Any, name: str) -> str:
     raise invalid_parameter(f"{name} must be a str, not {shown(value)}.")
 
 
-def texts(value: Any, name: str) -> list[str]:
+def text_list(value: Any, name: str) -> list[str]:
     """Check that a parameter is an iterable of texts, not a single text, and return a list."""
     if isinstance(value, (str, bytes)) or not isinstance(value, Iterable):
         raise invalid_parameter(f"{name} must be a list of str, not {shown(value)}.")
@@ -242,13 +242,13 @@ def values_by_name(value: Any, name: str) -> dict[str, Any]:
     return {text_value(key, f"each name in {name}"): entry for key, entry in value.items()}
 
 
-def word(known: Iterable[str], value: Any, name: str) -> str:
+def one_of(known: Iterable[str], value: Any, name: str) -> str:
     """Check that a parameter is one of the known texts, and return it."""
     words = tuple(known)
     if isinstance(value, str) and value in words:
         return str(value)
     message = f"{name} must be one of {', '.join(words)}, not {shown(value)}."
-    raise invalid_parameter(message + question(value, words))
+    raise invalid_parameter(message + suggestion_text(value, words))
 
 
 def function_of(value: Any, name: str) -> Callable[..., Any]:
@@ -259,7 +259,7 @@ def function_of(value: Any, name: str) -> Callable[..., Any]:
     raise invalid_parameter(f"{name} must be a function, not {shown(value)}.")
 
 
-def of_kind(kind: type[_Kind], value: Any, name: str) -> _Kind:
+def instance_of(kind: type[_Kind], value: Any, name: str) -> _Kind:
     """Check that a parameter is an instance of a class, and return it."""
     if isinstance(value, kind):
         return value

@@ -21,7 +21,7 @@ _PARENT_DEATH_SIGNAL = 1
 
 
 @contextlib.contextmanager
-def watched() -> Iterator[tuple[int, ...]]:
+def parent_pipe() -> Iterator[tuple[int, ...]]:
     """Yield the file descriptors to pass to a child, so that it notices the end of this process.
 
     The tuple is empty on systems other than POSIX.
@@ -78,7 +78,7 @@ def run_program(
     """
     import subprocess
 
-    with watched() as read_by_child:
+    with parent_pipe() as read_by_child:
         start: list[str] = []
         if sys.platform == "linux":
             # The setting to be killed with the parent persists when the program is exchanged.

@@ -14,10 +14,10 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from .errors import MissingPartError, invalid_parameter
-from .meant import question
 from .operations.setops import OPERATIONS
-from .solid.counting import uncounted
+from .solid.ledger import uncounted
 from .solid.solid import Solid
+from .suggestions import suggestion_text
 
 if TYPE_CHECKING:
     import trimesh
@@ -105,7 +105,7 @@ def boolean(
     if operation not in _KNOWN:
         known = ", ".join(_KNOWN)
         message = f"Unknown operation {operation!r}; known are {known}."
-        raise invalid_parameter(message + question(operation, _KNOWN))
+        raise invalid_parameter(message + suggestion_text(operation, _KNOWN))
     if operation == "difference" and len(given) < 2:
         raise invalid_parameter("A difference needs at least two meshes.")
     if check_volume:

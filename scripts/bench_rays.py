@@ -17,7 +17,7 @@ import numpy as np
 import trimesh
 
 from bspcsg import bsp
-from recording import keep
+from recording import write_record
 from support.shapes import icosphere
 
 #: The number of rays for trimesh's engine without embree, which takes up to 0.1 s a ray.
@@ -237,7 +237,7 @@ def main() -> int:
         print(row)
     if options.record:
         kept = {"triangles": len(mesh[1]), "cases": rows, "questions": others}
-        print(keep("bench_rays", kept | {"adaptive": grown, "build_ms": times}))
+        print(write_record("bench_rays", kept | {"adaptive": grown, "build_ms": times}))
     return 0
 
 

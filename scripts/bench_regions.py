@@ -16,7 +16,7 @@ import trimesh
 
 import bspcsg as b
 from bspcsg import bsp
-from recording import keep
+from recording import write_record
 from support.shapes import icosphere
 
 #: The number of runs of each library, in turns; the best of each counts.
@@ -190,7 +190,7 @@ def main() -> int:
         name, ours, theirs, ratio, agrees = found.values()
         print(f"{name:45}{ours:9.2f} ms{theirs:9.2f} ms{ratio:8.2f}  {agrees}", flush=True)
     if options.record:
-        print(keep("bench_regions", {"shapely": shapely.__version__, "questions": rows}))
+        print(write_record("bench_regions", {"shapely": shapely.__version__, "questions": rows}))
     return 0 if all(found["agrees"] for found in rows) else 1
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from bspcsg.campaign.record import read_results
 from bspcsg.campaign.summary import summary_of
 from bspcsg.cli.main import run
-from recording import REPOSITORY, keep
+from recording import REPOSITORY, write_record
 
 
 def main() -> int:
@@ -50,7 +50,7 @@ def record(results: Path, settings: dict[str, object]) -> None:
     asked = {name.lstrip("-"): value for name, value in settings.items() if name != "--results"}
     counts = summary_of(list(found.cases.values()))
     versions = found.runs[-1]["versions"]
-    print(keep("campaign", {"settings": asked, "versions": versions, **counts}))
+    print(write_record("campaign", {"settings": asked, "versions": versions, **counts}))
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from recording import RECORDS, REPOSITORY, keep
+from recording import RECORDS, REPOSITORY, write_record
 
 #: The cases of core/examples/fixed_cases.rs, with a description of each.
 CASES = {
@@ -41,7 +41,7 @@ _NAME = "instructions"
 _NOISE = 0.001
 
 
-def built() -> Path:
+def built_program() -> Path:
     """Build the program with the cases in release mode, and return its path."""
     command = ["cargo", "build", "--release", "--quiet", "-p", "bspcsg", "--example", "fixed_cases"]
     subprocess.run(command, cwd=REPOSITORY, check=True)
@@ -49,7 +49,7 @@ def built() -> Path:
     return target / "release" / "examples" / "fixed_cases"
 
 
-def counted(program: Path, case: str) -> int:
+def instruction_count(program: Path, case: str) -> int:
     """Return the number of instructions of a case, without making its meshes."""
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder) / "callgrind.out"
@@ -68,23 +68,25 @@ def all_counted(program: Path, cases: Iterable[str], before: dict[str, int]) -> 
     names = list(cases)
     counts = {}
     with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
-        for case, count in zip(names, pool.map(lambda c: counted(program, c), names), strict=True):
+        for case, count in zip(
+            names, pool.map(lambda c: instruction_count(program, c), names), strict=True
+        ):
             counts[case] = count
             print(line(case, count, before.get(case)), flush=True)
     return counts
 
 
-def place() -> dict[str, str]:
+def compiler_and_machine() -> dict[str, str]:
     """Return the compiler and the instruction set, on which counts depend."""
     done = subprocess.run(["rustc", "--version"], capture_output=True, text=True, check=True)
     return {"compiler": done.stdout.strip(), "instruction set": platform.machine()}
 
 
-def recorded() -> dict[str, int]:
+def recorded_counts() -> dict[str, int]:
     """Return the recorded counts, or none for another compiler or instruction set."""
     path = RECORDS / f"{_NAME}.json"
     kept: dict[str, Any] = json.loads(path.read_text("utf-8")) if path.exists() else {}
-    return dict(kept["counts"]) if kept.get("place") == place() else {}
+    return dict(kept["counts"]) if kept.get("place") == compiler_and_machine() else {}
 
 
 def line(case: str, count: int, before: int | None) -> str:
@@ -108,11 +110,11 @@ def main() -> None:
         parser.error(f"no such case: {', '.join(unknown)}; there are {', '.join(CASES)}")
     if shutil.which("valgrind") is None:
         raise SystemExit("instructions: valgrind is needed: apt-get install valgrind")
-    before = recorded()
-    counts = all_counted(options.program or built(), options.cases or CASES, before)
+    before = recorded_counts()
+    counts = all_counted(options.program or built_program(), options.cases or CASES, before)
     if options.record:
-        result = {"place": place(), "cases": CASES, "counts": {**before, **counts}}
-        print(keep(_NAME, result))
+        result = {"place": compiler_and_machine(), "cases": CASES, "counts": {**before, **counts}}
+        print(write_record(_NAME, result))
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-from recording import REPOSITORY, keep_rows
+from recording import REPOSITORY, write_rows
 
 FOLDER = REPOSITORY / ".fuzz" / "mutants"
 
@@ -143,7 +143,7 @@ def main() -> int:
         print(f"{number:3} {mutant.what:60} {verdict:10} {seconds:6.0f} s", flush=True)
         rows.append({"mutant": mutant.what, "tests": " ".join(mutant.tests), "verdict": verdict})
     if options.record:
-        print(keep_rows("mutants", rows, "mutant", [mutant.what for mutant in MUTANTS]))
+        print(write_rows("mutants", rows, "mutant", [mutant.what for mutant in MUTANTS]))
     return int(any(row["verdict"] != "noticed" for row in rows))
 
 

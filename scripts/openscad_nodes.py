@@ -20,7 +20,7 @@ import bspcsg as b
 from bspcsg.bsp import Region
 from bspcsg.io import read
 from bspcsg.modelling.planar import lettering
-from openscad_suite import asked, drawn, tolerance, with_fonts
+from openscad_suite import openscad_result, region_of_svg, tolerance, with_fonts
 from recording import REPOSITORY
 
 RECORD = REPOSITORY / "tests" / "corpus" / "csg" / "openscad_nodes.tsv"
@@ -260,7 +260,7 @@ def sampled(node: str, script: str, folder: Path) -> Sample:
     path.write_text(script, encoding="utf-8")
     targets = {suffix: folder / f"x.{suffix}" for suffix in ("csg", "stl", "svg")}
     try:
-        said = {suffix: asked(path, target) for suffix, target in targets.items()}
+        said = {suffix: openscad_result(path, target) for suffix, target in targets.items()}
     finally:
         path.unlink()
     tree = " ".join(targets["csg"].read_text(encoding="utf-8").split())
@@ -275,7 +275,7 @@ def sampled(node: str, script: str, folder: Path) -> Sample:
         figures = body.volume, body.area, body.euler_number, float(np.abs(mesh.vertices).max())
         return Sample(node, script, tree, count, 3, *figures)
     if svg.exists() and "<path" in svg.read_text(encoding="utf-8"):
-        region = drawn(svg.read_text(encoding="utf-8"))
+        region = region_of_svg(svg.read_text(encoding="utf-8"))
         corners = [float(np.abs(outline.points).max()) for outline in region.outlines]
         figures = region.area, region.perimeter, len(region.outlines), max(corners, default=0.0)
         return Sample(node, script, tree, count, 2, *figures)

@@ -109,7 +109,7 @@ def measured(source: Path, file: str) -> Reference:
     """Return OpenSCAD's result for a script, by running it."""
     with tempfile.TemporaryDirectory() as folder:
         stl, svg = Path(folder, "x.stl"), Path(folder, "x.svg")
-        said = asked(source / file, stl)
+        said = openscad_result(source / file, stl)
         count = len(re.findall("WARNING|ERROR", said))
         if stl.exists() and stl.stat().st_size > 100:
             mesh = read(stl)
@@ -118,17 +118,17 @@ def measured(source: Path, file: str) -> Reference:
             return Reference(file, count, 3, made.volume, made.area, largest)
         if "not a 3D object" not in said:
             return Reference(file, count)
-        asked(source / file, svg)
+        openscad_result(source / file, svg)
         if not svg.exists():
             return Reference(file, count)
-        region = drawn(svg.read_text(encoding="utf-8"))
+        region = region_of_svg(svg.read_text(encoding="utf-8"))
         corners = [np.abs(outline.points).max() for outline in region.outlines]
         return Reference(
             file, count, 2, region.area, region.perimeter, float(max(corners, default=0.0))
         )
 
 
-def asked(script: Path, target: Path) -> str:
+def openscad_result(script: Path, target: Path) -> str:
     """Return OpenSCAD's messages while it writes a script's shape to a file."""
     command = ["openscad", "-o", str(target), str(script)]
     environment = {**os.environ, "QT_QPA_PLATFORM": "offscreen"}
@@ -143,7 +143,7 @@ def asked(script: Path, target: Path) -> str:
     return str(done.stderr)
 
 
-def drawn(text: str) -> Region:
+def region_of_svg(text: str) -> Region:
     """Return the region of an SVG file by OpenSCAD, which has only straight paths."""
     words = " ".join(re.findall(r'<path d="([^"]*)"', text))
     loops = []
@@ -154,7 +154,7 @@ def drawn(text: str) -> Region:
     return Region(loops, winding="even-odd")
 
 
-def ours(source: Path, file: str) -> float:
+def our_result(source: Path, file: str) -> float:
     """Return the volume or area of our result for a script; refused children are left out."""
     tree = csg.read_tree(source / file)
     try:
@@ -166,12 +166,12 @@ def ours(source: Path, file: str) -> float:
     return float(body.volume if isinstance(body, b.Solid) else body.area)
 
 
-def judged(source: Path, row: Reference) -> tuple[str, str]:
+def status_and_details(source: Path, row: Reference) -> tuple[str, str]:
     """Return the status of a script ("same", "explained", "DIFFERS", "FAILS") and details."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", csg.CsgWarning)
-            found = ours(source, row.file)
+            found = our_result(source, row.file)
     except b.BspcsgError as error:
         return "FAILS", str(error).splitlines()[0]
     if abs(found - row.measure) <= row.tolerance:
@@ -245,7 +245,7 @@ def compared(source: Path) -> Counter[str]:
         if row.warnings or not row.dimension:
             counts["with a warning" if row.warnings else "without a shape"] += 1
             continue
-        status, details = judged(source, row)
+        status, details = status_and_details(source, row)
         counts[status] += 1
         if status != "same":
             print(f"{row.file:52} {status:9} {details}", flush=True)

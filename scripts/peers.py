@@ -18,7 +18,7 @@ import numpy as np
 
 from bspcsg._types import MeshArrays
 from bspcsg.bench.engines import ENGINES, Engine, EngineError, Operation, installed
-from recording import keep, release
+from recording import release, write_record
 from support.documents import with_generated
 
 #: The corners of the unit cube; its faces are counter-clockwise seen from outside.
@@ -245,7 +245,7 @@ def main() -> None:
     found = {name: dict(answers(name)) for name in versions}
     print(table(found))
     if options.record:
-        print(keep("peers", {"versions": versions, "answers": found}))
+        print(write_record("peers", {"versions": versions, "answers": found}))
 
 
 if __name__ == "__main__":

@@ -32,7 +32,7 @@ def machine() -> dict[str, Any]:
     }
 
 
-def keep(name: str, result: dict[str, Any]) -> Path:
+def write_record(name: str, result: dict[str, Any]) -> Path:
     """Write a result as a record, with the machine that it was measured on, and return its path."""
     RECORDS.mkdir(parents=True, exist_ok=True)
     path = RECORDS / f"{name}.json"
@@ -47,7 +47,7 @@ def release() -> dict[str, Any]:
     return found
 
 
-def keep_rows(name: str, rows: list[dict[str, Any]], key: str, order: list[str]) -> Path:
+def write_rows(name: str, rows: list[dict[str, Any]], key: str, order: list[str]) -> Path:
     """Write rows to a record, each with its commit, besides earlier rows with other keys.
 
     Parameters
@@ -64,7 +64,7 @@ def keep_rows(name: str, rows: list[dict[str, Any]], key: str, order: list[str])
     earlier = json.loads(path.read_text("utf-8"))[name] if path.is_file() else []
     fresh = [{**row, "commit": _commit()} for row in rows]
     known = {row[key]: row for row in [*earlier, *fresh]}
-    return keep(name, {name: [known[what] for what in order if what in known]})
+    return write_record(name, {name: [known[what] for what in order if what in known]})
 
 
 def _commit() -> str:

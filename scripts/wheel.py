@@ -22,7 +22,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import TypeAlias
 
-from recording import RECORDS, REPOSITORY, keep, machine
+from recording import RECORDS, REPOSITORY, machine, write_record
 from wheel_contents import problems_of
 
 #: The size of a wheel and the times of its trial, by name.
@@ -94,16 +94,16 @@ def built(kind: str, tree: Path) -> Path:
     options = ["--zig", "--compatibility", tag, "--target", target]
     command = [binaries / "maturin", "build", "--quiet", *options, "--out", tree / "dist"]
     run(*command, cwd=tree, env=environment)
-    return kept(next((tree / "dist").glob("*.whl")))
+    return moved_to_dist(next((tree / "dist").glob("*.whl")))
 
 
 def source(tree: Path) -> Path:
     """Build the source distribution from a source tree, and return its path."""
     run(tools() / "maturin", "sdist", "--out", tree / "dist", cwd=tree)
-    return kept(next((tree / "dist").glob("*.tar.gz")))
+    return moved_to_dist(next((tree / "dist").glob("*.tar.gz")))
 
 
-def kept(found: Path) -> Path:
+def moved_to_dist(found: Path) -> Path:
     """Move a distribution to the folder of distributions, and return its new path."""
     DIST.mkdir(exist_ok=True)
     return Path(shutil.move(found, DIST / found.name))
@@ -209,7 +209,7 @@ def main() -> int:
             found[kind] = examined(kind, path, tree)
     if options.record:
         kept = with_earlier(found, str(here["commit"]))
-        print(f"kept in {keep('wheel', {'machine': here, 'wheels': kept})}")
+        print(f"kept in {write_record('wheel', {'machine': here, 'wheels': kept})}")
     return 0
 
 

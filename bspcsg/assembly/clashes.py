@@ -8,7 +8,7 @@ import numpy as np
 
 from .._types import FloatArray
 from ..modelling.bodies.gaps import closest_points, min_gap
-from ..solid.counting import uncounted
+from ..solid.ledger import uncounted
 from ..solid.solid import Solid
 
 if TYPE_CHECKING:

@@ -13,25 +13,25 @@ from ..attributes.attributes import Attributes
 from ..attributes.colours import hexadecimal
 from ..attributes.material import Material
 from ..errors import Finding, FormatError, format_errors
-from ..formats import obj, single
+from ..formats import obj, single_precision
 from ..formats.atomic import write_file
 from ..formats.files import form_of, read_as, write
 from ..formats.glb import scene as glb
 from ..formats.raw import RawMesh, joined, parts_of
 from ..formats.registry import Form
-from ..formats.said import not_held
-from ..formats.scene import SceneNode, are_alike, say_alike
+from ..formats.scene import SceneNode, are_equal_trees, have_equal_attributes
 from ..formats.solids import solid_of
 from ..formats.source import Source, whole_content
+from ..formats.storable_attributes import unstorable_finding
 from ..formats.threemf import scene as threemf
-from ..formats.threemf.properties import kept
-from ..formats.threemf.write import called
+from ..formats.threemf.properties import storable
+from ..formats.threemf.write import stored_name
 from ..geometry import transform
 from ..mesh.mesh import Mesh
 from ..parameters import file_path
 from ..solid.solid import Solid
 from . import scripts
-from .tree import Assembly, moved
+from .tree import Assembly, transformed_solid
 
 #: The formats that store a tree of objects, each with its reader and writer.
 _TREES: dict[str, tuple[Callable[[Source], SceneNode], Callable[[SceneNode], Iterator[bytes]]]] = {
@@ -56,14 +56,16 @@ def load_as(path: str | os.PathLike[str], suffix: str, **options: Any) -> Assemb
     if suffix in _SCRIPTS:
         return scripts.load(path, Path(path).stem, **options)
     if suffix in _TREES:
-        return _Reading(path, suffix, options).assembly(_scene(path, suffix))
+        return _AssemblyReader(path, suffix, options).assembly(_scene(path, suffix))
     raw = read_as(path, suffix)
     start, children = 0, []
     for name, faces in parts_of(raw):
         rows = np.arange(start, start + len(faces))
         start += len(faces)
-        said = None if raw.attributes is None else raw.attributes.taken(rows).with_used_materials()
-        solid = solid_of(RawMesh(raw.vertices, faces, name, attributes=said), path, **options)
+        attributes = (
+            None if raw.attributes is None else raw.attributes.for_faces(rows).with_used_materials()
+        )
+        solid = solid_of(RawMesh(raw.vertices, faces, name, attributes=attributes), path, **options)
         children.append(Assembly(name, solid))
     return Assembly(Path(path).stem, children)
 
@@ -77,7 +79,7 @@ def _decoded(name: str, data: bytes, suffix: str) -> SceneNode:
         return _TREES[suffix][0](Source(name, data))
 
 
-class _Reading:
+class _AssemblyReader:
     """A file that is read as an assembly: nodes with a common mesh get a common solid."""
 
     def __init__(self, path: str | os.PathLike[str], suffix: str, options: dict[str, Any]) -> None:
@@ -121,7 +123,7 @@ def _is_flat(matrix: FloatArray) -> bool:
 def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...]:
     """Write an assembly to a file, and return the findings about losses; see `Assembly.save`."""
     suffix = Path(file_path(path)).suffix.lower()
-    return (*_written(assembly, path, suffix), *_densities(assembly))
+    return (*_written(assembly, path, suffix), *_lost_densities(assembly))
 
 
 def _written(assembly: Assembly, path: str | os.PathLike[str], suffix: str) -> tuple[Finding, ...]:
@@ -129,8 +131,8 @@ def _written(assembly: Assembly, path: str | os.PathLike[str], suffix: str) -> t
     if suffix == ".csg":
         return scripts.save(assembly, path)
     if suffix == ".obj":
-        whole, lost = _in_place(assembly)
-        return (*write(whole, path), *_left_out(lost, suffix))
+        whole, lost = _single_mesh(assembly)
+        return (*write(whole, path), *_unstorable_finding(lost, suffix))
     form = form_of(path)
     if suffix not in _TREES:
         message = (
@@ -138,7 +140,7 @@ def _written(assembly: Assembly, path: str | os.PathLike[str], suffix: str) -> t
             " that ends in .3mf, .glb, .obj or .csg."
         )
         raise FormatError(message, "unknown_format")
-    describing = _Describing(form)
+    describing = _SceneBuilder(form)
     try:
         scene = describing.node(assembly, None)
     except OverflowError:
@@ -154,11 +156,13 @@ def _written(assembly: Assembly, path: str | os.PathLike[str], suffix: str) -> t
             "empty",
         )
     given = scene
-    scene = _As3mf().node(scene) if suffix == ".3mf" else glb.as_written(scene)
+    scene = _ThreemfConverter().node(scene) if suffix == ".3mf" else glb.as_written(scene)
 
     def prove(file: BinaryIO) -> None:
         found = _decoded(os.fspath(path), file.read(), suffix)
-        if not are_alike(scene, found) or (suffix == ".3mf" and not say_alike(scene, found)):
+        if not are_equal_trees(scene, found) or (
+            suffix == ".3mf" and not have_equal_attributes(scene, found)
+        ):
             message = (
                 f"{os.fspath(path)}: the written file was discarded, because it differs from the"
                 " assembly when it is read back. The disk may be at fault; if it happens again,"
@@ -167,17 +171,21 @@ def _written(assembly: Assembly, path: str | os.PathLike[str], suffix: str) -> t
             raise FormatError(message, "write_mismatch")
 
     write_file(path, _TREES[suffix][1](scene), prove)
-    return (*_lost(given, scene, suffix), *_empty(describing.empty), *describing.changes)
+    return (
+        *_lost_attributes(given, scene, suffix),
+        *_empty_parts_finding(describing.empty),
+        *describing.changes,
+    )
 
 
-def _empty(count: int) -> tuple[Finding, ...]:
+def _empty_parts_finding(count: int) -> tuple[Finding, ...]:
     if not count:
         return ()
     message = f"{count} parts without volume were left out."
     return (Finding("empty_parts", "warning", message, (), count),)
 
 
-def _densities(assembly: Assembly) -> tuple[Finding, ...]:
+def _lost_densities(assembly: Assembly) -> tuple[Finding, ...]:
     count = sum(part.density is not None for part in assembly.parts)
     if not count:
         return ()
@@ -185,7 +193,7 @@ def _densities(assembly: Assembly) -> tuple[Finding, ...]:
     return (Finding("densities_left_out", "warning", message, (), count),)
 
 
-class _Describing:
+class _SceneBuilder:
     """Converter of an assembly to scene nodes; parts with a common solid get a common mesh."""
 
     def __init__(self, form: Form) -> None:
@@ -201,7 +209,7 @@ class _Describing:
 
         `color` is the colour inherited from the assembly around it.
         """
-        name = called(assembly.name)
+        name = stored_name(assembly.name)
         color = color if assembly.color is None else assembly.color
         matrix = transform.product(assembly.factors) if assembly.factors else np.eye(4)
         if assembly.shape is None:
@@ -219,7 +227,7 @@ class _Describing:
             mesh = solid.normalized().to_mesh()
             self._tell(name, () if self._form.losses is None else self._form.losses(mesh))
             if self._form.is_single:
-                mesh, mended = single.settled(mesh)
+                mesh, mended = single_precision.in_single_precision(mesh)
                 self._tell(name, mended)
             self._meshes[id(solid)] = (solid, _raw(mesh, name, self._form.is_single))
         return self._meshes[id(solid)][1]
@@ -235,16 +243,16 @@ class _Describing:
 
 def _raw(mesh: Mesh, name: str, in_single: bool) -> RawMesh:
     vertices = mesh.vertices.astype(np.float32) if in_single else mesh.vertices
-    said = mesh.attributes.without_empty_material() if mesh.carried is not None else None
-    return RawMesh(vertices.astype(np.float64), mesh.faces, name, attributes=said)
+    attributes = mesh.attributes.without_empty_material() if mesh.carried is not None else None
+    return RawMesh(vertices.astype(np.float64), mesh.faces, name, attributes=attributes)
 
 
-def _is_painted(said: Attributes | None) -> bool:
+def _is_painted(attributes: Attributes | None) -> bool:
     """Return True if a mesh has colours or materials, which override the colour of its part."""
-    return said is not None and not {"color", "material"}.isdisjoint(said.names)
+    return attributes is not None and not {"color", "material"}.isdisjoint(attributes.names)
 
 
-class _As3mf:
+class _ThreemfConverter:
     """Converter of scene nodes to the colours and attributes that 3MF can store.
 
     Nodes with a common mesh still have a common mesh afterwards.
@@ -261,28 +269,28 @@ class _As3mf:
 
     def _mesh(self, mesh: RawMesh) -> RawMesh:
         if id(mesh) not in self._meshes:
-            held = None if mesh.attributes is None else kept(mesh.attributes)
-            said = None if held is None or held.is_empty else held
-            self._meshes[id(mesh)] = replace(mesh, attributes=said)
+            held = None if mesh.attributes is None else storable(mesh.attributes)
+            attributes = None if held is None or held.is_empty else held
+            self._meshes[id(mesh)] = replace(mesh, attributes=attributes)
         return self._meshes[id(mesh)]
 
 
-def _lost(given: SceneNode, written: SceneNode, suffix: str) -> tuple[Finding, ...]:
+def _lost_attributes(given: SceneNode, written: SceneNode, suffix: str) -> tuple[Finding, ...]:
     """Return the finding about attributes of `given` that are missing in `written`, if any."""
     lost: set[str] = set()
     for node, held in zip(given.walk(), written.walk(), strict=True):
         if node.mesh is not None and held.mesh is not None and node.mesh.attributes is not None:
             names = () if held.mesh.attributes is None else held.mesh.attributes.names
             lost.update(set(node.mesh.attributes.names).difference(names))
-    return _left_out(lost, suffix)
+    return _unstorable_finding(lost, suffix)
 
 
-def _left_out(lost: set[str], suffix: str) -> tuple[Finding, ...]:
+def _unstorable_finding(lost: set[str], suffix: str) -> tuple[Finding, ...]:
     """Return the finding that a format cannot store attributes of the given names, if any."""
-    return not_held([f"“{name}”" for name in sorted(lost)], suffix)
+    return unstorable_finding([f"“{name}”" for name in sorted(lost)], suffix)
 
 
-def _in_place(assembly: Assembly) -> tuple[RawMesh, set[str]]:
+def _single_mesh(assembly: Assembly) -> tuple[RawMesh, set[str]]:
     """Return all parts as one mesh with an object for each, and the names of omitted attributes.
 
     Attributes that OBJ cannot store are omitted before the meshes are joined, because their types
@@ -291,14 +299,14 @@ def _in_place(assembly: Assembly) -> tuple[RawMesh, set[str]]:
     pieces: list[RawMesh] = []
     lost: set[str] = set()
     for part in assembly.parts:
-        mesh = moved(part.shape, part.factors).normalized().to_mesh()
-        said = mesh.attributes.without_empty_material()
-        if part.color is not None and not _is_painted(said):
+        mesh = transformed_solid(part.shape, part.factors).normalized().to_mesh()
+        attributes = mesh.attributes.without_empty_material()
+        if part.color is not None and not _is_painted(attributes):
             name = hexadecimal(part.color)
-            face = {**said.face, "material": np.full(len(mesh.faces), name)}
-            said = replace(said, face=face, materials={name: Material(part.color)})
-        held = obj.kept(said)
-        lost.update(set(said.names).difference(held.names))
+            face = {**attributes.face, "material": np.full(len(mesh.faces), name)}
+            attributes = replace(attributes, face=face, materials={name: Material(part.color)})
+        held = obj.storable(attributes)
+        lost.update(set(attributes.names).difference(held.names))
         own = None if held.is_empty else held
         pieces.append(RawMesh(mesh.vertices, mesh.faces, part.path, attributes=own))
     if any(one.attributes and "material" in one.attributes.face for one in pieces):

@@ -24,11 +24,11 @@ _MAX_PART_DEPTH = 60
 
 def load(path: str | os.PathLike[str], name: str, **options: Any) -> Assembly:
     """Read an assembly from a script; each node that does not unite, colour or move is a part."""
-    reading = _Reading(csg.read_tree(path), options)
+    reading = _AssemblyReader(csg.read_tree(path), options)
     return Assembly(name, reading.assemblies(reading.tree.roots(), None, (), 0))
 
 
-class _Reading:
+class _AssemblyReader:
     """A script that is read as an assembly, and the options with which its nodes are evaluated."""
 
     def __init__(self, tree: CsgTree, options: dict[str, Any]) -> None:

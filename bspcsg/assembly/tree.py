@@ -12,10 +12,10 @@ from .._types import FloatArray, Scalar
 from ..attributes.colours import AnyColor, color_of
 from ..errors import Finding, invalid_parameter, warn_of_losses
 from ..geometry.transform import Factors
+from ..method_ownership import with_own_methods
 from ..operations.setops import union
-from ..owned import owning
-from ..parameters import not_negative, of_kind, shown
-from ..solid.counting import uncounted
+from ..parameters import instance_of, not_negative, shown
+from ..solid.ledger import uncounted
 from ..solid.movable import Movable
 from ..solid.solid import Solid
 from .bill import Bill, bill_of
@@ -59,10 +59,10 @@ class Part:
     @cached_property
     def solid(self) -> Solid:
         """The solid, transformed to its position in the assembly."""
-        return moved(self.shape, self.factors)
+        return transformed_solid(self.shape, self.factors)
 
 
-@owning
+@with_own_methods
 class Assembly(Movable):
     """A tree of named and coloured solids, each with a transform.
 
@@ -109,7 +109,7 @@ class Assembly(Movable):
         color: AnyColor | None = None,
         density: Scalar | None = None,
     ) -> None:
-        self.name = of_kind(str, name, "name")
+        self.name = instance_of(str, name, "name")
         self.color = None if color is None else color_of(color)
         self.density = None if density is None else not_negative(density, "density")
         self.shape = content if isinstance(content, Solid) else None
@@ -139,7 +139,7 @@ class Assembly(Movable):
             node, above, around = waiting.pop()
             name = node.name or ("part" if node.shape is not None else "")
             path = "/".join(filter(None, (above, name)))
-            path = path if node.shape is None else _free(path, taken)
+            path = path if node.shape is None else _unused_path(path, taken)
             inherited = node._inherited(path, around)
             if node.shape is not None:
                 found.append(inherited)
@@ -227,7 +227,7 @@ class Assembly(Movable):
         if self.shape is None:
             children = tuple(child._each(factors, change) for child in self.children)
             return self._with(children=children, factors=())
-        placed = moved(self.shape, factors)
+        placed = transformed_solid(self.shape, factors)
         made = change(placed)
         if made is placed:
             return self._with(factors=factors)
@@ -242,7 +242,11 @@ class Assembly(Movable):
         The face attribute ``"part"`` is the path of the part that a face comes from, and
         ``"color"`` the part's colour in bytes, unless the part's mesh has colours itself.
         """
-        return union([_tagged(part) for part in self.parts]) if self.parts else Solid.empty()
+        return (
+            union([_with_part_attributes(part) for part in self.parts])
+            if self.parts
+            else Solid.empty()
+        )
 
     def clashes(self, clearance: Scalar = 0.0) -> list[Clash]:
         """Return the pairs of parts that share volume or are too close to each other.
@@ -328,7 +332,7 @@ class Assembly(Movable):
         return load(path, **options)
 
 
-def moved(solid: Solid, factors: Factors) -> Solid:
+def transformed_solid(solid: Solid, factors: Factors) -> Solid:
     """Return a solid transformed by affine maps, of which the last is applied first."""
     return solid._moved(factors)
 
@@ -352,7 +356,7 @@ def _as_solid(tool: Any) -> Solid:
     return tool.to_solid() if isinstance(tool, Assembly) else Solid.from_mesh(tool)
 
 
-def _free(path: str, taken: dict[str, int]) -> str:
+def _unused_path(path: str, taken: dict[str, int]) -> str:
     """Return a path, with a number appended if it is already used, and mark it as used.
 
     `taken` has the last number for each path. Counting continues from it, so the time for n parts
@@ -367,7 +371,7 @@ def _free(path: str, taken: dict[str, int]) -> str:
     return free
 
 
-def _tagged(part: Part) -> Solid:
+def _with_part_attributes(part: Part) -> Solid:
     said = part.solid.to_mesh().attributes.without_empty_material().names
     values: dict[str, Any] = {"part": part.path}
     if part.color is not None and not {"color", "material"}.intersection(said):

@@ -84,7 +84,7 @@ class Attributes:
             values = np.repeat(self.face[name][chosen][:, None], 3, axis=1)
         return values
 
-    def taken(self, faces: IndexArray) -> "Attributes":
+    def for_faces(self, faces: IndexArray) -> "Attributes":
         """Return the attributes of a part of the faces, in the order of the given face numbers."""
         return replace(
             self,
@@ -122,7 +122,7 @@ class Attributes:
             return self
         vertex, corner, face = (
             {
-                name: _turned(values, linear) if is_normal(name, values) else values
+                name: _rotated_normals(values, linear) if is_normal(name, values) else values
                 for name, values in self.of(kind).items()
             }
             for kind in KINDS
@@ -147,7 +147,7 @@ class Attributes:
         """
         names = {}
         for name, material in self.materials.items():
-            names[name] = _free(name, partial(_means_another, taken, material))
+            names[name] = _unused_name(name, partial(_means_another, taken, material))
             taken[names[name]] = material
         values = self.face.get("material")
         if values is None or all(old == new for old, new in names.items()):
@@ -156,19 +156,19 @@ class Attributes:
         image = np.array([names.get(kind, kind) for kind in kinds.tolist()])[numbers]
         return replace(self, face={**self.face, "material": image})
 
-    def with_materials_called(self, called: Callable[[str], str]) -> "Attributes":
+    def with_renamed_materials(self, new_name: Callable[[str], str]) -> "Attributes":
         """Return the attributes with renamed materials; equal new names get numbers appended."""
         values = self.face.get("material")
         if values is None:
             return self
         kinds, numbers = np.unique(values, return_inverse=True)
-        image = {kind: kind for kind in kinds.tolist() if called(kind) == kind}
+        image = {kind: kind for kind in kinds.tolist() if new_name(kind) == kind}
         if len(image) == len(kinds):
             return self
         taken = set(image)
         for kind in kinds.tolist():
             if kind not in image:
-                image[kind] = _free(called(kind), taken.__contains__)
+                image[kind] = _unused_name(new_name(kind), taken.__contains__)
                 taken.add(image[kind])
         materials = {image[name]: one for name, one in self.materials.items() if name in image}
         told = np.array([image[kind] for kind in kinds.tolist()])[numbers]
@@ -212,7 +212,7 @@ def _means_another(taken: Mapping[str, Material], material: Material, name: str)
     return taken.get(name, material) != material
 
 
-def _free(name: str, is_taken: Callable[[str], bool]) -> str:
+def _unused_name(name: str, is_taken: Callable[[str], bool]) -> str:
     """Return a name that is not taken: the given one, with a number appended if necessary."""
     number, free = 1, name
     while is_taken(free):
@@ -232,7 +232,7 @@ def is_normal(name: str, values: Values) -> bool:
     return name in NORMALS and values.dtype.kind == "f" and values.shape[-1:] == (3,)
 
 
-def _turned(values: Values, linear: FloatArray) -> Values:
+def _rotated_normals(values: Values, linear: FloatArray) -> Values:
     """Return normals after a linear map of the mesh, with unchanged lengths.
 
     They are multiplied by the cofactors of the map.
@@ -254,17 +254,17 @@ def _turned(values: Values, linear: FloatArray) -> Values:
     return turned
 
 
-def with_even_faces(said: Attributes, only: str | None = None) -> Attributes:
+def corners_to_faces(attributes: Attributes, only: str | None = None) -> Attributes:
     """Turn attributes of corners into attributes of faces if the corners of every face agree.
 
     Parameters
     ----------
-    said : Attributes
+    attributes : Attributes
     only : str, optional
         The only attribute to change; by default all are tested.
     """
     even = {}
-    for name, values in said.corner.items():
+    for name, values in attributes.corner.items():
         if only not in (None, name):
             continue
         same = values == values[:, :1]
@@ -272,12 +272,14 @@ def with_even_faces(said: Attributes, only: str | None = None) -> Attributes:
             same |= np.isnan(values) & np.isnan(values[:, :1])
         if same.all():
             even[name] = values[:, 0]
-    rest = said.without(even)
-    return Attributes(said.faces, rest.vertex, rest.corner, {**rest.face, **even}, said.materials)
+    rest = attributes.without(even)
+    return Attributes(
+        attributes.faces, rest.vertex, rest.corner, {**rest.face, **even}, attributes.materials
+    )
 
 
 @dataclass(frozen=True, eq=False)
-class Given:
+class GivenAttributes:
     """Attributes as a caller gives them: dictionaries of values that numpy can convert."""
 
     vertex: Mapping[str, Any] | None = None
@@ -309,7 +311,7 @@ class Given:
         names = [name for kind in KINDS for name in found[kind]]
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
-            raise _refused(
+            raise _attributes_error(
                 f"the attribute “{twice[0]}” is given twice, for different ones of vertices,"
                 " corners and faces; rename one of them."
             )
@@ -322,13 +324,15 @@ def _named(given: Mapping[str, Any] | None, kind: Kind) -> list[tuple[str, Any]]
     if given is None:
         return []
     if not isinstance(given, Mapping):
-        raise _refused(
+        raise _attributes_error(
             f"{kind}_attributes must be a dictionary from attribute names to arrays, not"
             f" {shown(given)}."
         )
     for name in given:
         if not isinstance(name, str) or not name:
-            raise _refused(f"the name of an attribute must be a non-empty string, not {name!r}.")
+            raise _attributes_error(
+                f"the name of an attribute must be a non-empty string, not {name!r}."
+            )
     return list(given.items())
 
 
@@ -338,14 +342,14 @@ def array_of(values: Any, name: str) -> Values:
     Raise `InvalidMeshError` if they are masked or cannot form an array.
     """
     if is_masked(values):
-        raise _refused(
+        raise _attributes_error(
             f"the attribute “{name}” is a masked array with masked values; fill them before you"
             " pass it."
         )
     try:
         return np.array(values, order="C")
     except ValueError as error:
-        raise _refused(
+        raise _attributes_error(
             f"the values of the attribute “{name}” do not form an array: {error}."
         ) from error
 
@@ -354,13 +358,13 @@ def _array(values: Any, name: str, kind: Kind, shape: tuple[int, ...]) -> Values
     array = _colors(values, shape) if name == COLOR else array_of(values, name)
     if array.dtype.kind not in _TYPES:
         allowed = "bool, integers, floats and strings"
-        raise _refused(
+        raise _attributes_error(
             f"the attribute “{name}” has the unsupported dtype {array.dtype}; supported are"
             f" {allowed}."
         )
     if array.shape[: len(shape)] != shape:
         wanted = ", ".join(map(str, shape))
-        raise _refused(
+        raise _attributes_error(
             f"{kind}_attributes[{name!r}] must have shape ({wanted}, …), not {array.shape}."
         )
     array.flags.writeable = False
@@ -386,16 +390,18 @@ def _colors(given: Any, shape: tuple[int, ...]) -> Values:
 
 def _materials(given: Mapping[str, Material] | None) -> Mapping[str, Material]:
     if given is not None and not isinstance(given, Mapping):
-        raise _refused("materials must be a mapping from names to bspcsg.Material objects.")
+        raise _attributes_error(
+            "materials must be a mapping from names to bspcsg.Material objects."
+        )
     for name, material in (given or {}).items():
         if not isinstance(material, Material):
-            raise _refused(
+            raise _attributes_error(
                 f"the material “{name}” must be a bspcsg.Material, not {shown(material)}."
             )
     return dict(given or {})
 
 
-def _refused(message: str) -> InvalidMeshError:
+def _attributes_error(message: str) -> InvalidMeshError:
     return InvalidMeshError(f"Attributes: {message}", "attributes")
 
 

@@ -27,7 +27,7 @@ def weights(points: FloatArray, triangles: FloatArray) -> FloatArray:
     Their error is a few units in the last place of 1. In triangles without area they are not
     finite.
     """
-    flat, seen = _seen(points, triangles)
+    flat, seen = _projected(points, triangles)
     a, b, c = seen[:, 0], seen[:, 1], seen[:, 2]
     area, size = _determinant(a, b, c)
     second, _ = _determinant(a, flat, c)
@@ -37,11 +37,11 @@ def weights(points: FloatArray, triangles: FloatArray) -> FloatArray:
         thin = ~(size <= _MAX_EXACT_THINNESS * np.abs(area[0]))
     found = np.stack([1.0 - v - w, v, w], axis=1)
     for k in np.flatnonzero(thin).tolist():
-        found[k] = _exact(flat[k], seen[k])
+        found[k] = _exact_weights(flat[k], seen[k])
     return found
 
 
-def _seen(points: FloatArray, triangles: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _projected(points: FloatArray, triangles: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Project points and triangles along the axis nearest to each triangle's normal.
 
     Return (k, 2) points and (k, 3, 2) triangles.
@@ -60,7 +60,7 @@ def _determinant(a: FloatArray, b: FloatArray, c: FloatArray) -> tuple[_Pair, Fl
     left, right = _product(px, qy), _product(py, qx)
     high, low = _difference(left[0], right[0])
     size = (np.abs(px[0]) + np.abs(py[0])) * (np.abs(qx[0]) + np.abs(qy[0]))
-    return _two(high, low + (left[1] - right[1])), size
+    return _two_sum(high, low + (left[1] - right[1])), size
 
 
 def _difference(one: FloatArray, other: FloatArray) -> _Pair:
@@ -69,19 +69,19 @@ def _difference(one: FloatArray, other: FloatArray) -> _Pair:
     return found, (one - (found - back)) + (-other - back)
 
 
-def _two(high: FloatArray, low: FloatArray) -> _Pair:
+def _two_sum(high: FloatArray, low: FloatArray) -> _Pair:
     total = high + low
     return total, low - (total - high)
 
 
 def _product(one: _Pair, other: _Pair) -> _Pair:
     high = one[0] * other[0]
-    (a, b), (c, d) = _halves(one[0]), _halves(other[0])
+    (a, b), (c, d) = _split_doubles(one[0]), _split_doubles(other[0])
     low = b * d - (((high - a * c) - b * c) - a * d)
-    return _two(high, low + (one[0] * other[1] + one[1] * other[0]))
+    return _two_sum(high, low + (one[0] * other[1] + one[1] * other[0]))
 
 
-def _halves(values: FloatArray) -> _Pair:
+def _split_doubles(values: FloatArray) -> _Pair:
     scaled = values * _SPLITTER
     high = scaled - (scaled - values)
     return high, values - high
@@ -96,7 +96,7 @@ def _quotient(part: _Pair, whole: _Pair) -> FloatArray:
     return quotient
 
 
-def _exact(point: FloatArray, triangle: FloatArray) -> tuple[float, float, float]:
+def _exact_weights(point: FloatArray, triangle: FloatArray) -> tuple[float, float, float]:
     a, b, c, p = ([Fraction(x) for x in corner] for corner in (*triangle.tolist(), point.tolist()))
 
     def area(u: list[Fraction], v: list[Fraction], w: list[Fraction]) -> Fraction:

@@ -90,7 +90,7 @@ def one_color(given: Any, name: str = COLOR) -> npt.NDArray[Any]:
     """Return one colour as an array, (3,) or (4,): unsigned integers, or floats from 0 to 1."""
     found = colors_of(given, name)
     if found.ndim != 1:
-        raise _refused(given, name)
+        raise _colour_error(given, name)
     return found
 
 
@@ -114,7 +114,7 @@ def colors_of(given: Any, name: str = COLOR) -> npt.NDArray[Any]:
     if isinstance(given, np.ndarray) and given.dtype.kind == "U":
         return _of_texts(given, name)
     if isinstance(given, (list, tuple)) and any(isinstance(one, str) for one in given):
-        return np.stack(_alike([one_color(one, name) for one in given]))
+        return np.stack(_uniform_colors([one_color(one, name) for one in given]))
     return _of_numbers(given, name)
 
 
@@ -123,7 +123,7 @@ def _of_text(text: str, name: str) -> Bytes:
     match = _DIGITS.fullmatch(word)
     digits = _NAMES.get(word) or (match and (match[2] or "".join(2 * d for d in match[1])))
     if not digits:
-        raise _refused(text, name)
+        raise _colour_error(text, name)
     return np.frombuffer(bytes.fromhex(digits), dtype=np.uint8).copy()
 
 
@@ -132,12 +132,12 @@ def _of_texts(texts: npt.NDArray[np.str_], name: str) -> Bytes:
     kinds, numbers = np.unique(texts, return_inverse=True)
     if not len(kinds):
         return np.zeros((*texts.shape, 3), dtype=np.uint8)
-    table = np.stack(_alike([_of_text(kind, name) for kind in kinds.tolist()]))
+    table = np.stack(_uniform_colors([_of_text(kind, name) for kind in kinds.tolist()]))
     found: Bytes = table[numbers.reshape(texts.shape)]
     return found
 
 
-def _alike(rows: Sequence[npt.NDArray[Any]]) -> list[npt.NDArray[Any]]:
+def _uniform_colors(rows: Sequence[npt.NDArray[Any]]) -> list[npt.NDArray[Any]]:
     """Return colours of equal width and one type: bytes if all are bytes, else floats."""
     width = max(map(len, rows))
     if any(row.dtype != np.uint8 for row in rows):
@@ -146,7 +146,7 @@ def _alike(rows: Sequence[npt.NDArray[Any]]) -> list[npt.NDArray[Any]]:
 
 
 def _of_numbers(given: Any, name: str) -> npt.NDArray[Any]:
-    refusal = _refused(given, name)
+    refusal = _colour_error(given, name)
     numbers = doubles(given, refusal)
     if not numbers.ndim or numbers.shape[-1] not in (3, 4):
         raise refusal
@@ -182,9 +182,9 @@ def opaque(colors: npt.NDArray[Any]) -> npt.NDArray[Any]:
     return np.concatenate([colors, np.full_like(colors[..., :1], full)], axis=-1)
 
 
-def are_same_in_bytes(some: npt.NDArray[Any], others: npt.NDArray[Any]) -> bool:
+def are_equal_in_bytes(first: npt.NDArray[Any], second: npt.NDArray[Any]) -> bool:
     """Return True if two arrays of colours are equal after conversion to bytes."""
-    return np.array_equal(opaque(as_bytes(some)), opaque(as_bytes(others)))
+    return np.array_equal(opaque(as_bytes(first)), opaque(as_bytes(second)))
 
 
 def is_opaque(colors: npt.NDArray[Any]) -> bool:
@@ -226,7 +226,7 @@ def hexadecimal(color: Sequence[float]) -> str:
     return "#" + bytes(round(value * _BYTE) for value in color).hex()
 
 
-def _refused(given: Any, name: str) -> InvalidParameterError:
+def _colour_error(given: Any, name: str) -> InvalidParameterError:
     return invalid_parameter(
         f"The {name} must be a colour name or code such as 'orange' or '#3070b0', or three or"
         f" four numbers (floats from 0 to 1 or integers from 0 to 255), not {shown(given)}."

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from .targets import Goal
-from .work import Work
+from .workloads import Work
 
 #: A function of the folder of shared data that returns the work of an item.
 WorkMaker: TypeAlias = Callable[[Path], Work]

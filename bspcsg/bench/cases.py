@@ -4,10 +4,10 @@ from math import pi
 from pathlib import Path
 
 from .._types import MeshArrays
-from . import real, shapes
+from . import public_meshes, shapes
 from .case import BenchCase, WorkMaker
-from .cliffs import CLIFFS
-from .program import CommandLine
+from .command_line import CommandLine
+from .dense_cases import DENSE_CASES
 from .targets import (
     MAIN_RIVAL,
     OURS,
@@ -22,7 +22,7 @@ from .targets import (
     Within,
     WorkWithin,
 )
-from .work import (
+from .workloads import (
     BuiltPair,
     Carving,
     Chain,
@@ -94,7 +94,7 @@ def _menger(depth: int) -> WorkMaker:
 
 def _capsules(steps: int) -> WorkMaker:
     def make(shared: Path) -> Work:
-        base, tools = real.swept_capsules(shared)
+        base, tools = public_meshes.swept_capsules(shared)
         return Chain(base, tools[:steps])
 
     return make
@@ -107,15 +107,15 @@ def dome(steps: int) -> WorkMaker:
 
 
 def _real_pair(number: int) -> WorkMaker:
-    return lambda shared: Pair(*real.posed_pair(shared, number))
+    return lambda shared: Pair(*public_meshes.posed_pair(shared, number))
 
 
 def _small_pair(number: int) -> WorkMaker:
-    return lambda shared: Pair(*real.posed_pair(shared, number, real.SMALL))
+    return lambda shared: Pair(*public_meshes.posed_pair(shared, number, public_meshes.SMALL))
 
 
 def _overlapping_pair(number: int) -> WorkMaker:
-    return lambda shared: OverlappingPair(*real.overlapping_pair(shared, number))
+    return lambda shared: OverlappingPair(*public_meshes.overlapping_pair(shared, number))
 
 
 def _milled_by_balls(count: int) -> WorkMaker:
@@ -383,7 +383,7 @@ CASES: dict[str, BenchCase] = {
         (OURS,),
         alone=True,
     ),
-    **CLIFFS,
+    **DENSE_CASES,
 }
 
 #: The default cases, which take one or two minutes.

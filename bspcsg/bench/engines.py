@@ -11,7 +11,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from .._types import MeshArrays
-from .facts import mesh_volume
+from .result_facts import mesh_volume
 from .shapes import joined
 
 #: The operations of engines; a difference subtracts the other operands from the first one.

@@ -36,7 +36,7 @@ class Usage:
     said: str
 
 
-def metered(command: Sequence[str]) -> Usage:
+def run_metered(command: Sequence[str]) -> Usage:
     """Run a command, and return the time and memory that it used."""
     meter = [sys.executable, str(Path(__file__)), *command]
     done = subprocess.run(meter, capture_output=True, check=True)

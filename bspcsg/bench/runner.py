@@ -13,7 +13,7 @@ from statistics import median
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from ..errors import held
+from ..errors import not_none
 from ..machine import machine
 from .case import BenchCase
 from .cases import CASES
@@ -27,7 +27,7 @@ _GRACE_SECONDS = 120.0
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 
-_BOOT = Path(__file__).with_name("boot.py")
+_BOOT = Path(__file__).with_name("start_worker.py")
 
 
 @dataclass(frozen=True)
@@ -124,8 +124,8 @@ def _item(key: str, label: str, settings: Settings, progress: Progress) -> dict[
         _until_done(part, settings, gathered, progress)
     row = gathered.row()
     if case.checked_at_once and not _checked(row):
-        row["at_once"] = _at_once(task, settings, progress)
-    return row if case.other_sets else judged(row)
+        row["at_once"] = _rival_at_once(task, settings, progress)
+    return row if case.other_sets else with_volumes_compared(row)
 
 
 def _bound_of_memory(case: BenchCase, label: str, settings: Settings) -> float:
@@ -146,7 +146,7 @@ def _checked(row: dict[str, Any]) -> bool:
     return any("facts" in found for name, found in row["engines"].items() if name != OURS)
 
 
-def _at_once(task: Task, settings: Settings, progress: Progress) -> dict[str, Any]:
+def _rival_at_once(task: Task, settings: Settings, progress: Progress) -> dict[str, Any]:
     """Return the main rival's result for a chain, computed as one expression."""
     gathered = Gathered(task.item)
     asked = replace(task, engines=[MAIN_RIVAL], runs=0, at_once=True, cores=0)
@@ -159,14 +159,16 @@ def _until_done(task: Task, settings: Settings, gathered: "Gathered", progress: 
     """Run workers until each engine is done or has failed, without engines that end a worker."""
     engines = list(task.engines)
     while engines:
-        culprit = _work(replace(task, engines=engines), settings, gathered, progress)
+        culprit = _run_worker(replace(task, engines=engines), settings, gathered, progress)
         if culprit is None:
             return
         gathered.forget_unfinished(engines, culprit)
         engines = [name for name in engines if not gathered.is_over(name)]
 
 
-def _work(task: Task, settings: Settings, gathered: "Gathered", progress: Progress) -> str | None:
+def _run_worker(
+    task: Task, settings: Settings, gathered: "Gathered", progress: Progress
+) -> str | None:
     """Run one worker; return the engine at whose call it ended too early, or None."""
     limit = CASES[task.case].limit if settings.limit is None else settings.limit
     core = str(settings.core.resolve()) if settings.core else ""
@@ -182,7 +184,7 @@ def _work(task: Task, settings: Settings, gathered: "Gathered", progress: Progre
         ) as child,
     ):
         try:
-            under_way, reason = _listen(child, task, limit, gathered, progress)
+            under_way, reason = _read_reports(child, task, limit, gathered, progress)
         finally:
             child.kill()
     if reason is None:
@@ -191,7 +193,7 @@ def _work(task: Task, settings: Settings, gathered: "Gathered", progress: Progre
     return under_way or task.engines[0]
 
 
-def _listen(
+def _read_reports(
     child: "subprocess.Popen[bytes]",
     task: Task,
     limit: float,
@@ -199,7 +201,7 @@ def _listen(
     progress: Progress,
 ) -> tuple[str | None, dict[str, Any] | None]:
     """Read a worker's output; return the engine in progress and the worker's failure, or None."""
-    lines = _Lines(child)
+    lines = _LineReader(child)
     under_way, began = None, time.monotonic()
     while True:
         line = lines.next(began + (limit if under_way else _GRACE_SECONDS + limit))
@@ -219,11 +221,11 @@ def _listen(
             under_way, began = None, time.monotonic()
 
 
-class _Lines:
+class _LineReader:
     """Reads the output of a process line by line, with deadlines."""
 
     def __init__(self, child: "subprocess.Popen[bytes]") -> None:
-        self._descriptor = held(child.stdout, "the process's output").fileno()
+        self._descriptor = not_none(child.stdout, "the process's output").fileno()
         self._waiting = b""
 
     def next(self, deadline: float) -> bytes | None:
@@ -248,36 +250,36 @@ class Gathered:
         self._extent: dict[str, Any] = {}
         self._engines: dict[str, dict[str, Any]] = {}
 
-    def take(self, said: dict[str, Any]) -> None:
+    def take(self, message: dict[str, Any]) -> None:
         """Store one report of a worker."""
-        if said["say"] == "extent":
-            self._extent = {name: said[name] for name in ("area", "size", "triangles")}
-        elif said["say"] == "plan":
-            self._of(said)["planned"] = said["runs"]
-        elif said["say"] == "run":
-            self._add_run(self._of(said), said)
-        elif said["say"] == "step":
-            self._of(said)["steps_done"] = said["done"]
-        elif said["say"] == "failed":
-            self._of(said).update(state="failed", reason=said["reason"])
+        if message["say"] == "extent":
+            self._extent = {name: message[name] for name in ("area", "size", "triangles")}
+        elif message["say"] == "plan":
+            self._of(message)["planned"] = message["runs"]
+        elif message["say"] == "run":
+            self._add_run(self._of(message), message)
+        elif message["say"] == "step":
+            self._of(message)["steps_done"] = message["done"]
+        elif message["say"] == "failed":
+            self._of(message).update(state="failed", reason=message["reason"])
 
-    def _of(self, said: dict[str, Any]) -> dict[str, Any]:
-        return self._engines.setdefault(said["engine"], _nothing_yet())
+    def _of(self, message: dict[str, Any]) -> dict[str, Any]:
+        return self._engines.setdefault(message["engine"], _empty_result())
 
-    def _add_run(self, found: dict[str, Any], said: dict[str, Any]) -> None:
-        found["seconds"].append(said["seconds"])
-        found["cpu_seconds"].append(said["cpu"])
-        found["memory_mb"] = max(found["memory_mb"], said["memory_mb"] or 0.0)
-        found["peak_mb"] = max(found.get("peak_mb", 0.0), said["peak_mb"])
-        found.setdefault("volumes", []).append(said["facts"]["volume"])
-        found.setdefault("faults_each", []).append(said.get("faults", 0))
+    def _add_run(self, found: dict[str, Any], message: dict[str, Any]) -> None:
+        found["seconds"].append(message["seconds"])
+        found["cpu_seconds"].append(message["cpu"])
+        found["memory_mb"] = max(found["memory_mb"], message["memory_mb"] or 0.0)
+        found["peak_mb"] = max(found.get("peak_mb", 0.0), message["peak_mb"])
+        found.setdefault("volumes", []).append(message["facts"]["volume"])
+        found.setdefault("faults_each", []).append(message.get("faults", 0))
         for name in ("parts", "windows", "counters", "facts", "answer_mb", "steps", "proof"):
-            if name in said:
-                found[name] = said[name]
+            if name in message:
+                found[name] = message[name]
 
     def ended(self, engine: str, reason: dict[str, Any]) -> None:
         """Store that the worker ended during a call of this engine."""
-        self._engines.setdefault(engine, _nothing_yet()).update(reason)
+        self._engines.setdefault(engine, _empty_result()).update(reason)
 
     def is_over(self, engine: str) -> bool:
         """Return true if an engine has failed or has finished all its runs."""
@@ -306,7 +308,7 @@ class Gathered:
         return {"item": self._label, **self._extent, "engines": self._engines}
 
 
-def _nothing_yet() -> dict[str, Any]:
+def _empty_result() -> dict[str, Any]:
     return {"seconds": [], "cpu_seconds": [], "memory_mb": 0.0}
 
 
@@ -315,7 +317,7 @@ def _warm_median(times: list[float]) -> float | None:
     return median(times[1:] or times) if times else None
 
 
-def judged(row: dict[str, Any]) -> dict[str, Any]:
+def with_volumes_compared(row: dict[str, Any]) -> dict[str, Any]:
     """Return the row with each volume compared with ours, within a bound of the rounding."""
     ours = row["engines"].get(OURS, {})
     if "facts" not in ours:
@@ -327,7 +329,7 @@ def judged(row: dict[str, Any]) -> dict[str, Any]:
             found["difference"] = max(
                 abs(mine - theirs) for mine in ours["volumes"] for theirs in found["volumes"]
             )
-            found["bound"] = _bound(row, ours, found, name)
+            found["bound"] = _volume_tolerance(row, ours, found, name)
             found["agrees"] = found["difference"] <= found["bound"]
             found["same_euler_number"] = (
                 found["facts"]["euler_number"] == ours["facts"]["euler_number"]
@@ -335,7 +337,9 @@ def judged(row: dict[str, Any]) -> dict[str, Any]:
     return row
 
 
-def _bound(row: dict[str, Any], ours: dict[str, Any], theirs: dict[str, Any], name: str) -> float:
+def _volume_tolerance(
+    row: dict[str, Any], ours: dict[str, Any], theirs: dict[str, Any], name: str
+) -> float:
     """Return the largest difference of two correct volumes.
 
     An engine may move each vertex by its resolution. The faces of the answer are parts of the

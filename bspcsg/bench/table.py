@@ -12,9 +12,9 @@ Row = dict[str, Any]
 _MIN_RUNS_FOR_MEDIAN = 5
 
 #: The text for a missing figure.
-_NOTHING = "—"
+_MISSING = "—"
 
-_MET = {True: "yes", False: "no", None: _NOTHING}
+_MET = {True: "yes", False: "no", None: _MISSING}
 
 
 def lines_of(record: dict[str, Any], titles: bool) -> list[list[str]]:
@@ -52,13 +52,13 @@ def _figures(found: Row) -> list[str]:
     faults, peak = found.get("faults"), found.get("peak_mb")
     return [
         *times,
-        _NOTHING if faults is None else f"{faults:.0f}",
-        f"{peak:.0f} MB" if peak else _NOTHING,
+        _MISSING if faults is None else f"{faults:.0f}",
+        f"{peak:.0f} MB" if peak else _MISSING,
     ]
 
 
 def _or_nothing(seconds: float | None) -> str:
-    return seconds_text(seconds) if seconds else _NOTHING
+    return seconds_text(seconds) if seconds else _MISSING
 
 
 def remarks(record: dict[str, Any]) -> list[str]:
@@ -73,7 +73,7 @@ def remarks(record: dict[str, Any]) -> list[str]:
     dense = [
         row for row in record["cases"] if _doubling(row) and row["items"] and not row.get("small")
     ]
-    said += _of_dense_places(dense) if dense else []
+    said += _dense_cases_sentence(dense) if dense else []
     return said + [
         f"{row['case']}, {label}: left out, {reason}."
         for row in record["cases"]
@@ -89,7 +89,7 @@ def _counted(met: list[tuple[str, bool | None]]) -> str:
     return said + (f" No figure: {', '.join(unknown)}." if unknown else "")
 
 
-def _of_dense_places(rows: list[Row]) -> list[str]:
+def _dense_cases_sentence(rows: list[Row]) -> list[str]:
     """Return a sentence that names the dense cases that are too slow or grow too fast."""
     slow = [row["case"] for row in rows if _least_ratio(row) is False]
     grown = [row["case"] for row in rows if has_cliff(row)]
@@ -196,7 +196,7 @@ def _range(times: list[float]) -> str:
 
 def _time(found: Row | None) -> str:
     if not found:
-        return _NOTHING
+        return _MISSING
     if found["state"] == "stopped":
         steps = f" at step {found['steps_done']}" if "steps_done" in found else ""
         return f"> {seconds_text(found['stopped_after'])}{steps}"

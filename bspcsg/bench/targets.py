@@ -22,7 +22,7 @@ Items = Sequence[dict[str, Any]]
 
 
 @dataclass(frozen=True)
-class Reached:
+class TargetResult:
     """The value that a row reached for one target, and whether it meets the target.
 
     Parameters
@@ -46,7 +46,7 @@ class Goal(Protocol):
     def text(self) -> str:
         """The target as text."""
 
-    def reached(self, items: Items) -> Reached:
+    def reached(self, items: Items) -> TargetResult:
         """Return the value that the items reached, and whether it meets the target."""
 
 
@@ -62,14 +62,14 @@ class Faster:
         """The target as text."""
         return f"≥ {self.factor:g} × {self.engine}"
 
-    def reached(self, items: Items) -> Reached:
+    def reached(self, items: Items) -> TargetResult:
         """Return the least ratio of times, and whether it meets the target."""
         ratios = [found for item in items if (found := ratio(item, self.engine)) is not None]
         if not ratios:
-            return Reached(None, "—", None)
+            return TargetResult(None, "—", None)
         least = min(ratios, key=lambda found: found.value)
         met = least.value >= self.factor
-        return Reached(least.value, least.text, met or (None if least.is_bound else False))
+        return TargetResult(least.value, least.text, met or (None if least.is_bound else False))
 
 
 @dataclass(frozen=True)
@@ -84,16 +84,16 @@ class MeanFaster:
         """The target as text."""
         return f"mean ≥ {self.factor:g} × {self.engine}"
 
-    def reached(self, items: Items) -> Reached:
+    def reached(self, items: Items) -> TargetResult:
         """Return the geometric mean of the ratios of times, and whether it meets the target."""
         ratios = [found for item in items if (found := ratio(item, self.engine)) is not None]
         if not ratios:
-            return Reached(None, "—", None)
+            return TargetResult(None, "—", None)
         value = _geometric_mean([found.value for found in ratios])
         worked = [found.cpu for found in ratios if found.cpu is not None]
         both = Ratio(value, _geometric_mean(worked) if worked else None)
         over = f"over {len(ratios)} of {len(items)}"
-        return Reached(value, f"{both.text} {over}", value >= self.factor)
+        return TargetResult(value, f"{both.text} {over}", value >= self.factor)
 
 
 def _geometric_mean(numbers: list[float]) -> float:
@@ -111,13 +111,13 @@ class Within:
         """The target as text."""
         return f"< {seconds_text(self.seconds)}"
 
-    def reached(self, items: Items) -> Reached:
+    def reached(self, items: Items) -> TargetResult:
         """Return the largest median time, and whether it meets the target."""
         times = [result_of(item, OURS).get("median") for item in items]
         known = [value for value in times if value is not None]
         if not known:
-            return Reached(None, "unfinished", False)
-        return Reached(max(known), seconds_text(max(known)), max(known) < self.seconds)
+            return TargetResult(None, "unfinished", False)
+        return TargetResult(max(known), seconds_text(max(known)), max(known) < self.seconds)
 
 
 @dataclass(frozen=True)
@@ -131,12 +131,12 @@ class WorkWithin:
         """The target as text."""
         return f"≤ {seconds_text(self.seconds)} of processors"
 
-    def reached(self, items: Items) -> Reached:
+    def reached(self, items: Items) -> TargetResult:
         """Return the largest median processor time, and whether it meets the target."""
         known = [value for item in items if (value := result_of(item, OURS).get("cpu"))]
         if not known:
-            return Reached(None, "unfinished", False)
-        return Reached(max(known), seconds_text(max(known)), max(known) <= self.seconds)
+            return TargetResult(None, "unfinished", False)
+        return TargetResult(max(known), seconds_text(max(known)), max(known) <= self.seconds)
 
 
 @dataclass(frozen=True)
@@ -150,13 +150,13 @@ class StepWithin:
         """The target as text."""
         return f"≤ {seconds_text(self.seconds)} a step"
 
-    def reached(self, items: Items) -> Reached:
+    def reached(self, items: Items) -> TargetResult:
         """Return the largest average time of a step, and whether it meets the target."""
         found = [result_of(item, OURS) for item in items]
         times = [one["parts"]["steps"] / one["steps"] for one in found if one.get("steps")]
         if not times:
-            return Reached(None, "—", None)
-        return Reached(max(times), seconds_text(max(times)), max(times) <= self.seconds)
+            return TargetResult(None, "—", None)
+        return TargetResult(max(times), seconds_text(max(times)), max(times) <= self.seconds)
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,7 @@ class ScratchWithin:
         """The target as text."""
         return f"≤ {self.bytes_each:g} bytes a triangle beside operands and answer"
 
-    def reached(self, items: Items) -> Reached:
+    def reached(self, items: Items) -> TargetResult:
         """Return the largest scratch memory per triangle, and whether it meets the target."""
         found = [(item["triangles"], result_of(item, OURS)) for item in items]
         each = [
@@ -182,9 +182,9 @@ class ScratchWithin:
             if one.get("memory_mb") and "answer_mb" in one
         ]
         if not each:
-            return Reached(None, "—", None)
-        met = _of_all(max(each) <= self.bytes_each, len(each), items)
-        return Reached(max(each), f"{max(each):.0f} bytes", met)
+            return TargetResult(None, "—", None)
+        met = _met_by_all(max(each) <= self.bytes_each, len(each), items)
+        return TargetResult(max(each), f"{max(each):.0f} bytes", met)
 
 
 @dataclass(frozen=True)
@@ -198,13 +198,13 @@ class MemoryWithin:
         """The target as text."""
         return f"< {self.megabytes:g} MB"
 
-    def reached(self, items: Items) -> Reached:
+    def reached(self, items: Items) -> TargetResult:
         """Return the largest peak memory, and whether it meets the target."""
         peaks = [result_of(item, OURS).get("peak_mb") for item in items]
         known = [value for value in peaks if value is not None]
         if not known:
-            return Reached(None, "—", None)
-        return Reached(max(known), f"{max(known):.0f} MB", max(known) < self.megabytes)
+            return TargetResult(None, "—", None)
+        return TargetResult(max(known), f"{max(known):.0f} MB", max(known) < self.megabytes)
 
 
 @dataclass(frozen=True)
@@ -218,14 +218,14 @@ class SteadySteps:
         """The target as text."""
         return f"last steps ≤ {self.factor:g} × step 1 000"
 
-    def reached(self, items: Items) -> Reached:
+    def reached(self, items: Items) -> TargetResult:
         """Return the largest ratio of the last to the thousandth step, and if it is low enough."""
         windows = [result_of(item, OURS).get("windows") or {} for item in items]
         pairs = [(w["thousandth"], w["last"]) for w in windows if "thousandth" in w]
         if not pairs:
-            return Reached(None, "—", None)
+            return TargetResult(None, "—", None)
         value = max(last / early for early, last in pairs)
-        return Reached(value, f"{value:.2f} ×", value <= self.factor)
+        return TargetResult(value, f"{value:.2f} ×", value <= self.factor)
 
 
 @dataclass(frozen=True)
@@ -239,16 +239,18 @@ class GrowthTarget:
         """The target as text."""
         return f"∝ n^{self.exponent:g}"
 
-    def reached(self, items: Items) -> Reached:
+    def reached(self, items: Items) -> TargetResult:
         """Return the fitted exponent of growth, and whether it meets the target."""
         value = exponent(items, OURS, "cpu")
         if value is None:
-            return Reached(None, "—", None)
+            return TargetResult(None, "—", None)
         timed = sum(bool(result_of(item, OURS).get("cpu")) for item in items)
-        return Reached(value, f"n^{value:.3f}", _of_all(value <= self.exponent, timed, items))
+        return TargetResult(
+            value, f"n^{value:.3f}", _met_by_all(value <= self.exponent, timed, items)
+        )
 
 
-def _of_all(met: bool, measured: int, items: Items) -> bool | None:
+def _met_by_all(met: bool, measured: int, items: Items) -> bool | None:
     """Return whether a target is met; None if it is met but not all items were measured."""
     return None if met and measured < len(items) else met
 
@@ -265,18 +267,18 @@ class DoublingTarget:
         """The target as text."""
         return f"cost ≤ {1 + self.share:g} × growth of input and answer"
 
-    def reached(self, items: Items) -> Reached:
+    def reached(self, items: Items) -> TargetResult:
         """Return the largest growth of time relative to size, and whether it meets the target."""
         if any(result_of(item, OURS).get("state") == "stopped" for item in items):
             # A larger item that times out has grown too fast.
-            return Reached(None, "unfinished", False)
+            return TargetResult(None, "unfinished", False)
         grown = [_growth(a, b) for a, b in pairwise(items)]
         known = [found for found in grown if found is not None]
         if not known:
-            return Reached(None, "—", None)
+            return TargetResult(None, "—", None)
         cost, size = max(known, key=lambda found: found[0] / found[1])
         text = f"cost × {cost:.3g}, input and answer × {size:.3g}"
-        return Reached(cost / size, text, cost <= (1 + self.share) * size)
+        return TargetResult(cost / size, text, cost <= (1 + self.share) * size)
 
 
 def _growth(less: dict[str, Any], more: dict[str, Any]) -> tuple[float, float] | None:

@@ -16,12 +16,12 @@ from pathlib import Path
 from statistics import mean, median
 from typing import Any
 
-from ..machine import forget_peak, held_mb, peak_mb
+from ..machine import memory_mb, peak_mb, reset_peak
 from .cases import CASES, dome
 from .engines import ENGINES, Engine
-from .facts import facts_of
+from .result_facts import facts_of
 from .targets import OURS
-from .work import Carving, Chain, Outcome, Tell, Work
+from .workloads import Carving, Chain, Outcome, StepCallback, Work
 
 #: The least time between two reports of steps, in seconds.
 _REPORT_INTERVAL = 0.5
@@ -76,16 +76,16 @@ class Task:
 
 def main(task: str) -> None:
     """Perform the task that a JSON document describes, and report to standard output."""
-    perform(Task(**json.loads(task)), _say)
+    perform(Task(**json.loads(task)), _print_json)
 
 
 def perform(task: Task, say: Callable[[dict[str, Any]], None]) -> None:
     """Perform a task, and report each result to `say` as soon as it is known."""
-    _confine(task)
+    _limit_resources(task)
     work = _work_of(task)
     extent = work.extent()
     say({"say": "extent", "area": extent.area, "size": extent.size, "triangles": extent.triangles})
-    turns = [_Turns(ENGINES[name](), work, task, say) for name in task.engines]
+    turns = [_EngineRuns(ENGINES[name](), work, task, say) for name in task.engines]
     while any(turn.left for turn in turns):
         for turn in turns:
             if turn.left:
@@ -93,7 +93,7 @@ def perform(task: Task, say: Callable[[dict[str, Any]], None]) -> None:
     say({"say": "end", "peak_mb": peak_mb()})
 
 
-def _confine(task: Task) -> None:
+def _limit_resources(task: Task) -> None:
     if task.cores:
         os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[: task.cores])
     if task.memory_gb:
@@ -112,13 +112,13 @@ def _work_of(task: Task) -> Work:
     return work
 
 
-class _Turns:
+class _EngineRuns:
     """The runs of one engine on one item."""
 
     def __init__(
         self, engine: Engine, work: Work, task: Task, say: Callable[[dict[str, Any]], None]
     ) -> None:
-        self.engine, self.work, self.task, self.say = engine, work, task, say
+        self.engine, self.work, self.task, self.report = engine, work, task, say
         self.left = 1
         self._warm = False
         self._calls = 1
@@ -126,7 +126,7 @@ class _Turns:
     def take(self) -> None:
         """Do one run and report its result; after a failure there are no further runs."""
         name = self.engine.name
-        self.say({"say": "begin", "engine": name})
+        self.report({"say": "begin", "engine": name})
         try:
             measured, outcome = self._timed()
         except MemoryError:
@@ -137,13 +137,13 @@ class _Turns:
             first = not self._warm
             self._plan(measured["seconds"])
             said = {"say": "run", "engine": name, **measured}
-            self.say(said | self._details(outcome, first))
+            self.report(said | self._details(outcome, first))
 
     def _timed(self) -> tuple[dict[str, Any], Outcome]:
         """Do one run of several calls, and return the mean cost of a call with the last outcome."""
         gc.collect()
-        held = held_mb()
-        counted = forget_peak()
+        held = memory_mb()
+        counted = reset_peak()
         calls = [self._call() for _ in range(self._calls - 1)]
         last, outcome = self._called()
         costs = {name: mean(call[name] for call in [*calls, last]) for name in last}
@@ -156,13 +156,13 @@ class _Turns:
 
     def _called(self) -> tuple[dict[str, float], Outcome]:
         prepared = self.work.prepare(self.engine)
-        faults, began, used = _faults(), time.perf_counter(), time.process_time()
+        faults, began, used = _page_faults(), time.perf_counter(), time.process_time()
         outcome = self.work.run(self.engine, prepared, self._teller())
         seconds, cpu = time.perf_counter() - began, time.process_time() - used
         cost = {
             "seconds": sum(outcome.parts.values()) or seconds,
             "cpu": cpu,
-            "faults": _faults() - faults,
+            "faults": _page_faults() - faults,
         }
         return cost, outcome
 
@@ -174,14 +174,14 @@ class _Turns:
         self._warm = True
         self._calls = max(ceil(_MIN_RUN_SECONDS / seconds), 1)
         self.left = max(min(self.task.runs, int(self.task.budget / seconds) - 1), 0)
-        self.say({"say": "plan", "engine": self.engine.name, "runs": self.left})
+        self.report({"say": "plan", "engine": self.engine.name, "runs": self.left})
 
     def _details(self, outcome: Outcome, first: bool) -> dict[str, Any]:
         details: dict[str, Any] = {"parts": outcome.parts, "facts": asdict(facts_of(outcome.mesh))}
         details["answer_mb"] = sum(array.nbytes for array in outcome.mesh) / 1e6
         if outcome.step_seconds:
             details["steps"] = len(outcome.step_seconds)
-            details["windows"] = _windows(outcome.step_seconds)
+            details["windows"] = _median_step_times(outcome.step_seconds)
         if first:
             details["counters"] = self.work.counted(self.engine, outcome)
             details |= self._proof(outcome)
@@ -194,9 +194,9 @@ class _Turns:
 
     def _fail(self, reason: str) -> None:
         self.left = 0
-        self.say({"say": "failed", "engine": self.engine.name, "reason": reason})
+        self.report({"say": "failed", "engine": self.engine.name, "reason": reason})
 
-    def _teller(self) -> Tell:
+    def _teller(self) -> StepCallback:
         last = time.perf_counter()
 
         def tell(done: int) -> None:
@@ -204,12 +204,12 @@ class _Turns:
             now = time.perf_counter()
             if now - last >= _REPORT_INTERVAL:
                 last = now
-                self.say({"say": "step", "engine": self.engine.name, "done": done})
+                self.report({"say": "step", "engine": self.engine.name, "done": done})
 
         return tell
 
 
-def _faults() -> int:
+def _page_faults() -> int:
     """Return the number of minor page faults of this process."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_minflt
 
@@ -223,7 +223,7 @@ def _of_process(outcome: Outcome) -> dict[str, float]:
     return {"seconds": used.seconds, "cpu": used.cpu, **sizes}
 
 
-def _windows(steps: list[float]) -> dict[str, float]:
+def _median_step_times(steps: list[float]) -> dict[str, float]:
     """Return the median times of the first, of the thousandth and of the last steps."""
     found = {"first": median(steps[:_WINDOW_STEPS]), "last": median(steps[-_WINDOW_STEPS:])}
     if len(steps) >= 1000 + _WINDOW_STEPS:
@@ -231,6 +231,6 @@ def _windows(steps: list[float]) -> dict[str, float]:
     return found
 
 
-def _say(document: dict[str, Any]) -> None:
+def _print_json(document: dict[str, Any]) -> None:
     sys.stdout.write(json.dumps(document) + "\n")
     sys.stdout.flush()

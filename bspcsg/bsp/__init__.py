@@ -7,8 +7,8 @@ after that are exact.
 """
 
 from .drawings.dxf import load_dxf, save_dxf
-from .drawings.left_out import DrawingWarning
 from .drawings.svg import load_svg, save_svg
+from .drawings.unread_content import DrawingWarning
 from .painting.camera import Camera
 from .painting.panorama import panorama
 from .painting.picture import Picture, picture
@@ -38,8 +38,8 @@ from .sets.sub_hyperplane import SubHyperplane
 from .sets.trace import MergeHalves, MergeJoin, MergePair, MergeSplit, MergeTrace
 from .sets.visibility import visibility_polygon, visibility_volume
 from .trees import analysis as analysis
-from .trees.asking import Choice
 from .trees.attributes import AttributeTree, LabelledRegion
+from .trees.chosen_cuts import Choice
 from .trees.cost import Query, Stats
 from .trees.fragments import Fragments
 from .trees.leaf_form import LeafForm

@@ -240,7 +240,7 @@ def _parsed(line: str, path: Path, number: int) -> dict[str, Any]:
 
 
 #: The bytes with which every line begins.
-_START = b'{"schema": '
+_LINE_START = b'{"schema": '
 
 
 class Journal:
@@ -296,8 +296,8 @@ class Journal:
         if not self.path.exists():
             return
         with self.path.open("r+b") as file:
-            start = file.read(len(_START))
-            if start != _START[: len(start)]:
+            start = file.read(len(_LINE_START))
+            if start != _LINE_START[: len(start)]:
                 message = (
                     f"{self.path}: this existing file is not a results file of bspcsg crosscheck,"
                     " so nothing is appended to it; choose another name."

@@ -24,7 +24,7 @@ def summary_of(cases: Sequence[CaseRecord]) -> dict[str, Any]:
         "identities": _identities(cases),
         "thickest_agreement": _thickest(cases),
         "seconds": round(sum(case["seconds"]["total"] for case in cases), 1),
-        "failures": {case["case"]: _why(case) for case in cases if is_failure(case)},
+        "failures": {case["case"]: _failure_reason(case) for case in cases if is_failure(case)},
     }
 
 
@@ -73,5 +73,5 @@ def _thickest(cases: Sequence[CaseRecord]) -> float:
     return max(known, default=0.0)
 
 
-def _why(case: CaseRecord) -> str:
+def _failure_reason(case: CaseRecord) -> str:
     return f"{case['verdict']}: {case['reason']}" if case["reason"] else case["verdict"]

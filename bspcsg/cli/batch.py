@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from ..errors import BspcsgError
-from .console import output, status, terminal
+from .console import output, status_line, terminal
 from .console.output import Output
 from .inputs.files import STREAM, Target, expanded, is_dropped
 from .inputs.scripts import SUFFIXES
@@ -18,7 +18,7 @@ from .inputs.scripts import SUFFIXES
 _MIN_FILES_FOR_BAR = 4
 
 #: A function that processes an input file; it returns a JSON document and the exit code.
-Doing = Callable[[Path, Target], tuple[dict[str, Any], int]]
+FileProcessor = Callable[[Path, Target], tuple[dict[str, Any], int]]
 
 
 def targets_of(
@@ -52,7 +52,8 @@ def targets_of(
         raise click.UsageError("no output is given; add either -o FILE or --outdir DIR.")
     if outdir is not None:
         pairs = [
-            (path, outdir / f"{_stem(path)}{suffix or _own(path, keeps_format)}") for path in files
+            (path, outdir / f"{_stem(path)}{suffix or _own_suffix(path, keeps_format)}")
+            for path in files
         ]
     elif len(files) == 1 or target is None:
         return [(files[0], target or Path(STREAM))]
@@ -69,7 +70,7 @@ def targets_of(
     return pairs
 
 
-def _own(path: Path, keeps_format: bool) -> str:
+def _own_suffix(path: Path, keeps_format: bool) -> str:
     """Return the suffix of an input for its output; raise a usage error if it cannot be used."""
     if not keeps_format or str(path) == STREAM or path.suffix.lower() in SUFFIXES:
         raise click.UsageError("--outdir needs the output format, such as --to glb.")
@@ -98,8 +99,8 @@ def _refuse_twins(pairs: Sequence[tuple[Path, Path]]) -> None:
         seen[where] = path
 
 
-def each(
-    pairs: Sequence[tuple[Path, Target]], out: Output, doing: Doing, word: str
+def process_each(
+    pairs: Sequence[tuple[Path, Target]], out: Output, doing: FileProcessor, word: str
 ) -> tuple[list[dict[str, Any]], int]:
     """Apply a function to each file; return the JSON documents and the largest exit code.
 
@@ -123,7 +124,7 @@ def each(
             except BspcsgError as error:
                 if len(pairs) == 1:
                     raise
-                terminal.say_error(error.message)
+                terminal.print_error(error.message)
                 document = {"file": str(path), "error": output.error_values(error)}
                 code = output.exit_code_of(error)
             documents.append(document)
@@ -142,7 +143,7 @@ def _progress(
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
 
-    status.end()
+    status_line.end()
     columns = (word, BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         yield iter(bar.track(pairs))

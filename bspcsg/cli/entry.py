@@ -35,7 +35,7 @@ def _end_in_order(number: int, frame: FrameType | None) -> None:
     and would end the process while a compiled module is initialized.
     """
     if _is_bad_moment(frame) and hasattr(signal, "setitimer"):
-        _come_again()
+        _repeat_interrupt()
     else:
         signal.default_int_handler(number, frame)
 
@@ -48,7 +48,7 @@ def _is_bad_moment(frame: FrameType | None) -> bool:
     return False
 
 
-def _come_again() -> None:
+def _repeat_interrupt() -> None:
     signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
     signal.setitimer(signal.ITIMER_REAL, _REPEAT_DELAY)
 
@@ -64,7 +64,7 @@ def _end_for_good() -> None:
 def _catch_lost(lost: "sys.UnraisableHookArgs") -> None:
     """Repeat an interrupt that a finaliser swallowed; report other exceptions as usual."""
     if isinstance(lost.exc_value, KeyboardInterrupt) and hasattr(signal, "setitimer"):
-        _come_again()
+        _repeat_interrupt()
     else:
         sys.__unraisablehook__(lost)
 

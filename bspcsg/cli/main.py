@@ -10,9 +10,9 @@ from importlib import import_module
 import click
 
 from .._core import __version__
-from ..errors import BspcsgError, FormatError, InternalError, harmless
-from ..meant import question
-from .console import clock, output, standard, status, terminal
+from ..errors import BspcsgError, FormatError, InternalError, without_control_characters
+from ..suggestions import suggestion_text
+from .console import clock, output, standard_streams, status_line, terminal
 
 _EPILOG = """\b
 Exit codes:
@@ -74,7 +74,7 @@ _ALIASES = {"cut": "difference", "explode": "split", "validate": "crosscheck"}
 _FORMER = frozenset({"explode", "validate"})
 
 #: The system's error numbers of writing to a file or stream that is full, broken or closed.
-_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
+_WRITE_ERRNOS = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
 
 _COMPLETE = "_BSPCSG_COMPLETE"
 
@@ -98,10 +98,10 @@ class _Verbs(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         known = {*_VERBS, *_ALIASES}
         if args and args[0] not in known and not args[0].startswith("-"):
-            asks = question(args[0], _VERBS)
+            asks = suggestion_text(args[0], _VERBS)
             raise click.UsageError(f"there is no command {args[0]!r}.{asks}", ctx)
         if args and args[0] in _FORMER and not terminal.QUIET.intersection(ctx.obj or ()):
-            terminal.say(
+            terminal.print_line(
                 "note",
                 f"{args[0]} is now called {_ALIASES[args[0]]}; the old name will be removed"
                 " later, so use the new one.",
@@ -129,7 +129,7 @@ def main(arguments: Sequence[str] | None = None, began: float | None = None) -> 
     `began` is the start time of the process, as `time.perf_counter` measures it.
     """
     _fill_closed_streams()
-    standard.take_over(_ERRORS)
+    standard_streams.replace_streams(_ERRORS)
     sys.exit(run(sys.argv[1:] if arguments is None else arguments, began))
 
 
@@ -151,26 +151,26 @@ def run(arguments: Sequence[str], began: float | None = None) -> int:
     """Run the command line and return its exit code; with ``--debug``, raise errors."""
     clock.start(began)
     try:
-        code = _answered(list(arguments))
+        code = _run_and_report(list(arguments))
         sys.stdout.flush()
         return code
     except BrokenPipeError:
-        standard.discard()
+        standard_streams.redirect_to_null()
         return output.CLOSED_PIPE
-    except standard.FullOutputError as error:
-        return output.tell_error(_unwritable(error), as_json=False)
+    except standard_streams.FullOutputError as error:
+        return output.report_error(_unwritable(error), as_json=False)
     except KeyboardInterrupt:
         return output.INTERRUPTED
 
 
-def _answered(arguments: list[str]) -> int:
+def _run_and_report(arguments: list[str]) -> int:
     """Run the command line, print its errors and return the exit code.
 
     Errors of writing to standard output are raised.
     """
     try:
         return _invoked(arguments)
-    except (BrokenPipeError, standard.FullOutputError):
+    except (BrokenPipeError, standard_streams.FullOutputError):
         raise
     except click.Abort:
         return output.INTERRUPTED
@@ -193,7 +193,7 @@ def _unwritable(error: OSError) -> FormatError:
     return FormatError(f"{name}: cannot write: {error.strerror}.", "unwritable")
 
 
-def _as_it_came(error: UnicodeError) -> tuple[str | bytes, int]:
+def _unencodable_replacement(error: UnicodeError) -> tuple[str | bytes, int]:
     """Handle encoding errors of printed text, as a codec's error handler.
 
     Bytes of file names that are no Unicode stay unchanged; other characters become ``?``.
@@ -209,7 +209,7 @@ def _as_it_came(error: UnicodeError) -> tuple[str | bytes, int]:
 
 
 _ERRORS = "bspcsg_names"
-codecs.register_error(_ERRORS, _as_it_came)
+codecs.register_error(_ERRORS, _unencodable_replacement)
 
 
 def _invoked(arguments: list[str]) -> int:
@@ -220,7 +220,7 @@ def _invoked(arguments: list[str]) -> int:
     quiet = bool(terminal.QUIET.intersection(arguments))
     with (
         commands.make_context("bspcsg", arguments, obj=tuple(arguments)) as context,
-        status.watched(next(iter(arguments), ""), quiet),
+        status_line.displayed(next(iter(arguments), ""), quiet),
     ):
         code = commands.invoke(context)
     return code if isinstance(code, int) else output.DONE
@@ -228,8 +228,8 @@ def _invoked(arguments: list[str]) -> int:
 
 def _usage_error(error: click.ClickException, as_json: bool) -> int:
     context = error.ctx if isinstance(error, click.UsageError) else None
-    message = harmless(error.format_message())
-    terminal.say_error(message)
+    message = without_control_characters(error.format_message())
+    terminal.print_error(message)
     if as_json:
         values = {"code": "usage", "message": message, "where": []}
         output.print_error(values, error.exit_code)
@@ -245,12 +245,12 @@ def _asks_for_json(arguments: Sequence[str]) -> bool:
 
 def _failed(error: Exception, as_json: bool) -> int:
     if isinstance(error, BspcsgError):
-        return output.tell_error(error, as_json)
-    if isinstance(error, OSError) and error.errno in _NO_ROOM:
-        return output.tell_error(_unwritable(error), as_json)
+        return output.report_error(error, as_json)
+    if isinstance(error, OSError) and error.errno in _WRITE_ERRNOS:
+        return output.report_error(_unwritable(error), as_json)
     said = "out of memory" if isinstance(error, MemoryError) else f"{type(error).__name__}: {error}"
     message = (
         f"{said}. This is a defect of bspcsg; run the command again with --debug to see where it"
         " happens, and report it."
     )
-    return output.tell_error(InternalError(message), as_json)
+    return output.report_error(InternalError(message), as_json)

@@ -17,11 +17,11 @@ from .loading import dump, dumps, load, loads, read_tree
 from .making.polish import Polish
 from .nodes.registry import CsgWarning
 from .openscad import read_scad
-from .syntax.drawn import graph, outline
 from .syntax.json_form import from_json, to_json
 from .syntax.parser import parse, value_of
-from .syntax.simplified import simplified
+from .syntax.simplification import simplified
 from .syntax.tree import Argument, CsgTree, Node, Place
+from .syntax.tree_display import graph, outline
 from .syntax.writer import written
 
 __all__ = [

@@ -8,28 +8,28 @@ from typing import Any, get_args
 
 from ..bsp import Region
 from ..errors import BspcsgError, FormatError, invalid_parameter
-from ..parameters import file_path, function_of, of_kind, shown, truth_value, word
-from ..solid.counting import counted
+from ..parameters import file_path, function_of, instance_of, one_of, shown, truth_value
+from ..solid.ledger import counted
 from ..solid.solid import Solid
-from .making.apart import COMBINING, moved_apart
 from .making.polish import Polish, corners_and_levels, pitch_of, polished_pitch, snapped
+from .making.transform_distribution import COMBINING, with_transforms_distributed
 from .nodes import files as nodes_file
 from .nodes import hulls as nodes_hull
-from .nodes import letters as nodes_letters
-from .nodes import moves as nodes_move
-from .nodes import plane as nodes_plane
+from .nodes import plane_figures as nodes_plane
 from .nodes import projection as nodes_project
-from .nodes import sets as nodes_set
+from .nodes import set_operations as nodes_set
 from .nodes import solids as nodes_solid
 from .nodes import sweeps as nodes_sweep
-from .nodes.left_out import is_left_out, nothing_of
-from .nodes.registry import RECIPES, Evaluation, Geometry, OnInvalid
+from .nodes import text as nodes_letters
+from .nodes import transforms as nodes_move
+from .nodes.left_out import empty_geometry_of, is_left_out
+from .nodes.registry import NODE_KINDS, Evaluation, Geometry, OnInvalid
 from .scope import Scope, inherited, with_scope
 from .syntax.source import error_at
 from .syntax.tree import CsgTree, Node
 
 #: The modules that register the functions for nodes when they are imported.
-MAKERS = (
+NODE_MODULES = (
     nodes_file, nodes_hull, nodes_letters, nodes_move, nodes_plane,
     nodes_project, nodes_set, nodes_solid, nodes_sweep,
 )  # fmt: skip
@@ -37,7 +37,7 @@ MAKERS = (
 
 def node_names() -> tuple[str, ...]:
     """Return the sorted names of the script nodes that can be evaluated."""
-    return tuple(sorted(RECIPES))
+    return tuple(sorted(NODE_KINDS))
 
 
 @counted
@@ -93,12 +93,12 @@ def evaluate(
         missing points, children of the other dimension, parts of drawings that are not outlines,
         and arguments that a node does not have or that other arguments override.
     """
-    word(get_args(OnInvalid), on_invalid, "on_invalid")
+    one_of(get_args(OnInvalid), on_invalid, "on_invalid")
     polishes, skips = truth_value(polish, "polish"), truth_value(lenient, "lenient")
     if on_polish is not None:
         function_of(on_polish, "on_polish")
     allowed = _folders(allow_paths)
-    of_kind(CsgTree, tree, "tree")
+    instance_of(CsgTree, tree, "tree")
     name = tree.name if tree.intermediate is None else tree.intermediate.name
     invalid: OnInvalid = "warn" if skips and on_invalid == "error" else on_invalid
     run = Evaluation(
@@ -136,7 +136,7 @@ def _polished(tree: CsgTree, run: Evaluation) -> tuple[Geometry, Polish]:
     root = Node("union", (), tree.roots())
     if not run.polish:
         return _Cache(run).geometry(root), Polish()
-    root, rough = moved_apart(root), _Cache(run)
+    root, rough = with_transforms_distributed(root), _Cache(run)
     result = rough.geometry(root)
     pitch = _wanted_pitch(rough.parts)
     if pitch is None:
@@ -201,7 +201,7 @@ class _Cache:
     def _number(self, node: Node, children: tuple[int, ...], is_part: bool) -> int:
         """Return the position in `made` of a node's geometry, which is computed if it is new."""
         # Warn at each of several equal nodes, since the warning names line and column.
-        self.run.tell_of_arguments(node)
+        self.run.warn_of_arguments(node)
         key = (node.name, node.arguments, children, is_part, self.run.in_hull)
         if key in self.numbers:
             return self.numbers[key]
@@ -215,7 +215,7 @@ class _Cache:
         return number
 
     def _make(self, node: Node, children: list[Geometry], is_part: bool) -> Geometry:
-        recipe = RECIPES.get(node.name)
+        recipe = NODE_KINDS.get(node.name)
         if recipe is None:
             raise unsupported(node, self.run.script)
         made = recipe.maker(node, children, self.run)
@@ -228,11 +228,11 @@ class _Cache:
 
         If the error is not one for which nodes are omitted, raise it.
         """
-        placed = _placed(error, node, self.run.script)
+        placed = _located(error, node, self.run.script)
         if not is_left_out(error, lenient=self.run.lenient):
             raise placed from error
-        self.run.tell(f"{placed.message} This node is left out.")
-        return nothing_of(node)
+        self.run.warn_once(f"{placed.message} This node is left out.")
+        return empty_geometry_of(node)
 
     def _part(self, body: Geometry) -> Geometry:
         """Record a part of the model; snap it to the lattice of `self.pitch` if that is coarser."""
@@ -251,7 +251,7 @@ def unsupported(node: Node, script: str) -> FormatError:
     return error_at(script, node.place, message, "unsupported")
 
 
-def _placed(error: BspcsgError, node: Node, script: str) -> BspcsgError:
+def _located(error: BspcsgError, node: Node, script: str) -> BspcsgError:
     """Return the error with script, line and column of a node at the front of its message.
 
     It is unchanged if the message already begins with that line.

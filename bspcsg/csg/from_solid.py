@@ -12,13 +12,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import Finding, UnboundedError
-from ..geometry.chain import UNMOVED, FactorChain
+from ..geometry.chain import IDENTITY_CHAIN, FactorChain
 from ..geometry.transform import Factor
-from ..parameters import of_kind, truth_value
+from ..parameters import instance_of, truth_value
 from ..solid import expression
-from ..solid.counting import uncounted
-from ..solid.expression import Pending, Placed, Plan, make_plan
+from ..solid.expression import Pending, PlacedNode, Plan, make_plan
 from ..solid.leaf import ConstantLeaf, PlaneLeaf, TreeLeaf
+from ..solid.ledger import uncounted
 from ..solid.solid import Solid, expression_of, from_node
 from .syntax.tree import Argument, CsgTree, Node, Value
 
@@ -46,7 +46,7 @@ class _Body(NamedTuple):
     size: int = 0
 
 
-_NOTHING = _Body(None)
+_EMPTY = _Body(None)
 
 
 @uncounted
@@ -71,9 +71,11 @@ def tree_of(solid: Solid, *, flat: bool = False) -> CsgTree:
     if it would have more than two million corners and triangles: repeated parts are written each
     time, and symmetric differences repeat both operands.
     """
-    of_kind(Solid, solid, "solid")
+    instance_of(Solid, solid, "solid")
     body = (
-        _polyhedron(solid) if truth_value(flat, "flat") else _Reading().body(*expression_of(solid))
+        _polyhedron(solid)
+        if truth_value(flat, "flat")
+        else _ExpressionConverter().body(*expression_of(solid))
     )
     if body is None or body.size > _MAX_BODY_SIZE or body.negated:
         body = _polyhedron(solid)
@@ -127,7 +129,7 @@ def _polyhedron(solid: Solid) -> _Body | None:
     return _Body(node, negated, len(points) + len(faces))
 
 
-class _Reading:
+class _ExpressionConverter:
     """Converter of an expression to script nodes; each node of the expression is converted once."""
 
     def __init__(self) -> None:
@@ -174,7 +176,8 @@ def _plan_of(node: expression.ExpressionNode) -> Plan | None:
         return None
     record = content.record
     return Plan(
-        record.program, [Placed(expression.ExpressionNode(leaf), UNMOVED) for leaf in record.leaves]
+        record.program,
+        [PlacedNode(expression.ExpressionNode(leaf), IDENTITY_CHAIN) for leaf in record.leaves],
     )
 
 
@@ -206,43 +209,43 @@ def _operation(operator: str, operands: Sequence[_Body | None]) -> _Body | None:
     if operator == "not":
         return given[0]._replace(negated=not given[0].negated)
     if operator == "xor":
-        return _odd(given)
+        return _symmetric_difference(given)
     if operator == "and":
-        return _common(given)
+        return _intersection(given)
     # A union is the complement of the intersection of the complements.
-    outside = _common([body._replace(negated=not body.negated) for body in given])
+    outside = _intersection([body._replace(negated=not body.negated) for body in given])
     return outside._replace(negated=not outside.negated)
 
 
-def _common(bodies: Sequence[_Body]) -> _Body:
+def _intersection(bodies: Sequence[_Body]) -> _Body:
     """Return the intersection of sets: the plain nodes minus the nodes of negated sets."""
     positive = [body for body in bodies if not body.negated]
     negative = [body for body in bodies if body.negated]
     if not positive:
-        return _joined("union", negative)._replace(negated=True)
-    first = _joined("intersection", positive)
+        return _combined_node("union", negative)._replace(negated=True)
+    first = _combined_node("intersection", positive)
     rest = [body._replace(negated=False) for body in negative if body.node is not None]
-    return _joined("difference", [first, *rest])
+    return _combined_node("difference", [first, *rest])
 
 
-def _odd(bodies: Sequence[_Body]) -> _Body:
+def _symmetric_difference(bodies: Sequence[_Body]) -> _Body:
     """Return the symmetric difference of sets; each negated set inverts the result."""
-    made = _NOTHING
+    made = _EMPTY
     for body in bodies:
         plain = body._replace(negated=False)
-        one, other = (_joined("difference", pair) for pair in ((made, plain), (plain, made)))
-        made = _joined("union", [one, other])
+        one, other = (_combined_node("difference", pair) for pair in ((made, plain), (plain, made)))
+        made = _combined_node("union", [one, other])
         if made.size > _MAX_BODY_SIZE:
             break
     return made._replace(negated=sum(body.negated for body in bodies) % 2 == 1)
 
 
-def _joined(name: str, bodies: Sequence[_Body]) -> _Body:
+def _combined_node(name: str, bodies: Sequence[_Body]) -> _Body:
     """Return the node of a set operation, without empty operands that do not change the result."""
     nodes = [body.node for body in bodies if body.node is not None]
     size = sum(body.size for body in bodies)
     if not nodes or (name == "intersection" and len(nodes) < len(bodies)):
-        return _NOTHING
+        return _EMPTY
     if name == "difference" and bodies[0].node is None:
-        return _NOTHING
+        return _EMPTY
     return _Body(nodes[0] if len(nodes) == 1 else Node(name, (), tuple(nodes)), size=size)

@@ -9,8 +9,8 @@ from ..bsp import Region
 from ..errors import BspcsgError, FormatError
 from ..formats.atomic import write_file
 from ..formats.source import limited_content
-from ..parameters import file_path, word
-from ..solid.counting import counted
+from ..parameters import file_path, one_of
+from ..solid.ledger import counted
 from ..solid.solid import Solid
 from .evaluator import evaluate
 from .from_solid import tree_of
@@ -100,7 +100,7 @@ def loads(
     >>> scripts.loads("difference() { cube(size = 2); cube(size = 1); }").volume
     7.0
     """
-    read = {"csg": parse, "json": from_json}[word(("csg", "json"), form, "form")]
+    read = {"csg": parse, "json": from_json}[one_of(("csg", "json"), form, "form")]
     tree = read(text, name, folder)
     body = evaluate(
         tree,

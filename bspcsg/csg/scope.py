@@ -13,7 +13,7 @@ from .syntax.tree import SPECIAL, Argument, Node
 Scope: TypeAlias = tuple[Argument, ...]
 
 #: The names of nodes whose number of sides depends on special variables.
-_SIDED = frozenset(
+_NODES_WITH_SIDES = frozenset(
     {
         "circle", "sphere", "cylinder", "text", "offset", "linear_extrude", "rotate_extrude",
         "import",
@@ -29,7 +29,7 @@ def inherited(scope: Scope, node: Node) -> Scope:
 
 def with_scope(node: Node, scope: Scope) -> Node:
     """Return a node with inherited special variables as arguments, if it depends on them."""
-    missing = _missing(scope, node) if scope and node.name in _SIDED else ()
+    missing = _missing(scope, node) if scope and node.name in _NODES_WITH_SIDES else ()
     return replace(node, arguments=node.arguments + missing) if missing else node
 
 

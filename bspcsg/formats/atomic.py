@@ -32,14 +32,14 @@ _MAX_NAME_CHARACTERS = 57
 _PART = re.compile(r"\.[0-9a-f]{8}-[0-9a-f]{8}\.part\Z")
 
 #: The folders from which this process has removed the temporary files of killed processes.
-_swept: set[Path] = set()
+_cleaned_folders: set[Path] = set()
 
 #: A function that reads the written file, and raises an error if its content is wrong.
-Proof: TypeAlias = Callable[[BinaryIO], None]
+FileCheck: TypeAlias = Callable[[BinaryIO], None]
 
 
 def write_file(
-    path: str | os.PathLike[str], chunks: Iterable[bytes], prove: Proof | None = None
+    path: str | os.PathLike[str], chunks: Iterable[bytes], prove: FileCheck | None = None
 ) -> None:
     """Write the chunks to a temporary file in the folder of `path`, then rename it to `path`.
 
@@ -61,15 +61,15 @@ def write_file(
     """
     name = file_path(path)
     if name == os.devnull:
-        _drop(chunks, prove)
+        _prove_without_writing(chunks, prove)
         return
     # A link stays a link: its target is replaced.
     target = Path(os.path.realpath(name))
-    with _writing(name):
+    with _write_errors(name):
         _check_target(name)
-        _sweep(target.parent)
+        _clean_folder(target.parent)
         while True:
-            with contextlib.suppress(_TakenAwayError):
+            with contextlib.suppress(_FileRemovedError):
                 _write_new(target, chunks, prove)
                 return
 
@@ -77,12 +77,12 @@ def write_file(
 def refuse_target(path: str | os.PathLike[str]) -> None:
     """Raise a `FormatError` if `path` is a folder or a device, or its folder does not exist."""
     name = file_path(path)
-    with _writing(name):
+    with _write_errors(name):
         _check_target(name)
 
 
 @contextlib.contextmanager
-def _writing(name: str) -> Iterator[None]:
+def _write_errors(name: str) -> Iterator[None]:
     """Turn an `OSError` of the block into a `FormatError`: the file `name` cannot be written."""
     try:
         yield
@@ -91,7 +91,7 @@ def _writing(name: str) -> Iterator[None]:
         raise FormatError(f"{name}: cannot write this file: {reason}.", "unwritable") from error
 
 
-def _drop(chunks: Iterable[bytes], prove: Proof | None) -> None:
+def _prove_without_writing(chunks: Iterable[bytes], prove: FileCheck | None) -> None:
     """Make all chunks and pass them to `prove`, without writing a file."""
     data = b"".join(chunks)
     if prove is not None:
@@ -115,19 +115,19 @@ def _check_target(name: str) -> None:
 _BUFFER_BYTES = 1 << 18
 
 
-def _sweep(folder: Path) -> None:
+def _clean_folder(folder: Path) -> None:
     """Remove the temporary files that killed processes of this machine left in a folder."""
-    if sys.platform == "win32" or folder in _swept:
+    if sys.platform == "win32" or folder in _cleaned_folders:
         return
-    _swept.add(folder)
+    _cleaned_folders.add(folder)
     with contextlib.suppress(OSError), os.scandir(folder) as found:
         for entry in found:
             named = _PART.search(entry.name)
             if named and named[0].startswith(f".{_machine()}-") and entry.name[0] == ".":
-                _take_away(entry.path)
+                _remove_stale(entry.path)
 
 
-def _take_away(part: str) -> None:
+def _remove_stale(part: str) -> None:
     """Remove the temporary file `part` unless the process that writes it still runs."""
     if sys.platform == "win32":
         return
@@ -146,7 +146,7 @@ def _machine() -> str:
     return f"{zlib.crc32(platform.node().encode('utf-8', 'replace')):08x}"
 
 
-class _TakenAwayError(Exception):
+class _FileRemovedError(Exception):
     """Another process removed the temporary file just before it was locked."""
 
 
@@ -163,13 +163,13 @@ def _locked(handle: int, part: Path) -> Iterator[None]:
         with contextlib.suppress(OSError):
             fcntl.flock(lock, fcntl.LOCK_EX)
         if not part.exists():
-            raise _TakenAwayError
+            raise _FileRemovedError
         yield
     finally:
         os.close(lock)
 
 
-def _write_new(target: Path, chunks: Iterable[bytes], prove: Proof | None) -> None:
+def _write_new(target: Path, chunks: Iterable[bytes], prove: FileCheck | None) -> None:
     name = f".{target.name[:_MAX_NAME_CHARACTERS]}.{_machine()}-{os.urandom(4).hex()}.part"
     part = target.with_name(name)
     # Opened like any new file, so that the umask sets its mode.
@@ -204,9 +204,11 @@ def _flushed(handle: int) -> bool:
     return (before.st_size, before.st_mtime_ns) == (after.st_size, after.st_mtime_ns)
 
 
-def _write_and_prove(part: Path, stream: BinaryIO, chunks: Iterable[bytes], prove: Proof) -> None:
+def _write_and_prove(
+    part: Path, stream: BinaryIO, chunks: Iterable[bytes], prove: FileCheck
+) -> None:
     with part.open("rb", buffering=0) as back:
-        growing = _Growing(stream, iter(chunks), back)
+        growing = _LazyFile(stream, iter(chunks), back)
         try:
             prove(cast(BinaryIO, growing))
         except Exception:
@@ -216,7 +218,7 @@ def _write_and_prove(part: Path, stream: BinaryIO, chunks: Iterable[bytes], prov
         growing.finish()
 
 
-class _Growing(io.RawIOBase):
+class _LazyFile(io.RawIOBase):
     """A binary file whose chunks are written only when a reader needs them.
 
     When a block is read back, both the block and the arrays it came from are still in the

@@ -12,14 +12,14 @@ import numpy as np
 
 from ..errors import Finding, FormatError, format_errors, invalid_parameter
 from ..mesh.mesh import Mesh
-from ..parameters import file_path, of_kind, shown, text_value, truth_value
-from . import single
+from ..parameters import file_path, instance_of, shown, text_value, truth_value
+from . import single_precision
 from .atomic import refuse_target, write_file
-from .proof import prove, prove_with_attributes
-from .raw import RawMesh, empty_set, says_empty_set
+from .raw import RawMesh, empty_set, represents_empty_set
 from .registry import FORMATS, Form, Format
-from .said import left_out, said_of, saying
-from .source import Source, present, whole_content
+from .source import Source, refuse_pointer_file, whole_content
+from .storable_attributes import attribute_losses, attributes_or_none, with_attributes
+from .verification import verify, verify_with_attributes
 
 _BREP = (
     "{} files contain curved surfaces, and bspcsg reads triangle meshes only. Convert the"
@@ -155,23 +155,23 @@ def decoded(
         As for `read`.
     """
     text_value(name, "name")
-    of_kind(bytes, data, "data")
+    instance_of(bytes, data, "data")
     if not (files is None or isinstance(files, Mapping)):
         raise invalid_parameter(
             f"files must be a dictionary from file names to bytes, not {shown(files)}."
         )
     if not data:
         raise FormatError(f"{name}: the file is empty.", "empty_file")
-    present(name, data)
+    refuse_pointer_file(name, data)
     chosen = format_of(f"data{text_value(suffix, 'suffix')}")
-    if any(form is not None and data == _nothing(form) for form in (chosen.text, chosen.binary)):
+    if any(form is not None and data == _empty_file(form) for form in (chosen.text, chosen.binary)):
         return replace(empty_set(), name=Path(name).stem, unit=chosen.unit)
     with format_errors(name, suffix.removeprefix(".").upper()):
         raw = chosen.read(Source(name, data, files))
     return replace(raw, name=raw.name or Path(name).stem)
 
 
-def _nothing(form: Form) -> bytes:
+def _empty_file(form: Form) -> bytes:
     """Return the bytes of the file that represents the empty set in a form."""
     return b"".join(form.encode(empty_set()))
 
@@ -208,7 +208,7 @@ def write(
 
     def prove(file: BinaryIO) -> None:
         made.prove(file)
-        write_beside(path, made.files)
+        write_companions(path, made.files)
 
     write_file(path, made.chunks, prove)
     return made.findings
@@ -235,7 +235,7 @@ class Encoded:
     files: Mapping[str, bytes] = field(default_factory=dict)
 
 
-def places_beside(path: str | os.PathLike[str], files: Mapping[str, bytes]) -> dict[Path, bytes]:
+def companion_paths(path: str | os.PathLike[str], files: Mapping[str, bytes]) -> dict[Path, bytes]:
     """Return the content of companion files by path, in the folder of `path`.
 
     If `path` is a link, this is the folder of the link's target.
@@ -246,9 +246,9 @@ def places_beside(path: str | os.PathLike[str], files: Mapping[str, bytes]) -> d
     return {folder / name: data for name, data in files.items()}
 
 
-def write_beside(path: str | os.PathLike[str], files: Mapping[str, bytes]) -> None:
+def write_companions(path: str | os.PathLike[str], files: Mapping[str, bytes]) -> None:
     """Write companion files, given as content by name, into the folder of the file `path`."""
-    places = places_beside(path, files)
+    places = companion_paths(path, files)
     for place in places:
         refuse_target(place)
     for place, data in places.items():
@@ -267,7 +267,7 @@ def encoded(
     try:
         findings = form.losses(mesh) if form.losses is not None else ()
         if form.is_single and isinstance(mesh, Mesh):
-            mesh, mended = single.settled(mesh)
+            mesh, mended = single_precision.in_single_precision(mesh)
             findings = (*findings, *mended)
     except OverflowError:
         message = (
@@ -275,20 +275,26 @@ def encoded(
             " write PLY, OBJ, OFF or 3MF instead."
         )
         raise FormatError(message, "too_large") from None
-    said = said_of(mesh)
-    kept = form.keeps(said, mesh.vertices) if said is not None and form.keeps is not None else None
-    if said is not None:
-        findings = (*findings, *left_out(said, kept, suffix))
+    attributes = attributes_or_none(mesh)
+    kept = (
+        form.storable(attributes, mesh.vertices)
+        if attributes is not None and form.storable is not None
+        else None
+    )
+    if attributes is not None:
+        findings = (*findings, *attribute_losses(attributes, kept, suffix))
     if kept is None or kept.is_empty:
-        bare = mesh if said is None else saying(mesh, None)
-        proof = partial(prove, name, bare, form.scan, form.called, form.repeats)
+        bare = mesh if attributes is None else with_attributes(mesh, None)
+        proof = partial(verify, name, bare, form.scan, form.name_in_file, form.repeats)
         return Encoded(form.encode(bare), findings, proof)
-    full = saying(mesh, kept)
+    full = with_attributes(mesh, kept)
     # If the path is a link, companion files are named after its target.
     stem = Path(os.path.realpath(name)).stem
-    head, files = form.beside(full, stem) if form.beside is not None else (b"", {})
+    head, files = (
+        form.companion_files(full, stem) if form.companion_files is not None else (b"", {})
+    )
     reader = partial(_read_back, suffix, files)
-    proof = partial(prove_with_attributes, name, full, reader, form.called, form.repeats)
+    proof = partial(verify_with_attributes, name, full, reader, form.name_in_file, form.repeats)
     return Encoded(itertools.chain([head], form.encode(full)), findings, proof, files)
 
 
@@ -308,11 +314,11 @@ def _refuse_unwritable(name: str, mesh: Mesh | RawMesh, form: Form) -> None:
     if len(mesh.faces) and not 0 <= mesh.faces.min() <= mesh.faces.max() < count:
         message = f"{name}: a triangle has a vertex index outside 0 to {count - 1}."
         raise FormatError(message, "index_out_of_range")
-    if form.needs_vertices and not count and not says_empty_set(mesh):
+    if form.needs_vertices and not count and not represents_empty_set(mesh):
         message = (
             f"{name}: the mesh has no vertices, and a file of this format without vertices cannot"
             " be read back."
         )
         raise FormatError(f"{message} Write an empty Solid or Mesh instead.", "empty")
-    if form.beyond is not None and (reason := form.beyond(mesh)):
+    if form.size_problem is not None and (reason := form.size_problem(mesh)):
         raise FormatError(f"{name}: {reason}", "too_large")

@@ -57,8 +57,8 @@ def materials_in(source: Source, libraries: Sequence[Sequence[bytes]]) -> Librar
             if data is None:
                 found.missing.append(name)
                 continue
-            for material, said in _sections(Source(name, data)):
-                found.materials.setdefault(material, _material(source, said, found))
+            for material, statements in _sections(Source(name, data)):
+                found.materials.setdefault(material, _material(source, statements, found))
     return found
 
 
@@ -73,13 +73,15 @@ def _sections(library: Source) -> list[tuple[str, dict[bytes, list[bytes]]]]:
     return found
 
 
-def _material(source: Source, said: Mapping[bytes, list[bytes]], found: Libraries) -> Material:
+def _material(
+    source: Source, statements: Mapping[bytes, list[bytes]], found: Libraries
+) -> Material:
     """Return the material of some statements; an invalid colour or picture is left out."""
-    color = _color(said.get(b"Kd"))
+    color = _color(statements.get(b"Kd"))
     if color is None:
         found.dropped.add("colours of materials that are not three numbers")
-    full = (*(color or _PLAIN), _opacity(said))
-    texture = _picture(source, said.get(b"map_Kd", []), found)
+    full = (*(color or _PLAIN), _opacity(statements))
+    texture = _picture(source, statements.get(b"map_Kd", []), found)
     try:
         return Material(full, texture)
     except InvalidMeshError:
@@ -100,12 +102,12 @@ def _color(words: Sequence[bytes] | None) -> tuple[float, ...] | None:
     return tuple(numbers * 3)[:3]
 
 
-def _opacity(said: Mapping[bytes, list[bytes]]) -> float:
+def _opacity(statements: Mapping[bytes, list[bytes]]) -> float:
     """Return the opacity that a statement `d` or `Tr` gives, 1 if there is no valid number."""
-    if b"d" in said:
-        told = _number(said[b"d"][-1]) if said[b"d"] else math.nan
+    if b"d" in statements:
+        told = _number(statements[b"d"][-1]) if statements[b"d"] else math.nan
     else:
-        told = 1 - _number(said[b"Tr"][-1]) if said.get(b"Tr") else math.nan
+        told = 1 - _number(statements[b"Tr"][-1]) if statements.get(b"Tr") else math.nan
     return 1.0 if math.isnan(told) else told
 
 
@@ -133,7 +135,9 @@ def _picture(source: Source, words: Sequence[bytes], found: Libraries) -> bytes 
     return None
 
 
-def written(materials: Mapping[str, Material], stem: str) -> tuple[str, dict[str, bytes]]:
+def library_and_companions(
+    materials: Mapping[str, Material], stem: str
+) -> tuple[str, dict[str, bytes]]:
     """Return the name of the MTL file for an OBJ file called `stem`, and all companion files.
 
     The companion files are a dictionary of name to content.

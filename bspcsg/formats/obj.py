@@ -11,16 +11,16 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from .._types import FloatArray, IndexArray
-from ..attributes.attributes import Attributes, Kind, Values, with_even_faces
+from ..attributes.attributes import Attributes, Kind, Values, corners_to_faces
 from ..attributes.colours import COLOR, as_bytes, as_floats, is_color, is_opaque, opaque
 from ..attributes.material import Material
 from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
 from . import mtl
 from .blocks import encoded_lines, listed
-from .raw import EMPTY_SET, IndexPolygons, RawMesh, on_one_line, parts_of, says_empty_set
-from .said import chosen, said_of
-from .source import Source, as_text, quoted, whole
+from .raw import EMPTY_SET, IndexPolygons, RawMesh, on_one_line, parts_of, represents_empty_set
+from .source import Source, as_text, quoted, to_integer
+from .storable_attributes import attributes_or_none, selected_attributes
 
 #: Keywords of statements that are not read, and what they define.
 _DROPPED = {
@@ -42,7 +42,7 @@ _FOLLOWING = frozenset({*_NAMING, *_NUMBERS, b"s"})
 
 
 @dataclass
-class _Found:
+class _ObjContent:
     """The content of an OBJ's statements, in file order.
 
     `row_lines` and `face_lines` have the line number of each vertex and polygon. For each polygon
@@ -84,7 +84,7 @@ def read(source: Source) -> RawMesh:
         lambda k, message, code: source.error(message, code, line=found.face_lines[k]),
     )
     faces = polygons.corners[positions]
-    said, missing = _attributes_of(source, found, polygons, positions)
+    attributes, missing = _attributes_of(source, found, polygons, positions)
     named = _objects(found.objects, [len(corners) - 2 for corners in found.polygons], len(faces))
     return RawMesh(
         vertices,
@@ -93,12 +93,12 @@ def read(source: Source) -> RawMesh:
         (*_curved(found.surfaces), *_missing(missing)),
         objects=named if len(named) > 1 else (),
         dropped=(*sorted(found.dropped), *polygons.dropped),
-        attributes=None if said.is_empty else _with_colors(said),
+        attributes=None if attributes.is_empty else _with_colors(attributes),
     )
 
 
 def _attributes_of(
-    source: Source, found: _Found, polygons: IndexPolygons, positions: IndexArray
+    source: Source, found: _ObjContent, polygons: IndexPolygons, positions: IndexArray
 ) -> tuple[Attributes, list[str]]:
     """Return the attributes of an OBJ's triangles, and the names of missing companion files."""
     faces = polygons.corners[positions]
@@ -138,7 +138,7 @@ def _number(row: list[bytes], place: int) -> float:
         return math.nan
 
 
-def _references_at(found: _Found, place: int, count: int) -> IndexArray:
+def _references_at(found: _ObjContent, place: int, count: int) -> IndexArray:
     """Return the index of the texture coordinates or normal of each polygon corner, -1 for none.
 
     `place` is 0 for texture coordinates, 1 for normals; indices from `count` on become -1.
@@ -157,13 +157,13 @@ def _row(parts: list[bytes], place: int, known: int) -> int:
     Negative numbers count back from the last of `known` entries.
     """
     try:
-        number = whole(parts[place])
+        number = to_integer(parts[place])
     except (ValueError, IndexError):
         return -1
     return number - 1 if number > 0 else max(known + number, -1) if number < 0 else -1
 
 
-def _material_names(found: _Found) -> Values:
+def _material_names(found: _ObjContent) -> Values:
     """Return the material name of each polygon, empty if it has none."""
     starts = [start for _, start in found.materials]
     ends = [*starts[1:], len(found.polygons)]
@@ -182,8 +182,8 @@ def _missing(names: list[str]) -> tuple[Finding, ...]:
     return (Finding("ignored", "warning", message, (), len(names)),)
 
 
-def _collected(source: Source) -> _Found:
-    found = _Found()
+def _collected(source: Source) -> _ObjContent:
+    found = _ObjContent()
     for number, words in _statements(source):
         key = words[0]
         if key == b"v":
@@ -285,7 +285,7 @@ def _references(source: Source, number: int, words: list[bytes], known: int) -> 
     Negative numbers in the file count back from the last of `known` vertices.
     """
     try:
-        references = [whole(word.partition(b"/")[0]) for word in words[1:]]
+        references = [to_integer(word.partition(b"/")[0]) for word in words[1:]]
     except ValueError:
         message = (
             f"expected integer vertex numbers after “f”, found {quoted(b' '.join(words[1:]))}."
@@ -324,20 +324,20 @@ def _curved(count: int) -> tuple[Finding, ...]:
     return (Finding("curves_ignored", "warning", message, (), count),)
 
 
-def called(name: str) -> str:
+def stored_name(name: str) -> str:
     """Return a name with “_” instead of characters that end or continue a line of OBJ."""
     return on_one_line(name).replace("#", "_").replace("\\", "_")
 
 
-def kept(said: Attributes) -> Attributes:
+def storable(attributes: Attributes) -> Attributes:
     """Return the attributes that OBJ can store.
 
     These are colours of vertices, without opacity; materials of faces, or else colours of faces;
     texture coordinates and normals.
     """
-    said = _with_colors_of_vertices(said.without_empty_material())
-    given = _named_materials(said)
-    names = _held_names({*np.unique(given).tolist(), *said.materials})
+    attributes = _with_colors_of_vertices(attributes.without_empty_material())
+    given = _named_materials(attributes)
+    names = _storable_names({*np.unique(given).tolist(), *attributes.materials})
 
     def keep(kind: Kind, name: str, values: Values) -> Values | None:
         depth = 2 if kind == "corner" else 1
@@ -347,34 +347,34 @@ def kept(said: Attributes) -> Attributes:
         if kind == "vertex" and is_color(name, values, depth):
             return as_floats(values)[:, :3]
         if kind == "face" and is_color(name, values, depth):
-            return None if "material" in said.face else opaque(as_bytes(values))
+            return None if "material" in attributes.face else opaque(as_bytes(values))
         width = _CORNERS.get(name)
         if kind != "face" and values.dtype.kind == "f" and values.shape[depth:] == (width,):
             return _whole_rows(values)
         return None
 
-    held = chosen(said, keep)
+    held = selected_attributes(attributes, keep)
     used = set(held.face["material"].tolist()) if "material" in held.face else set()
-    named = {names[name]: material for name, material in said.materials.items()}
+    named = {names[name]: material for name, material in attributes.materials.items()}
     materials = {name: material for name, material in named.items() if name in used}
     return Attributes(held.faces, held.vertex, held.corner, held.face, materials)
 
 
-def _with_colors_of_vertices(said: Attributes) -> Attributes:
+def _with_colors_of_vertices(attributes: Attributes) -> Attributes:
     """Return the attributes, with opaque face colours made vertex colours.
 
     If faces at a vertex have different colours, the attributes stay unchanged.
     """
-    said = with_even_faces(said, COLOR)
-    colors = said.face.get(COLOR)
+    attributes = corners_to_faces(attributes, COLOR)
+    colors = attributes.face.get(COLOR)
     if colors is None or not is_color(COLOR, colors, 1) or not is_opaque(colors):
-        return said
-    found = np.zeros((int(said.faces.max(initial=-1)) + 1, 3))
+        return attributes
+    found = np.zeros((int(attributes.faces.max(initial=-1)) + 1, 3))
     shown = as_floats(colors)[:, None, :3]
-    found[said.faces] = shown
-    if not np.array_equal(found[said.faces], np.repeat(shown, 3, axis=1)):
-        return said
-    rest = said.without({COLOR})
+    found[attributes.faces] = shown
+    if not np.array_equal(found[attributes.faces], np.repeat(shown, 3, axis=1)):
+        return attributes
+    rest = attributes.without({COLOR})
     return replace(rest, vertex={**rest.vertex, COLOR: found})
 
 
@@ -382,20 +382,20 @@ def _with_colors_of_vertices(said: Attributes) -> Attributes:
 _COLORED = re.compile("color_([0-9a-f]{8})")
 
 
-def _with_colors(said: Attributes) -> Attributes:
+def _with_colors(attributes: Attributes) -> Attributes:
     """Return the attributes with face colours instead of materials, if all are named after colours.
 
     If another material is used, the attributes stay unchanged.
     """
-    names = said.face.get("material")
-    if names is None or COLOR in said.names:
-        return said
+    names = attributes.face.get("material")
+    if names is None or COLOR in attributes.names:
+        return attributes
     kinds, numbers = np.unique(names, return_inverse=True)
-    colors = [_color_called(kind, said.materials.get(kind)) for kind in kinds.tolist()]
+    colors = [_color_called(kind, attributes.materials.get(kind)) for kind in kinds.tolist()]
     if not all(colors):
-        return said
+        return attributes
     table = np.array([list(color) for color in colors], dtype=np.uint8)
-    rest = said.without({"material"})
+    rest = attributes.without({"material"})
     return replace(rest, face={**rest.face, COLOR: table[numbers]}, materials={})
 
 
@@ -415,21 +415,21 @@ def _color_called(name: str, material: Material | None) -> bytes:
 _BYTE = 255
 
 
-def with_materials(said: Attributes | None) -> Attributes | None:
+def with_materials(attributes: Attributes | None) -> Attributes | None:
     """Return the attributes with materials instead of face colours, which OBJ does not have."""
-    if said is None or COLOR not in said.face:
-        return said
-    kinds, numbers = np.unique(said.face[COLOR], axis=0, return_inverse=True)
+    if attributes is None or COLOR not in attributes.face:
+        return attributes
+    kinds, numbers = np.unique(attributes.face[COLOR], axis=0, return_inverse=True)
     names = [f"color_{bytes(kind).hex()}" for kind in kinds.tolist()]
     materials = {name: Material(kind / _BYTE) for name, kind in zip(names, kinds, strict=True)}
-    rest = said.without({COLOR})
+    rest = attributes.without({COLOR})
     face = {**rest.face, "material": np.array(names)[numbers.ravel()]}
     return replace(rest, face=face, materials=materials)
 
 
-def _named_materials(said: Attributes) -> Values:
+def _named_materials(attributes: Attributes) -> Values:
     """Return the material name of each face; an empty array if faces have no materials."""
-    names = said.face.get("material")
+    names = attributes.face.get("material")
     if names is not None and names.dtype.kind == "U" and names.ndim == 1:
         return names
     return np.array([], dtype=str)
@@ -442,13 +442,13 @@ def _whole_rows(values: Values) -> Values | None:
     return rows if is_known.any() else None
 
 
-def _held_names(names: set[str]) -> dict[str, str]:
+def _storable_names(names: set[str]) -> dict[str, str]:
     """Return a distinct name that OBJ can store for each of the given material names."""
     held = {"": ""}
     taken = {""}
     # Names that need no change come first, so that they stay as they are.
-    for name in sorted(names - {""}, key=lambda name: (called(name) != name, name)):
-        fit = called(name) or "_"
+    for name in sorted(names - {""}, key=lambda name: (stored_name(name) != name, name)):
+        fit = stored_name(name) or "_"
         # A material whose name looks like a colour must not be read back as a colour.
         fit = free = f"{fit}_" if _COLORED.fullmatch(fit) else fit
         number = 1
@@ -464,19 +464,19 @@ def _held_names(names: set[str]) -> dict[str, str]:
 _CORNERS = {"uv": 2, "normal": 3}
 
 
-def beside(mesh: RawMesh, stem: str) -> tuple[bytes, dict[str, bytes]]:
+def companion_files(mesh: RawMesh, stem: str) -> tuple[bytes, dict[str, bytes]]:
     """Return an OBJ's statement that names the material library, and the companion files by name.
 
     Both are empty if there are no materials.
     """
-    said = with_materials(said_of(mesh))
-    if said is None or not said.materials:
+    attributes = with_materials(attributes_or_none(mesh))
+    if attributes is None or not attributes.materials:
         return b"", {}
-    library, files = mtl.written(said.materials, _as_word(stem))
+    library, files = mtl.library_and_companions(attributes.materials, _escaped_stem(stem))
     return f"mtllib {library}\n".encode(), files
 
 
-def _as_word(stem: str) -> str:
+def _escaped_stem(stem: str) -> str:
     """Return the stem of a file with blanks and special characters escaped.
 
     Other programs take a name with a blank for two names. Distinct stems stay distinct.
@@ -489,41 +489,41 @@ def _as_word(stem: str) -> str:
 
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the bytes of an OBJ file; every coordinate reads back as the same double."""
-    said = with_materials(said_of(mesh))
-    if says_empty_set(mesh):
+    attributes = with_materials(attributes_or_none(mesh))
+    if represents_empty_set(mesh):
         yield EMPTY_SET
-    if said is not None and "color" in said.vertex:
-        for point in listed(np.concatenate([mesh.vertices, said.vertex["color"]], axis=1)):
+    if attributes is not None and "color" in attributes.vertex:
+        for point in listed(np.concatenate([mesh.vertices, attributes.vertex["color"]], axis=1)):
             yield "v {!r} {!r} {!r} {!r} {!r} {!r}\n".format(*point).encode()
     else:
         yield from encoded_lines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in listed(mesh.vertices))
-    if said is not None:
-        yield from _text_with_attributes(mesh, said)
+    if attributes is not None:
+        yield from _text_with_attributes(mesh, attributes)
         return
     parts = parts_of(mesh)
     for name, faces in parts:
         if name or len(parts) > 1:
-            yield f"o {called(name)}\n".encode()
+            yield f"o {stored_name(name)}\n".encode()
         corners = listed(faces + np.int64(1))
         yield from encoded_lines(f"f {a} {b} {c}\n" for a, b, c in corners)
 
 
-def _text_with_attributes(mesh: Mesh | RawMesh, said: Attributes) -> Iterator[bytes]:
+def _text_with_attributes(mesh: Mesh | RawMesh, attributes: Attributes) -> Iterator[bytes]:
     numbers: dict[str, IndexArray] = {}
     for name, key in (("uv", "vt"), ("normal", "vn")):
-        if said.kind_of(name) in ("vertex", "corner"):
-            corners = said.at_corners(name).reshape(-1, _CORNERS[name])
+        if attributes.kind_of(name) in ("vertex", "corner"):
+            corners = attributes.at_corners(name).reshape(-1, _CORNERS[name])
             rows, inverse = np.unique(corners, axis=0, return_inverse=True)
             is_known = ~np.isnan(rows).any(axis=1)
             numbers[name] = np.where(is_known, np.cumsum(is_known), 0)[inverse].reshape(-1, 3)
             for row in rows[is_known].tolist():
                 yield f"{key} {' '.join(map(repr, row))}\n".encode()
-    names = said.face.get("material")
+    names = attributes.face.get("material")
     current, start = "", 0
     parts = parts_of(mesh)
     for name, faces in parts:
         if name or len(parts) > 1:
-            yield f"o {called(name)}\n".encode()
+            yield f"o {stored_name(name)}\n".encode()
         for row, face in enumerate(listed(faces), start):
             if names is not None and names[row] != current:
                 current = str(names[row])

@@ -6,14 +6,14 @@ from itertools import repeat
 
 import numpy as np
 
-from ..attributes.attributes import Attributes, Kind, Values, with_even_faces
+from ..attributes.attributes import Attributes, Kind, Values, corners_to_faces
 from ..attributes.colours import COLOR, as_bytes, is_color
 from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
 from .blocks import encoded_lines, listed
-from .raw import EMPTY_SET, IndexPolygons, RawMesh, says_empty_set
-from .said import chosen, said_of
-from .source import Source, integral, quoted, whole
+from .raw import EMPTY_SET, IndexPolygons, RawMesh, represents_empty_set
+from .source import Source, quoted, to_integer, to_integral
+from .storable_attributes import attributes_or_none, selected_attributes
 
 #: The keyword of an OFF file; the number of vertices may follow it without a blank.
 _KEYWORD = re.compile(rb"((?:ST)?C?N?(4?)(n?)(?i:OFF))(\d*)")
@@ -37,14 +37,16 @@ def read(source: Source) -> RawMesh:
         return _mesh(source, keyword, vertex_count, face_count, rest)
     except FormatError:
         number, words = lines[0]
-        spread = _spread(vertex_count, face_count, [(number, words[3:]), *rest])
+        spread = _one_record_per_line(vertex_count, face_count, [(number, words[3:]), *rest])
         # Variants of OFF have more than three numbers for each vertex.
         if spread is None or (keyword.isalpha() and keyword != b"OFF"):
             raise
         return _mesh(source, keyword, vertex_count, face_count, spread)
 
 
-def _spread(vertex_count: int, face_count: int, lines: list[_Line]) -> list[_Line] | None:
+def _one_record_per_line(
+    vertex_count: int, face_count: int, lines: list[_Line]
+) -> list[_Line] | None:
     """Return a line for each vertex and face of a file whose line breaks are elsewhere.
 
     Return None if numbers are missing, or additional: a colour is found only at the end of a line.
@@ -58,7 +60,7 @@ def _spread(vertex_count: int, face_count: int, lines: list[_Line]) -> list[_Lin
     at = 0
     while len(found) < vertex_count + face_count:
         try:
-            length = 3 if len(found) < vertex_count else 1 + integral(words[at][1])
+            length = 3 if len(found) < vertex_count else 1 + to_integral(words[at][1])
         except (ValueError, IndexError):
             return None
         row = words[at : at + length]
@@ -88,12 +90,12 @@ def _mesh(
     faces = flat.corners[positions]
     extra = _extra_lines(lines[vertex_count + face_count :])
     of_points = _colors([words[3:] for _, words in points]) if keyword == b"COFF" else None
-    of_faces = _colors([words[integral(words[0]) + 1 :] for _, words in polygons])
+    of_faces = _colors([words[to_integral(words[0]) + 1 :] for _, words in polygons])
     vertex = {} if of_points is None else {"color": of_points}
     face = {} if of_faces is None or vertex else {"color": of_faces[flat.owners(positions)]}
-    said = Attributes(faces, vertex, {}, face) if vertex or face else None
+    attributes = Attributes(faces, vertex, {}, face) if vertex or face else None
     dropped = (*_more_than_a_shape(points, polygons, vertex, face), *flat.dropped)
-    return RawMesh(vertices, faces, "", extra, dropped=dropped, attributes=said)
+    return RawMesh(vertices, faces, "", extra, dropped=dropped, attributes=attributes)
 
 
 def _more_than_a_shape(
@@ -106,7 +108,7 @@ def _more_than_a_shape(
     found = []
     if not vertex and any(len(words) > 3 for _, words in points):
         found.append("data of vertices")
-    if not face and any(len(words) > integral(words[0]) + 1 for _, words in polygons):
+    if not face and any(len(words) > to_integral(words[0]) + 1 for _, words in polygons):
         found.append("colours of faces")
     return tuple(found)
 
@@ -118,22 +120,22 @@ def _colors(rows: Sequence[Sequence[bytes]]) -> Values | None:
         return None
     try:
         if all(word.isdigit() for row in rows for word in row):
-            numbers = np.array([[whole(word) for word in row] for row in rows])
+            numbers = np.array([[to_integer(word) for word in row] for row in rows])
             return numbers.astype(np.uint8) if numbers.max() <= 255 else None
         return np.array([[float(word) for word in row] for row in rows])
     except ValueError:
         return None
 
 
-def kept(said: Attributes) -> Attributes:
+def storable(attributes: Attributes) -> Attributes:
     """Return the attributes that OFF can store: colours of vertices, else of faces, as bytes."""
-    said = with_even_faces(said, COLOR)
+    attributes = corners_to_faces(attributes, COLOR)
 
     def keep(kind: Kind, name: str, values: Values) -> Values | None:
         is_held = kind != "corner" and is_color(name, values, 1)
         return as_bytes(values) if is_held else None
 
-    return chosen(said, keep)
+    return selected_attributes(attributes, keep)
 
 
 def _body(source: Source) -> tuple[bytes, list[_Line]]:
@@ -174,7 +176,7 @@ def _counts(source: Source, lines: list[_Line]) -> tuple[int, int, list[_Line]]:
     """Return the counts of vertices and faces from the first line, and the lines after it."""
     number, words = lines[0] if lines else (1, [])
     try:
-        counts = [whole(word) for word in words[:2]]
+        counts = [to_integer(word) for word in words[:2]]
     except ValueError:
         counts = []
     if len(counts) < 2 or min(counts) < 0:
@@ -188,8 +190,8 @@ def _counts(source: Source, lines: list[_Line]) -> tuple[int, int, list[_Line]]:
 def _corners(source: Source, number: int, words: list[bytes]) -> list[int]:
     """Return the vertex indices in the line of a face; a colour after them is ignored."""
     try:
-        count = integral(words[0])
-        indices = [integral(word) for word in words[1 : count + 1]]
+        count = to_integral(words[0])
+        indices = [to_integral(word) for word in words[1 : count + 1]]
     except ValueError:
         message = (
             "expected a face as a number of corners and integer vertex indices, found"
@@ -217,12 +219,12 @@ def _extra_lines(lines: list[_Line]) -> tuple[Finding, ...]:
 
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the bytes of an OFF file; every coordinate reads back as the same double."""
-    said = said_of(mesh)
-    keyword = b"COFF\n" if said and said.vertex else b"OFF\n"
-    yield keyword + (EMPTY_SET if says_empty_set(mesh) else b"")
+    attributes = attributes_or_none(mesh)
+    keyword = b"COFF\n" if attributes and attributes.vertex else b"OFF\n"
+    yield keyword + (EMPTY_SET if represents_empty_set(mesh) else b"")
     yield f"{len(mesh.vertices)} {len(mesh.faces)} 0\n".encode()
-    points = _words(said.vertex if said else {}, len(mesh.vertices))
-    faces = _words(said.face if said else {}, len(mesh.faces))
+    points = _words(attributes.vertex if attributes else {}, len(mesh.vertices))
+    faces = _words(attributes.face if attributes else {}, len(mesh.faces))
     yield from encoded_lines(_data(mesh, points, faces))
 
 

@@ -2,7 +2,7 @@
 
 Readers neither weld, orient, repair nor drop anything, with two exceptions: STL has no indices, so
 its corners with equal coordinates become one vertex; and where a file transforms a mesh, crossings
-that rounding causes are mended (`bspcsg/formats/placing.py`).
+that rounding causes are mended (`bspcsg/formats/mesh_placement.py`).
 """
 
 from collections.abc import Callable, Sequence
@@ -12,7 +12,7 @@ import numpy as np
 
 from .._types import FloatArray, IndexArray
 from ..attributes.attributes import Attributes
-from ..attributes.joining import MeshPart, concatenated
+from ..attributes.concatenation import MeshPart, concatenated
 from ..errors import Finding, FormatError
 from ..geometry.polygon import triangulate_face
 from ..mesh.mesh import Mesh
@@ -69,7 +69,7 @@ class RawMesh:
         return tuple(found.message for found in self.findings if found.code in _PASSED_BY)
 
 
-def says_empty_set(mesh: Mesh | RawMesh) -> bool:
+def represents_empty_set(mesh: Mesh | RawMesh) -> bool:
     """Say whether a mesh is the empty set, so that a file of it must be marked as such.
 
     A `RawMesh` without triangles is the empty set only if `is_empty_set` is true.

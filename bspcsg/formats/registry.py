@@ -9,9 +9,9 @@ from .._types import FloatArray
 from ..attributes.attributes import Attributes
 from ..errors import Finding
 from ..mesh.mesh import Mesh
-from .proof import Called, Scan
 from .raw import RawMesh
 from .source import Source
+from .verification import NameInFile, ObjectReader
 
 Encoder: TypeAlias = Callable[[Mesh | RawMesh], Iterator[bytes]]
 Keeper: TypeAlias = Callable[[Attributes, FloatArray], Attributes]
@@ -30,7 +30,7 @@ class Form:
         Yields the bytes of a file.
     scan : callable
         Returns the objects of a written file, to check it.
-    called : callable, optional
+    name_in_file : callable, optional
         Returns the name that a file has for an object; None if files have no separate objects.
     losses : callable, optional
         Returns the findings about losses; raises OverflowError if a number is too large.
@@ -38,11 +38,11 @@ class Form:
         True if the form can store triangles that name a vertex twice.
     is_single : bool
         True if the form stores single precision only.
-    keeps : callable, optional
+    storable : callable, optional
         Returns the attributes that the form can store, as they read back; None if it stores none.
-    beyond : callable, optional
+    size_problem : callable, optional
         Returns why a mesh is too large for the form, or an empty string if it fits.
-    beside : callable, optional
+    companion_files : callable, optional
         Takes the mesh and the stem of the file; returns the beginning of the file, which names its
         companion files, and these files.
     needs_vertices : bool
@@ -50,14 +50,14 @@ class Form:
     """
 
     encode: Encoder
-    scan: Scan
-    called: Called | None = None
+    scan: ObjectReader
+    name_in_file: NameInFile | None = None
     losses: LossFinder | None = None
     repeats: bool = True
     is_single: bool = False
-    keeps: Keeper | None = None
-    beyond: Limit | None = None
-    beside: Companions | None = None
+    storable: Keeper | None = None
+    size_problem: Limit | None = None
+    companion_files: Companions | None = None
     needs_vertices: bool = False
 
 
@@ -84,87 +84,98 @@ class Format:
 
 def _stl() -> Format:
     from . import stl
-    from .held import plain
+    from .readback import stl_obj_off_ply
 
     return Format(
         stl.read,
-        Form(stl.text, plain.text_stl, stl.called),
-        Form(stl.binary, plain.binary_stl, losses=stl.losses, is_single=True),
+        Form(stl.text, stl_obj_off_ply.text_stl, stl.stored_name),
+        Form(stl.binary, stl_obj_off_ply.binary_stl, losses=stl.losses, is_single=True),
     )
 
 
 def _obj() -> Format:
     from . import obj
-    from .held import plain
+    from .readback import stl_obj_off_ply
 
     text = Form(
         obj.text,
-        plain.obj,
-        obj.called,
-        keeps=lambda said, _: obj.kept(said),
-        beside=obj.beside,
+        stl_obj_off_ply.obj,
+        obj.stored_name,
+        storable=lambda attributes, _: obj.storable(attributes),
+        companion_files=obj.companion_files,
         needs_vertices=True,
     )
     return Format(obj.read, text)
 
 
 def _ply() -> Format:
-    from .held import plain
     from .ply import columns, file
+    from .readback import stl_obj_off_ply
 
     return Format(
         file.read,
-        Form(file.text, plain.text_ply, keeps=lambda said, _: columns.kept(said)),
+        Form(
+            file.text,
+            stl_obj_off_ply.text_ply,
+            storable=lambda attributes, _: columns.storable(attributes),
+        ),
         Form(
             file.binary,
-            plain.binary_ply,
-            keeps=lambda said, _: columns.kept(said),
-            beyond=file.beyond,
+            stl_obj_off_ply.binary_ply,
+            storable=lambda attributes, _: columns.storable(attributes),
+            size_problem=file.size_problem,
         ),
     )
 
 
 def _off() -> Format:
     from . import off
-    from .held import plain
+    from .readback import stl_obj_off_ply
 
-    return Format(off.read, Form(off.text, plain.off, keeps=lambda said, _: off.kept(said)))
+    return Format(
+        off.read,
+        Form(
+            off.text,
+            stl_obj_off_ply.off,
+            storable=lambda attributes, _: off.storable(attributes),
+        ),
+    )
 
 
 def _threemf() -> Format:
-    from .held import threemf
+    from .readback import threemf
     from .threemf import file, properties, write
 
     binary = Form(
         write.binary,
         threemf.archive,
-        write.called,
+        write.stored_name,
         write.losses,
         repeats=False,
-        keeps=lambda said, _: properties.kept(said),
+        storable=lambda attributes, _: properties.storable(attributes),
     )
     return Format(file.read, None, binary, "mm")
 
 
 def _glb() -> Format:
-    from .glb import file, said
-    from .held import glb
+    from .glb import attribute_conversion, file
+    from .readback import glb
 
     binary = Form(
         file.binary,
         glb.objects,
-        said.called,
+        attribute_conversion.stored_name,
         file.losses,
         is_single=True,
-        keeps=said.kept,
-        beyond=file.beyond,
+        storable=attribute_conversion.storable,
+        size_problem=file.size_problem,
     )
     return Format(file.read, None, binary, "mm", "y")
 
 
 def _vtk(suffix: str) -> Format:
     from . import vtk
-    from .held.vtk import legacy, xml
+    from .readback.vtk import legacy, xml
 
     scan = legacy if suffix == ".vtk" else xml
     return Format(vtk.reader(suffix), None, Form(vtk.writer(suffix), scan))

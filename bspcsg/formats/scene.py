@@ -40,7 +40,7 @@ class SceneNode:
             waiting.extend(reversed(node.children))
 
 
-def are_alike(one: SceneNode, other: SceneNode) -> bool:
+def are_equal_trees(one: SceneNode, other: SceneNode) -> bool:
     """Say whether two trees have equal names, matrices, colours and meshes, shared equally."""
     pairs = list(zip(one.walk(), other.walk(), strict=False))
     if len(pairs) != sum(1 for _ in one.walk()) or len(pairs) != sum(1 for _ in other.walk()):
@@ -65,7 +65,7 @@ def _same(one: RawMesh, other: RawMesh) -> bool:
     return np.array_equal(one.vertices[one.faces], other.vertices[other.faces])
 
 
-def say_alike(one: SceneNode, other: SceneNode) -> bool:
+def have_equal_attributes(one: SceneNode, other: SceneNode) -> bool:
     """Say whether the meshes of two trees of one structure have equal attributes.
 
     Meshes of nodes with a colour are not compared.

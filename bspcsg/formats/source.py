@@ -181,13 +181,13 @@ def limited_content(path: str | os.PathLike[str]) -> bytes:
         If the file cannot be read, is larger than 256 MiB, or is a pointer of Git LFS.
     """
     name = file_path(path)
-    with _readable(name):
+    with _read_errors(name):
         data = content_of(Path(name)) if Path(name).stat().st_size <= _MAX_TEXT_BYTES else None
     if data is None or len(data) > _MAX_TEXT_BYTES:
         raise FormatError(
             f"{name}: the file is larger than the limit of {_MAX_TEXT_BYTES:,} bytes.", "too_large"
         )
-    return present(name, data)
+    return refuse_pointer_file(name, data)
 
 
 def whole_content(path: str | os.PathLike[str]) -> bytes:
@@ -199,12 +199,12 @@ def whole_content(path: str | os.PathLike[str]) -> bytes:
         If the file cannot be read or is a pointer of Git LFS.
     """
     name = file_path(path)
-    with _readable(name):
+    with _read_errors(name):
         data = content_of(Path(name))
-    return present(name, data)
+    return refuse_pointer_file(name, data)
 
 
-def present(name: str, data: bytes) -> bytes:
+def refuse_pointer_file(name: str, data: bytes) -> bytes:
     """Return the bytes of a file unchanged, unless they are a pointer of Git LFS.
 
     Raises
@@ -226,7 +226,7 @@ def _is_pointer(data: bytes) -> bool:
 
 
 @contextmanager
-def _readable(name: str) -> Iterator[None]:
+def _read_errors(name: str) -> Iterator[None]:
     """Turn an exception of the block into a `FormatError`: the file `name` cannot be read."""
     try:
         yield
@@ -250,17 +250,17 @@ def as_text(name: bytes) -> str:
         return name.decode("latin-1")
 
 
-def whole(word: bytes) -> int:
+def to_integer(word: bytes) -> int:
     """Convert a word to an integer; raise a `ValueError` for other words, such as ``1_0``."""
     if b"_" in word or len(word) > _MAX_INTEGER_CHARACTERS:
         raise ValueError(word)
     return int(word)
 
 
-def integral(word: bytes) -> int:
+def to_integral(word: bytes) -> int:
     """Convert a word to an integer, also one like ``1.0``; raise a `ValueError` for others."""
     try:
-        return whole(word)
+        return to_integer(word)
     except ValueError:
         number = float(word)
         if b"_" in word or not number.is_integer() or abs(number) > _MAX_EXACT_INTEGER:

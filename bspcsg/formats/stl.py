@@ -16,9 +16,9 @@ from ..attributes.attributes import Values
 from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
 from ..mesh.weld import welded
-from . import single
+from . import single_precision
 from .blocks import blocks
-from .raw import EMPTY_SET, RawMesh, on_one_line, parts_of, says_empty_set
+from .raw import EMPTY_SET, RawMesh, on_one_line, parts_of, represents_empty_set
 from .source import Source, as_text, quoted
 
 _HEADER = 84
@@ -181,7 +181,7 @@ def _joined(corners: FloatArray, name: str, findings: tuple[Finding, ...]) -> Ra
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the bytes of a binary STL; coordinates are rounded to single precision."""
-    title = EMPTY_SET.strip(b"# \n") if says_empty_set(mesh) else b"bspcsg"
+    title = EMPTY_SET.strip(b"# \n") if represents_empty_set(mesh) else b"bspcsg"
     header = title.ljust(_HEADER - 4, b" ")
     yield header + len(mesh.faces).to_bytes(4, "little")
     rounded = mesh.vertices.astype(np.float32)
@@ -193,7 +193,7 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
         yield records.tobytes()
 
 
-def called(name: str) -> str:
+def stored_name(name: str) -> str:
     """Return the name of a solid on one line; a solid without a name is called "bspcsg"."""
     return on_one_line(name) or "bspcsg"
 
@@ -201,7 +201,7 @@ def called(name: str) -> str:
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the bytes of an ASCII STL, a solid for each object; doubles read back unchanged."""
     for name, faces in parts_of(mesh) or [("", mesh.faces)]:
-        title = called(name)
+        title = stored_name(name)
         yield f"solid {title}\n".encode()
         for block in blocks(len(faces)):
             yield from _facets(mesh.vertices[faces[block]])
@@ -225,7 +225,7 @@ def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
     OverflowError
         If a coordinate is beyond single precision.
     """
-    return single.losses(mesh, "binary STL")
+    return single_precision.losses(mesh, "binary STL")
 
 
 def _normals(corners: FloatArray) -> FloatArray:

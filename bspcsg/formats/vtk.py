@@ -15,9 +15,9 @@ from typing import Any, TextIO, cast
 
 import numpy as np
 
-from ..errors import Finding, FormatError, missing_part, words_of
+from ..errors import Finding, FormatError, message_of, missing_part
 from ..mesh.mesh import Mesh
-from .raw import IndexPolygons, RawMesh, says_empty_set
+from .raw import IndexPolygons, RawMesh, represents_empty_set
 from .source import Source
 
 #: Types of cells that are faces, and types of cells that are skipped.
@@ -95,25 +95,25 @@ def _grid_of(source: Source, suffix: str) -> Any:
         path.write_bytes(source.data)
         try:
             with (
-                _ONE_AT_A_TIME,
-                contextlib.redirect_stdout(cast(TextIO, _OfOthers(sys.stdout))),
-                contextlib.redirect_stderr(cast(TextIO, _OfOthers(sys.stderr))),
+                _PATCH_LOCK,
+                contextlib.redirect_stdout(cast(TextIO, _OtherThreadsStream(sys.stdout))),
+                contextlib.redirect_stderr(cast(TextIO, _OtherThreadsStream(sys.stderr))),
                 _bounded(_MAX_UNPACKED_BYTES),
                 np.errstate(all="ignore"),
                 warnings.catch_warnings(action="ignore"),
             ):
                 return meshio.read(path)
         except (Exception, SystemExit) as error:  # of any type: meshio itself checks little
-            reason = f"{type(error).__name__}: {words_of(error)}"
+            reason = f"{type(error).__name__}: {message_of(error)}"
             reason = reason.replace(str(path), source.name)
             raise source.error(f"meshio cannot read this file ({reason}).") from error
 
 
 #: Locked while `sys.stdout`, `sys.stderr` and modules in meshio are replaced, for all threads.
-_ONE_AT_A_TIME = threading.Lock()
+_PATCH_LOCK = threading.Lock()
 
 
-class _OfOthers:
+class _OtherThreadsStream:
     """A stream that drops the output of the thread that created it, and passes on all other."""
 
     def __init__(self, stream: TextIO | None) -> None:
@@ -204,7 +204,7 @@ def _ignored(count: int) -> tuple[Finding, ...]:
 
 
 def _write(mesh: Mesh | RawMesh, suffix: str) -> Iterator[bytes]:
-    if says_empty_set(mesh):
+    if represents_empty_set(mesh):
         yield EMPTY[suffix]
         return
     if len(mesh.faces) == 0:
@@ -215,7 +215,7 @@ def _write(mesh: Mesh | RawMesh, suffix: str) -> Iterator[bytes]:
     grid = meshio.Mesh(np.array(mesh.vertices), [("triangle", np.array(mesh.faces))])
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"mesh{suffix}"
-        with _ONE_AT_A_TIME:
+        with _PATCH_LOCK:
             grid.write(path, binary=True)
         with path.open("rb", buffering=0) as written:
             while piece := written.read(_CHUNK_BYTES):

@@ -109,7 +109,9 @@ class FactorChain:
 
     def __eq__(self, other: object) -> bool:
         """Return true if both chains have the same factors, bit by bit."""
-        return isinstance(other, FactorChain) and len(self) == len(other) == _agreeing(self, other)
+        return isinstance(other, FactorChain) and len(self) == len(other) == _common_length(
+            self, other
+        )
 
     def __hash__(self) -> int:
         """Return a hash value of all factors."""
@@ -143,7 +145,7 @@ class FactorChain:
 
 
 #: The chain without factors, the identity.
-UNMOVED = FactorChain()
+IDENTITY_CHAIN = FactorChain()
 
 
 class FactorBlock:
@@ -197,13 +199,13 @@ class FactorBlock:
 def common_prefix(chains: Sequence[FactorChain]) -> FactorChain:
     """Return the longest chain of outermost factors with which all given chains begin."""
     first = chains[0]
-    length = min(_agreeing(first, chain) for chain in chains)
+    length = min(_common_length(first, chain) for chain in chains)
     if length == len(first):
         return first
     return FactorChain.of([factor for _, factor in zip(range(length), first, strict=False)])
 
 
-def _agreeing(one: FactorChain, other: FactorChain) -> int:
+def _common_length(one: FactorChain, other: FactorChain) -> int:
     """Return the number of equal outermost factors of two chains."""
     if one is other:
         return len(one)
@@ -236,4 +238,4 @@ def _inner(factors: Factors, rest: FactorBlock | None) -> FactorChain:
     run = len(permuting_run(factors))
     if run < len(factors):
         return FactorChain(factors[run:], rest)
-    return UNMOVED if rest is None else rest.inner
+    return IDENTITY_CHAIN if rest is None else rest.inner

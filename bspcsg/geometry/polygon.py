@@ -15,7 +15,7 @@ from .arrays import doubles
 #: A sum of products of coordinates has the right sign if it exceeds this fraction of the sum of
 #: their absolute values: each product has three roundings and the sum one for each doubling of
 #: their number, 2**-53 each.
-_CLEAR = 1e-12
+_SIGN_TOLERANCE = 1e-12
 
 
 def contours_of(polygon: Any) -> list[FloatArray]:
@@ -167,7 +167,7 @@ def runs_clockwise(contour: FloatArray) -> bool:
     x, y = (contour - contour[0]).T
     terms = np.concatenate([x * np.roll(y, -1), -np.roll(x, -1) * y])
     area = float(terms.sum())
-    if abs(area) > _CLEAR * float(np.abs(terms).sum()):
+    if abs(area) > _SIGN_TOLERANCE * float(np.abs(terms).sum()):
         return area < 0
     points = [(Fraction(a), Fraction(b)) for a, b in contour.tolist()]
     following = points[1:] + points[:1]

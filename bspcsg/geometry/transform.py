@@ -97,7 +97,7 @@ def scaling(factor: Scalar | Vector) -> Factor:
 
 def mirroring(normal: str | Vector) -> Factor:
     """Return the reflection in the plane through the origin with this normal."""
-    unit = _unit(along(normal), "normal")
+    unit = _unit(named_axis(normal), "normal")
     return _from_linear(_snapped(np.eye(3) - 2 * np.outer(unit, unit)))
 
 
@@ -381,10 +381,10 @@ def _snapped(linear: FloatArray) -> FloatArray:
 
 def axis_vector(axis: str | Vector) -> FloatArray:
     """Return the unit vector along "x", "y", "z" or a vector that is not zero."""
-    return _unit(along(axis), "axis")
+    return _unit(named_axis(axis), "axis")
 
 
-def along(axis: str | Vector) -> Vector:
+def named_axis(axis: str | Vector) -> Vector:
     """Return the unit vector for "x", "y" or "z"; any other argument unchanged."""
     if not isinstance(axis, str):
         return axis

@@ -46,7 +46,7 @@ class BoxTree:
     def over(cls, corners: FloatArray) -> "BoxTree":
         """Return the tree over triangles, (m, 3, 3), or over boxes, (m, 2, 3)."""
         low, high = corners.min(axis=1), corners.max(axis=1)
-        order = np.argsort(_along_a_curve((low + high) / 2), kind="stable")
+        order = np.argsort(_morton_positions((low + high) / 2), kind="stable")
         starts = np.arange(0, len(order), _LEAF_SIZE)
         boxes = np.minimum.reduceat(low[order], starts), np.maximum.reduceat(high[order], starts)
         levels = [boxes]
@@ -79,7 +79,7 @@ class BoxTree:
         return self.order[places[there]], rows[there]
 
 
-class Nearness:
+class NearPairSearch:
     """A search for pairs of leaves of two trees that are near to each other.
 
     Parameters
@@ -148,18 +148,18 @@ def squared_gaps(
     return gaps
 
 
-def _along_a_curve(points: FloatArray) -> IndexArray:
+def _morton_positions(points: FloatArray) -> IndexArray:
     """Return the positions of points along Morton's curve, close for points that are near."""
     low = points.min(axis=0)
     extent = float((points.max(axis=0) - low).max()) or 1.0
     cells = ((points - low) / extent * ((1 << _BITS) - 1)).astype(np.int64)
     place = np.zeros(len(points), np.int64)
     for axis in range(3):
-        place |= _spread(cells[:, axis]) << axis
+        place |= _spread_bits(cells[:, axis]) << axis
     return place
 
 
-def _spread(numbers: IndexArray) -> IndexArray:
+def _spread_bits(numbers: IndexArray) -> IndexArray:
     """Return numbers of 21 bits with two zero bits inserted after each bit."""
     masks = (0x1F00000000FFFF, 0x1F0000FF0000FF, 0x100F00F00F00F00F, 0x10C30C30C30C30C3)
     spread = numbers

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from .._types import FloatArray, IndexArray
-from .box_tree import BoxTree, Nearness
+from .box_tree import BoxTree, NearPairSearch
 
 #: The number of boxes in one search: among a thousand nested boxes, a search takes 2 MB.
 _BOXES_PER_BATCH = 256
@@ -61,7 +61,7 @@ def _around(inner: FloatArray, outer: FloatArray, tree: BoxTree) -> list[IndexAr
     `tree` is the tree over `outer`.
     """
     found = [np.zeros((0, 2), dtype=np.int64)]
-    for pairs in Nearness(BoxTree.of_points(inner[:, 0]), tree, 0.0).leaves():
+    for pairs in NearPairSearch(BoxTree.of_points(inner[:, 0]), tree, 0.0).leaves():
         numbers, rows = tree.members(pairs[:, 1])
         owners = pairs[rows, 0]
         begins = (outer[numbers, 0] <= inner[owners, 0]).all(axis=1)

@@ -43,7 +43,7 @@ def nearest_on_triangles(points: FloatArray, corners: FloatArray) -> FloatArray:
     """
     local = corners - points[:, None]
     starts, ends = local, np.roll(local, -1, axis=1)
-    feet = _feet(starts, ends)
+    feet = _nearest_to_origin(starts, ends)
     which = np.linalg.norm(feet, axis=2).argmin(axis=1)
     normals = np.cross(local[:, 1] - local[:, 0], local[:, 2] - local[:, 0])
     squares = np.einsum("ki,ki->k", normals, normals)
@@ -59,11 +59,11 @@ def nearest_on_triangles(points: FloatArray, corners: FloatArray) -> FloatArray:
 
 def _to_segments(starts: FloatArray, ends: FloatArray) -> FloatArray:
     """Return the distance of the origin from each segment; start and end points are (…, 3)."""
-    found: FloatArray = np.linalg.norm(_feet(starts, ends), axis=-1)
+    found: FloatArray = np.linalg.norm(_nearest_to_origin(starts, ends), axis=-1)
     return found
 
 
-def _feet(starts: FloatArray, ends: FloatArray) -> FloatArray:
+def _nearest_to_origin(starts: FloatArray, ends: FloatArray) -> FloatArray:
     """Return the point of each segment that is nearest to the origin, (…, 3)."""
     along = ends - starts
     squares = np.einsum("...i,...i->...", along, along)

@@ -273,7 +273,7 @@ _READERS: tuple[tuple[tuple[str, ...], Callable[[Any], AnyArrays]], ...] = (
 )
 
 
-def optional(name: str, package: str) -> Any:
+def import_optional(name: str, package: str) -> Any:
     """Import an optional module; the error names the package to install.
 
     Raises

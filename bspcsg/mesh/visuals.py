@@ -14,7 +14,7 @@ from .._types import IndexArray
 from ..attributes.attributes import Values
 from ..attributes.colours import as_bytes, color_of, is_color
 from ..attributes.material import Material
-from .leaving import (
+from .library_export import (
     CORNER_FACES,
     CORNERS,
     MATERIALS,
@@ -56,7 +56,7 @@ def attributes_from(mesh: Any, vertices: Any, faces: Any) -> dict[str, Any]:
         _take_visual(getattr(mesh, "visual", None), len(faces), found)
         if isinstance(mesh, Mesh):
             found["materials"].update(mesh.materials)
-    return _fitting(found, len(vertices), faces)
+    return _fitting_arrays(found, len(vertices), faces)
 
 
 #: The Python attributes with dictionaries of arrays: of trimesh and `Mesh`, of pyvista and meshio.
@@ -67,10 +67,10 @@ _DICTIONARIES = {
 }
 
 
-def _arrays_in(held: Any) -> dict[str, Any]:
-    if not isinstance(held, Mapping) and not hasattr(held, "items"):
+def _arrays_in(container: Any) -> dict[str, Any]:
+    if not isinstance(container, Mapping) and not hasattr(container, "items"):
         return {}
-    pairs: Iterable[tuple[Any, Any]] = held.items()
+    pairs: Iterable[tuple[Any, Any]] = container.items()
     return {name: _one_array(values) for name, values in pairs if isinstance(name, str)}
 
 
@@ -82,7 +82,7 @@ def _one_array(values: Any) -> Any:
     return np.asarray(values)
 
 
-def _fitting(
+def _fitting_arrays(
     found: dict[str, dict[str, Any]], vertex_count: int, faces: Any
 ) -> dict[str, dict[str, Any]]:
     """Return keyword arguments of `Solid` with the arrays that fit the mesh, each name once.
@@ -147,16 +147,18 @@ def _take_column(
         found["vertex"][column.name] = values
 
 
-def _take_metadata(told: Mapping[str, Any], faces: Any, found: dict[str, dict[str, Any]]) -> None:
+def _take_metadata(
+    metadata: Mapping[str, Any], faces: Any, found: dict[str, dict[str, Any]]
+) -> None:
     """Add the materials, and the attributes of corners if the faces are unchanged, to `found`.
 
-    `told` is the metadata that `leaving.trimesh_of` has stored in a trimesh.
+    `metadata` is the metadata that `leaving.trimesh_of` has stored in a trimesh.
     """
-    materials, corners = told.get(MATERIALS), told.get(CORNERS)
+    materials, corners = metadata.get(MATERIALS), metadata.get(CORNERS)
     if isinstance(materials, Mapping):
         kept = {name: one for name, one in materials.items() if isinstance(one, Material)}
         found["materials"].update(kept)
-    if isinstance(corners, Mapping) and np.array_equal(told.get(CORNER_FACES, ()), faces):
+    if isinstance(corners, Mapping) and np.array_equal(metadata.get(CORNER_FACES, ()), faces):
         found["corner"].update(_arrays_in(corners))
 
 

@@ -25,7 +25,7 @@ def welded(points: FloatArray) -> tuple[FloatArray, IndexArray]:
         return welded_points(np.asarray(points, dtype=np.float64))
 
 
-def distinct(points: FloatArray) -> int:
+def distinct_count(points: FloatArray) -> int:
     """Return the number of distinct points; points with equal coordinates count once.
 
     Parameters

@@ -29,8 +29,8 @@ from collections.abc import Callable, Sequence
 from types import TracebackType
 
 from ..errors import InvalidMeshError, invalid_parameter
-from ..geometry.chain import UNMOVED
-from ..solid import counting
+from ..geometry.chain import IDENTITY_CHAIN
+from ..solid import ledger
 from ..solid.expression import ExpressionNode
 from ..solid.leaf import ConstantLeaf
 from ..solid.solid import Solid
@@ -47,7 +47,7 @@ class Block:
 
     def __init__(self, combined: Callable[[Sequence[Solid]], Solid]) -> None:
         self._combined = combined
-        self._ledger = counting.opened()
+        self._ledger = ledger.open_ledger()
         self._solid: Solid | None = None
 
     @property
@@ -100,7 +100,7 @@ class Block:
 
         The result becomes an operand of the enclosing block, if there is one.
         """
-        counting.close(self._ledger)
+        ledger.close_ledger(self._ledger)
         if not failed:
             self._solid = self._combined(self.solids)
 
@@ -121,7 +121,7 @@ class Unfilled(Solid):
     __slots__ = ("_combined", "_open")
 
     def __init__(self, combined: Callable[[Sequence[Solid]], Solid], full: bool = False) -> None:
-        self._set(ExpressionNode(ConstantLeaf(full)), UNMOVED)
+        self._set(ExpressionNode(ConstantLeaf(full)), IDENTITY_CHAIN)
         self._combined = combined
         self._open: list[Block] = []
 

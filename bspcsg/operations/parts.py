@@ -8,7 +8,7 @@ from ..errors import InvalidMeshError
 from ..mesh.boxes import boxes_around, boxes_of
 from ..mesh.mesh import Mesh, surfaces_of
 from ..shapes.primitives import half_space
-from ..solid.counting import uncounted
+from ..solid.ledger import uncounted
 from ..solid.solid import Solid
 
 #: The number of a cavity's corners that are tested first. Usually one of them is not on the

@@ -10,8 +10,8 @@ from .._types import FloatArray, IndexArray, SetOp
 from ..errors import LimitError, core_errors, invalid_parameter
 from ..geometry.arrays import is_masked
 from ..mesh import interop
-from ..solid.counting import counted
 from ..solid.leaf import Pitches
+from ..solid.ledger import counted
 from ..solid.point_set import PointSet
 from ..solid.program import Operator, program_of
 from ..solid.solid import Solid, combine

@@ -7,10 +7,10 @@ from ..errors import invalid_parameter
 from ..parameters import SEGMENTS, not_negative, positive
 from ..shapes.primitives import cylinder, prism
 from ..shapes.profile import revolve
-from ..solid.counting import counted
+from ..solid.ledger import counted
 from ..solid.solid import Solid
 from .metric import MetricSize, metric
-from .threads import play, radii, rod_between, tap
+from .threads import clearance_or_default, radii, rod_between, tap
 
 #: The diameter at which the chamfer of a bolt's head begins, as a fraction of the width across
 #: flats.
@@ -62,7 +62,7 @@ def hex_bolt(
     (1, [-5.3, 30.0])
     """
     chosen, long = metric(size), positive(length, "length")
-    gap = play(clearance, chosen)
+    gap = clearance_or_default(clearance, chosen)
     cut = chosen.threaded(long) if thread is None else not_negative(thread, "thread")
     if cut > long:
         raise invalid_parameter(
@@ -113,7 +113,7 @@ def hex_nut(size: str, *, clearance: Scalar = 0.0, segments: int = SEGMENTS) -> 
     (1, [0.0, 6.8])
     """
     chosen = metric(size)
-    more = play(clearance, chosen) / 2
+    more = clearance_or_default(clearance, chosen) / 2
     body = _hexagon(chosen.flats, chosen.nut, segments, both=True)
     return (
         body

@@ -18,7 +18,7 @@ from ..parameters import (
     refuse_many_corners,
     sides_around,
 )
-from ..solid.counting import counted
+from ..solid.ledger import counted
 from ..solid.solid import Solid
 
 #: The height of a tooth above and its depth below the reference circle, in modules (ISO 53, profile

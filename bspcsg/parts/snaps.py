@@ -8,7 +8,7 @@ from .._types import FloatArray, Scalar
 from ..bsp import Region
 from ..errors import invalid_parameter
 from ..parameters import not_negative, number, positive
-from ..solid.counting import counted
+from ..solid.ledger import counted
 from ..solid.solid import Solid
 
 #: The length of the flat land between catch and entrance slope, as a fraction of the thickness.

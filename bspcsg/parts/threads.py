@@ -15,7 +15,7 @@ from ..shapes.arrays import from_arrays
 from ..shapes.primitives import box
 from ..shapes.profile import revolve
 from ..shapes.sweep import unit_circle
-from ..solid.counting import counted
+from ..solid.ledger import counted
 from ..solid.solid import Solid
 from .metric import MetricSize, metric
 
@@ -60,7 +60,7 @@ def threaded_rod(
     (1, [0.0, 20.0])
     """
     chosen, long = metric(size), positive(length, "length")
-    return rod_between(chosen, 0.0, long, play(clearance, chosen), segments)
+    return rod_between(chosen, 0.0, long, clearance_or_default(clearance, chosen), segments)
 
 
 @counted
@@ -91,7 +91,7 @@ def tap(size: str, length: Scalar, *, clearance: Scalar = 0.0, segments: int = S
     1
     """
     chosen, long = metric(size), positive(length, "length")
-    more = play(clearance, chosen) / 2
+    more = clearance_or_default(clearance, chosen) / 2
     inner, outer = chosen.minor_diameter / 2 + more, chosen.diameter / 2 + more
     thread = _thread(chosen, (inner, outer), (0.0, long), segments)
     return thread & box(4 * outer, 4 * outer, long).translate(-2 * outer, -2 * outer, 0)
@@ -125,7 +125,7 @@ def radii(size: MetricSize, clearance: float) -> tuple[float, float]:
     return (size.root_diameter - clearance) / 2, (size.diameter - clearance) / 2
 
 
-def play(clearance: Scalar | None, size: MetricSize) -> float:
+def clearance_or_default(clearance: Scalar | None, size: MetricSize) -> float:
     """Return a checked clearance of diameters; if None is given, the allowance of tolerance 6g."""
     if clearance is None:
         return size.allowance

@@ -18,7 +18,7 @@ from ..formats.raw import RawMesh
 from ..mesh.certificate import Certificate, Precision
 from ..mesh.mesh import Mesh, surfaces_of
 from ..mesh.weld import welded
-from ..solid.counting import uncounted
+from ..solid.ledger import uncounted
 from ..solid.measure import overlaps_of
 from ..solid.solid import Solid
 
@@ -188,7 +188,7 @@ def _edge_findings(mesh: Mesh, edges: EdgeUses) -> list[Finding]:
     holes = ""
     if len(edges.open):
         count = int(connected(edges.ends[edges.open]).max()) + 1
-        holes = f" around {_many(count, 'hole')}"
+        holes = f" around {_count_text(count, 'hole')}"
     kinds = (
         ("open_edges", "error", edges.open, f"with only one triangle (open edges),{holes}"),
         ("orientation", "error", edges.turned, "whose two triangles have opposite orientations"),
@@ -198,7 +198,7 @@ def _edge_findings(mesh: Mesh, edges: EdgeUses) -> list[Finding]:
     for code, severity, which, what in kinds:
         if len(which):
             first = _between(mesh.vertices, edges.ends[which[0]])
-            message = f"{_many(len(which), 'edge')} {what}; the first {first}"
+            message = f"{_count_text(len(which), 'edge')} {what}; the first {first}"
             found.append(Finding(code, severity, message, edges.faces_at(which), len(which)))
     return found
 
@@ -218,16 +218,20 @@ def _face_findings(mesh: Mesh, edges: EdgeUses) -> list[Finding]:
     found = []
     flat = flat_faces(mesh)
     if len(flat):
-        message = f"{_many(len(flat), 'triangle')} without area{_first(mesh, flat)}"
-        found.append(Finding("degenerate", "warning", message, _few(flat), len(flat)))
+        message = f"{_count_text(len(flat), 'triangle')} without area{_first(mesh, flat)}"
+        found.append(Finding("degenerate", "warning", message, _first_indices(flat), len(flat)))
     repeated = repeated_faces(mesh.faces)
     if len(repeated):
-        message = f"{_many(len(repeated), 'triangle')} with the same corners as another triangle"
+        message = (
+            f"{_count_text(len(repeated), 'triangle')} with the same corners as another triangle"
+        )
         message += _first(mesh, repeated)
-        found.append(Finding("duplicate", "warning", message, _few(repeated), len(repeated)))
+        found.append(
+            Finding("duplicate", "warning", message, _first_indices(repeated), len(repeated))
+        )
     unused = len(mesh.vertices) - len(np.unique(mesh.faces))
     if unused:
-        message = f"{_many(unused, 'vertex', 'vertices')} that no triangle uses"
+        message = f"{_count_text(unused, 'vertex', 'vertices')} that no triangle uses"
         found.append(Finding("unused_vertices", "note", message, (), unused))
     return found
 
@@ -292,7 +296,8 @@ def _overlaps(solid: Solid) -> list[Finding]:
     """Return findings about bodies that are not in the solid, and faces that cross or overlap."""
     source = solid.to_mesh().source
     return [
-        replace(found, where=_few(source[list(found.where), 1])) for found in overlaps_of(solid)
+        replace(found, where=_first_indices(source[list(found.where), 1]))
+        for found in overlaps_of(solid)
     ]
 
 
@@ -309,18 +314,20 @@ def _proof(solid: Solid, findings: list[Finding]) -> Certificate:
         places = mesh.source[crossing, 1]
         x, y, z = mesh.vertices[mesh.faces[crossing[0], 0]].tolist()
         message = (
-            f"{_many(len(crossing), 'triangle')} cross or overlap others in {proof.precision}"
+            f"{_count_text(len(crossing), 'triangle')} cross or overlap others in {proof.precision}"
             f" precision; the first near ({x:.6g}, {y:.6g}, {z:.6g})"
         )
-        findings.append(Finding("crossing", "warning", message, _few(places), len(crossing)))
+        findings.append(
+            Finding("crossing", "warning", message, _first_indices(places), len(crossing))
+        )
     return proof
 
 
-def _many(count: int, one: str, more: str = "") -> str:
+def _count_text(count: int, one: str, more: str = "") -> str:
     return f"{count} {one if count == 1 else more or one + 's'}"
 
 
-def _few(indices: IndexArray) -> tuple[int, ...]:
+def _first_indices(indices: IndexArray) -> tuple[int, ...]:
     return tuple(indices[:_MAX_PLACES_NAMED].tolist())
 
 

@@ -23,7 +23,7 @@ from ..processes import run_program
 #: The steps of a repair in the order in which they are taken.
 STEPS = ("weld", "dedup", "drop", "split", "orient", "fill")
 
-_CHILD = Path(__file__).with_name("child.py")
+_CHILD = Path(__file__).with_name("pymeshlab_child.py")
 _MISSING = 6
 
 #: The largest limit of edges around a hole that pymeshlab accepts, a 32-bit number.
@@ -110,7 +110,7 @@ def repair(
             faces=raw.faces,
             settings=np.array(json.dumps(settings)),
         )
-        said = _asked(Path(folder), timeout)
+        said = _run_child(Path(folder), timeout)
         with np.load(Path(folder) / "repaired.npz", allow_pickle=False) as found:
             vertices = np.ascontiguousarray(found["vertices"], dtype=np.float64).reshape(-1, 3)
             faces = np.ascontiguousarray(found["faces"], dtype=np.int64).reshape(-1, 3)
@@ -147,9 +147,9 @@ def losses_of(raw: RawMesh) -> tuple[Finding, ...]:
     return tuple(found)
 
 
-def _asked(folder: Path, timeout: float | None) -> dict[str, Any]:
-    """Run ``child.py`` on a folder; return its report: failed steps, and removed triangles."""
-    # Without -P, modules in the folder of child.py would hide modules of the standard library.
+def _run_child(folder: Path, timeout: float | None) -> dict[str, Any]:
+    """Run ``pymeshlab_child.py`` on a folder; return the failed steps and removed triangles."""
+    # Without -P, modules in the child's folder would hide modules of the standard library.
     command = [sys.executable, "-P", os.fspath(_CHILD), os.fspath(folder)]
     try:
         done = run_program(command, timeout)
@@ -162,7 +162,9 @@ def _asked(folder: Path, timeout: float | None) -> dict[str, Any]:
     path = folder / "said.json"
     said: dict[str, Any] = json.loads(path.read_text("utf-8")) if path.exists() else {}
     if done.returncode == _MISSING and "missing" in said:
-        raise missing_part("pymeshlab", f"for repairs ({said['missing']})", remedy(said["missing"]))
+        raise missing_part(
+            "pymeshlab", f"for repairs ({said['missing']})", install_command(said["missing"])
+        )
     if done.returncode != 0:
         last = done.stderr.strip().splitlines()[-1:] or ["no message"]
         message = f"pymeshlab failed with exit code {done.returncode}: {last[0]}"
@@ -170,7 +172,7 @@ def _asked(folder: Path, timeout: float | None) -> dict[str, Any]:
     return said
 
 
-def remedy(reason: str) -> str:
+def install_command(reason: str) -> str:
     """Return the shell command that installs what is missing, pymeshlab or a system library."""
     if "libGL" in reason or "libOpenGL" in reason or "plug-ins" in reason:
         return "apt-get install --no-install-recommends libgl1 libopengl0"

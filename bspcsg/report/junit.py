@@ -31,7 +31,7 @@ class JUnitCase(NamedTuple):
     element: str = ""
     reason: str = ""
     details: str = ""
-    said: str = ""
+    output: str = ""
     seconds: float | None = None
 
 
@@ -132,7 +132,7 @@ def _add_case(suite: Xml.Element, case: JUnitCase) -> None:
             found.set("type", case.verdict)
             found.text = _clean(case.details)
     said = Xml.SubElement(element, "system-out")
-    said.text = _clean(f"{case.verdict}\n{case.said}")
+    said.text = _clean(f"{case.verdict}\n{case.output}")
 
 
 def _details(case: CaseRecord) -> str:

@@ -14,7 +14,7 @@ from ..campaign.record import (
 )
 from ..campaign.summary import summary_of
 from ..errors import FormatError
-from .conformity import departure
+from .json_validation import type_mismatch
 
 
 def merged(paths: Sequence[str | os.PathLike[str]]) -> Results:
@@ -46,7 +46,7 @@ def _read(path: str | os.PathLike[str]) -> Results:
     lines: list[tuple[Any, type]] = [(run, RunRecord) for run in results.runs]
     lines += [(case, CaseRecord) for case in results.cases.values()]
     for line, kind in lines:
-        fault = departure(line, kind, line["type"])
+        fault = type_mismatch(line, kind, line["type"])
         if fault:
             message = (
                 f"{os.fspath(path)}: the results file is not valid: {fault}. Give a file that"

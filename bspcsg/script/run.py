@@ -19,12 +19,12 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeAlias
 
-from ..errors import BspcsgError, FormatError, invalid_parameter, unreadable, words_of
+from ..errors import BspcsgError, FormatError, invalid_parameter, message_of, unreadable
 from ..geometry.chain import FactorChain
 from ..operations.setops import union
-from ..parameters import file_path, seconds, texts, values_by_name
-from ..processes import watched
-from ..solid.counting import counted, uncounted
+from ..parameters import file_path, seconds, text_list, values_by_name
+from ..processes import parent_pipe
+from ..solid.ledger import counted, uncounted
 from ..solid.solid import LastOperation, Solid, expression_of, with_record
 from .values import VALUES, compiled
 
@@ -35,20 +35,20 @@ TIMEOUT = 600.0
 _STOPPED = 130
 
 #: True if this system lets a thread block signals.
-_HOLDS_SIGNALS = hasattr(signal, "pthread_sigmask")
+_CAN_BLOCK_SIGNALS = hasattr(signal, "pthread_sigmask")
 
 #: The program of the child process. Ctrl-C also reaches the child and ends it silently; the parent
 #: reports it. The child starts with Ctrl-C blocked, since Python would report it during startup.
 _SERVE = (
     f"import os, signal, sys; signal.signal(signal.SIGINT, lambda *_: os._exit({_STOPPED}));"
-    f" {_HOLDS_SIGNALS} and signal.pthread_sigmask(signal.SIG_UNBLOCK, {{signal.SIGINT}});"
+    f" {_CAN_BLOCK_SIGNALS} and signal.pthread_sigmask(signal.SIG_UNBLOCK, {{signal.SIGINT}});"
     " from bspcsg.processes import end_with_parent; end_with_parent(*map(int, sys.argv[1:]));"
     " from bspcsg.script.run import serve; serve()"
 )
 
 #: The result of a script: a solid, or the operation that made it and its transform, which the
 #: pickle of a solid lacks.
-_Made: TypeAlias = Solid | tuple[LastOperation, FactorChain]
+_ScriptResult: TypeAlias = Solid | tuple[LastOperation, FactorChain]
 
 #: The solids that the script has passed to `show`; None in a process that is not such a child.
 _shown: list[Solid] | None = None
@@ -77,17 +77,17 @@ def show(*solids: Any) -> None:
         If a solid is empty.
     """
     if _shown is None:
-        from ..report.viewer.showing import show as show_here
+        from ..report.viewer.show import show as show_here
 
-        show_here(*_flat(solids))
+        show_here(*_flattened(solids))
     else:
-        _shown.extend(Solid.from_mesh(solid) for solid in _flat(solids))
+        _shown.extend(Solid.from_mesh(solid) for solid in _flattened(solids))
 
 
-def _flat(things: Iterable[Any]) -> Iterator[Any]:
+def _flattened(items: Iterable[Any]) -> Iterator[Any]:
     """Yield the given objects; replace each list by its entries, also in nested lists."""
-    for thing in things:
-        yield from _flat(thing) if isinstance(thing, list) else [thing]
+    for thing in items:
+        yield from _flattened(thing) if isinstance(thing, list) else [thing]
 
 
 @counted
@@ -126,7 +126,7 @@ def run_script(
         ("no_result") or does not assign a variable in `defines` ("unknown_name").
     """
     name, limit = file_path(path), seconds(timeout, "timeout")
-    words, values = texts(arguments, "arguments"), values_by_name(defines, "defines")
+    words, values = text_list(arguments, "arguments"), values_by_name(defines, "defines")
     if not os.path.isfile(name):
         raise unreadable(name)
     with tempfile.TemporaryDirectory(prefix="bspcsg-") as folder:
@@ -150,7 +150,7 @@ def _pickled(task: tuple[str, list[str], dict[str, Any], str]) -> bytes:
     except Exception as error:  # whatever the values do when they are asked
         message = (
             "The values of defines cannot be sent to the process of the script, because they"
-            f" cannot be pickled: {words_of(error)}."
+            f" cannot be pickled: {message_of(error)}."
         )
         raise invalid_parameter(message) from error
 
@@ -164,7 +164,7 @@ def _run_child(task: bytes, name: str, timeout: float | None) -> int:
     with contextlib.ExitStack() as start:
         start.enter_context(_interrupts_held())
         with (
-            watched() as read_by_child,
+            parent_pipe() as read_by_child,
             subprocess.Popen(
                 [*command, *map(str, read_by_child)],
                 stdin=subprocess.PIPE,
@@ -192,7 +192,7 @@ def _run_child(task: bytes, name: str, timeout: float | None) -> int:
 @contextlib.contextmanager
 def _interrupts_held() -> Iterator[None]:
     """Block Ctrl-C in this thread and in processes that it starts, if the system supports it."""
-    if not _HOLDS_SIGNALS:
+    if not _CAN_BLOCK_SIGNALS:
         yield
         return
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
@@ -210,14 +210,16 @@ def _standard_error() -> int:
         return subprocess.DEVNULL
 
 
-def _answer(name: str, arguments: list[str], defines: dict[str, Any]) -> _Made | BspcsgError:
+def _result_or_error(
+    name: str, arguments: list[str], defines: dict[str, Any]
+) -> _ScriptResult | BspcsgError:
     global _shown  # noqa: PLW0603  a process runs one script
     _shown = []
     sys.argv = [name, *arguments]
     sys.path.insert(0, str(Path(name).parent.absolute()))
     program = ModuleType("__main__")
     try:
-        _run(program, name, defines)
+        _run_program(program, name, defines)
         result = _result(name, vars(program))
         return result if isinstance(result, BspcsgError) else _with_operation(result)
     except BspcsgError as error:
@@ -226,7 +228,7 @@ def _answer(name: str, arguments: list[str], defines: dict[str, Any]) -> _Made |
         return _located(error, name)
 
 
-def _run(program: ModuleType, name: str, defines: dict[str, Any]) -> None:
+def _run_program(program: ModuleType, name: str, defines: dict[str, Any]) -> None:
     """Run a script as the main program of this process, until its end or an exit with code 0.
 
     Raises
@@ -241,7 +243,7 @@ def _run(program: ModuleType, name: str, defines: dict[str, Any]) -> None:
         exec(code, vars(program))
     except SystemExit as end:
         if end.code not in (None, 0):
-            told = f"code {end.code}" if isinstance(end.code, int) else words_of(end)
+            told = f"code {end.code}" if isinstance(end.code, int) else message_of(end)
             message = f"the script exited with {told} before it gave a result."
             raise FormatError(message, "script_failed").with_traceback(end.__traceback__) from end
 
@@ -266,7 +268,7 @@ def _has_solids(values: Sequence[Any]) -> bool:
     return any(isinstance(one, Solid) for one in values)
 
 
-def _with_operation(result: Solid) -> _Made:
+def _with_operation(result: Solid) -> _ScriptResult:
     """Return a solid, or if an operation made it, that operation and the transform.
 
     The caller in another process makes the solid from them.
@@ -277,7 +279,7 @@ def _with_operation(result: Solid) -> _Made:
 
 def _located(error: Exception, name: str) -> BspcsgError:
     """Return an error whose message begins with the script's name and the line that raised it."""
-    detail = words_of(error) if str(error) else ""
+    detail = message_of(error) if str(error) else ""
     if isinstance(error, SyntaxError) and error.filename == name:
         line, detail = error.lineno, error.msg
     else:
@@ -300,7 +302,7 @@ def serve() -> None:
     except (EOFError, pickle.UnpicklingError):
         # The parent was interrupted while it wrote the task, and reports that.
         sys.exit(_STOPPED)
-    pickled = pickle.dumps(_answer(name, arguments, defines))
+    pickled = pickle.dumps(_result_or_error(name, arguments, defines))
     unfinished = Path(f"{answer}.part")
     unfinished.write_bytes(pickled)
     unfinished.rename(answer)

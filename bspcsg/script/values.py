@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from types import CodeType
 
 from ..errors import FormatError
-from ..meant import question
+from ..suggestions import suggestion_text
 
 #: The global variable of a script whose value is the dictionary of the caller's values.
 VALUES = "__defines__"
@@ -54,7 +54,7 @@ def _advice(unknown: str, known: list[str]) -> str:
     message = f"the script does not assign the variable {unknown} at its top level"
     if not known:
         return f"{message}; it assigns no variable there."
-    return f"{message}.{question(unknown, known)} It assigns {', '.join(known)}."
+    return f"{message}.{suggestion_text(unknown, known)} It assigns {', '.join(known)}."
 
 
 def _top_level(tree: ast.Module) -> Iterator[list[ast.stmt]]:

@@ -15,19 +15,19 @@ from .._types import FloatArray, Scalar, Vector
 from ..errors import InvalidMeshError, invalid_parameter
 from ..geometry.hyperplane import Hyperplane
 from ..geometry.polygon import triangulate
-from ..geometry.transform import along, vector3
+from ..geometry.transform import named_axis, vector3
 from ..parameters import (
     SEGMENTS,
     not_negative,
     number,
     positive,
-    radius,
+    radius_or_half_diameter,
     refuse_many_corners,
     sides_around,
     truth_value,
 )
-from ..solid.counting import counted
 from ..solid.leaf import PlaneLeaf
+from ..solid.ledger import counted
 from ..solid.solid import Solid, from_leaf
 from .arrays import from_arrays
 from .profile import extrude, revolve
@@ -135,7 +135,10 @@ def sphere(r: Scalar | None = None, segments: int = SEGMENTS, *, d: Scalar | Non
     >>> csg.sphere(1, segments=4).to_mesh()
     Mesh(6 vertices, 8 faces)
     """
-    size, around = positive(radius(r, d, "A sphere"), "r"), sides_around(3, segments, "segments")
+    size, around = (
+        positive(radius_or_half_diameter(r, d, "A sphere"), "r"),
+        sides_around(3, segments, "segments"),
+    )
     bands = max(around // 2, 2)
     refuse_many_corners(around * bands, "This sphere")
     angles = unit_circle(2 * bands)[: bands + 1]
@@ -180,7 +183,7 @@ def cylinder(
     >>> csg.cylinder(h=3, r=1, segments=4).volume
     6.0
     """
-    both = None if r is None and d is None else radius(r, d, "A cylinder")
+    both = None if r is None and d is None else radius_or_half_diameter(r, d, "A cylinder")
     low, high = (_end_radius(*end, both) for end in ((r1, d1), (r2, d2)))
     if low == high == 0:
         raise invalid_parameter("A cylinder needs a radius above 0 at one end at least.")
@@ -205,7 +208,9 @@ def cone(
     center: bool = False,
 ) -> Solid:
     """Return a cone of height `h` along z, with its apex up and base radius `r` or diameter `d`."""
-    return cylinder(h, r1=radius(r, d, "A cone"), r2=0, segments=segments, center=center)
+    return cylinder(
+        h, r1=radius_or_half_diameter(r, d, "A cone"), r2=0, segments=segments, center=center
+    )
 
 
 @counted
@@ -235,8 +240,8 @@ def torus(
     >>> csg.torus(3, 1).genus
     1
     """
-    major = positive(radius(r, d, "The ring of a torus"), "r")
-    minor = positive(radius(tube, tube_d, "The tube of a torus"), "tube")
+    major = positive(radius_or_half_diameter(r, d, "The ring of a torus"), "r")
+    minor = positive(radius_or_half_diameter(tube, tube_d, "The tube of a torus"), "tube")
     if minor >= major:
         raise invalid_parameter(
             f"The tube radius of a torus must be smaller than its ring radius {major:g}, but is"
@@ -279,7 +284,7 @@ def prism(
     2.0
     """
     around = sides_around(3, sides, "sides")
-    return cylinder(h, radius(r, d, "A prism"), segments=around, center=center)
+    return cylinder(h, radius_or_half_diameter(r, d, "A prism"), segments=around, center=center)
 
 
 @counted
@@ -319,7 +324,7 @@ def half_space(normal: str | Vector, offset: Scalar = 0.0) -> Solid:
     [0, 0]
     """
     try:
-        x, y, z = along(normal)
+        x, y, z = named_axis(normal)
     except (TypeError, ValueError) as error:
         message = "normal must be 'x', 'y', 'z' or a vector of three numbers."
         raise InvalidMeshError(message, "bad_normal") from error
@@ -328,4 +333,4 @@ def half_space(normal: str | Vector, offset: Scalar = 0.0) -> Solid:
 
 
 def _end_radius(r: Scalar | None, d: Scalar | None, both: Any) -> float:
-    return not_negative(radius(r, d, "Each end of a cylinder", default=both), "r")
+    return not_negative(radius_or_half_diameter(r, d, "Each end of a cylinder", default=both), "r")

@@ -15,17 +15,17 @@ from ..parameters import (
     at_least,
     not_negative,
     number,
-    pair,
     positive,
     refuse_many_corners,
     sides_around,
     truth_value,
+    two_values,
 )
-from ..solid.counting import counted
 from ..solid.leaf import MeshLeaf
+from ..solid.ledger import counted
 from ..solid.solid import Solid, from_leaf
-from .sweep import RingLayout, strip
-from .twist import Rise, risen
+from .sweep import RingLayout, quad_triangles
+from .twist import Rise, extruded
 
 #: The default number of slices for a full turn of twist, equal to the default sides of a circle.
 _SLICES_OF_A_TURN = 32
@@ -101,13 +101,13 @@ def extrude(
     count = len(points)
     if not rise.is_upright:
         refuse_many_corners((rise.slices + 1) * count, "This extrusion")
-        return risen(contours, rise)
+        return extruded(contours, rise)
     levels = [
         np.column_stack([points, np.full(count, z)]) for z in (rise.base, rise.base + rise.height)
     ]
     caps = triangulate(contours)
     start, end = directed_edges(contours).T
-    sides = strip(start, end, start + count, end + count)
+    sides = quad_triangles(start, end, start + count, end + count)
     return _solid(np.concatenate(levels), [caps[:, ::-1], caps + count, sides])
 
 
@@ -122,7 +122,7 @@ def _rise(
     turn, lean = number(twist, "twist"), number(taper, "taper")
     if abs(lean) >= 90:
         raise invalid_parameter(f"taper must be between -90 and 90 degrees, not {lean:g}.")
-    x, y = (not_negative(end, "scale") for end in pair(scale, "scale"))
+    x, y = (not_negative(end, "scale") for end in two_values(scale, "scale"))
     wanted = math.ceil(abs(turn) / 360 * _SLICES_OF_A_TURN) if slices is None else slices
     count = at_least(1, max(wanted, 1) if slices is None else wanted, "slices")
     base = -height / 2 if truth_value(center, "center") else 0.0
@@ -191,8 +191,8 @@ def _swept(rings: RingLayout, start: int, end: int, full: bool) -> IndexArray:
     """Return the triangles that the polygon's edge from `start` to `end` sweeps around the axis."""
     low, high = rings.ring(start), rings.ring(end)
     if full:
-        return strip(low, np.roll(low, -1), high, np.roll(high, -1))
-    return strip(low[:-1], low[1:], high[:-1], high[1:])
+        return quad_triangles(low, np.roll(low, -1), high, np.roll(high, -1))
+    return quad_triangles(low[:-1], low[1:], high[:-1], high[1:])
 
 
 def _solid(vertices: FloatArray, faces: Sequence[IndexArray]) -> Solid:

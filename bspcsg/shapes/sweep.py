@@ -102,10 +102,10 @@ def profile_edges(count: int, *, closed: bool) -> list[tuple[int, int]]:
 
 
 def _band(start: IndexArray, end: IndexArray) -> IndexArray:
-    return strip(start, np.roll(start, -1), end, np.roll(end, -1))
+    return quad_triangles(start, np.roll(start, -1), end, np.roll(end, -1))
 
 
-def strip(a: IndexArray, b: IndexArray, c: IndexArray, d: IndexArray) -> IndexArray:
+def quad_triangles(a: IndexArray, b: IndexArray, c: IndexArray, d: IndexArray) -> IndexArray:
     """Return two triangles for each quadrilateral a, b, d, c; none with two equal corners."""
     triangles = np.concatenate([np.column_stack([a, b, d]), np.column_stack([a, d, c])])
     proper = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)

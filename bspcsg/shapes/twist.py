@@ -72,7 +72,7 @@ class Rise:
         return np.column_stack([turned, np.full(len(points), self.base + self.height * part)])
 
 
-def risen(contours: Sequence[FloatArray], rise: Rise) -> Solid:
+def extruded(contours: Sequence[FloatArray], rise: Rise) -> Solid:
     """Return the extrusion of contours with twist, scale or slanted walls.
 
     Parameters
@@ -85,11 +85,11 @@ def risen(contours: Sequence[FloatArray], rise: Rise) -> Solid:
     InvalidParameterError
         If a slanted wall loses its upper edge and there is also a twist or a scale.
     """
-    lean, lost = _lean(contours, rise.inset)
+    lean, lost = _corner_displacements(contours, rise.inset)
     if lost is not None and rise.only_leans:
-        from ..modelling.making.leaning import leaning
+        from ..modelling.making.slanted_extrusion import extrude_slanted
 
-        return leaning(contours, rise.height, rise.inset).translate(0, 0, rise.base)
+        return extrude_slanted(contours, rise.height, rise.inset).translate(0, 0, rise.base)
     if lost is not None:
         raise _no_room(*lost, "the edge that starts there would vanish")
     points = np.concatenate(contours)
@@ -106,10 +106,12 @@ def risen(contours: Sequence[FloatArray], rise: Rise) -> Solid:
 
 
 #: A contour, and the number of one of its corners.
-_Place: TypeAlias = tuple[FloatArray, int]
+_ContourCorner: TypeAlias = tuple[FloatArray, int]
 
 
-def _lean(contours: Sequence[FloatArray], inset: float) -> tuple[FloatArray, _Place | None]:
+def _corner_displacements(
+    contours: Sequence[FloatArray], inset: float
+) -> tuple[FloatArray, _ContourCorner | None]:
     """Return the displacement of each corner, (n, 2), if all walls move inwards by `inset`.
 
     Also return the first corner whose outgoing edge vanishes, or None.

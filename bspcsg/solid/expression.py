@@ -12,14 +12,14 @@ from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 from .._types import ProgramLine
+from ..caching import LazyValue
 from ..errors import internal
-from ..geometry.chain import UNMOVED, FactorChain
-from ..once import Once
-from .leaf import ExpressionLeaf, Record, TreeLeaf, run
+from ..geometry.chain import IDENTITY_CHAIN, FactorChain
+from .leaf import ExpressionLeaf, Record, TreeLeaf, evaluated_record
 from .program import Operator
 
 
-class Placed(NamedTuple):
+class PlacedNode(NamedTuple):
     """A node of the expression graph, with the transform that is applied to its result."""
 
     node: "ExpressionNode"
@@ -31,8 +31,8 @@ class Pending:
     """A set operation that has not been evaluated, with its operands."""
 
     operator: Operator
-    operands: tuple[Placed, ...]
-    result: Once[ExpressionLeaf] = field(default_factory=Once, init=False, repr=False)
+    operands: tuple[PlacedNode, ...]
+    result: LazyValue[ExpressionLeaf] = field(default_factory=LazyValue, init=False, repr=False)
 
 
 class ExpressionNode:
@@ -46,7 +46,7 @@ class ExpressionNode:
 
     def __init__(self, content: Pending | ExpressionLeaf) -> None:
         self.content = content
-        self._moved: Once[WeakKeyDictionary[FactorChain, ExpressionLeaf]] = Once()
+        self._moved: LazyValue[WeakKeyDictionary[FactorChain, ExpressionLeaf]] = LazyValue()
 
     def placed(self, factors: FactorChain) -> ExpressionLeaf:
         """Return the node's evaluated leaf after a transform, cached for each transform in use.
@@ -56,27 +56,31 @@ class ExpressionNode:
         leaf = _evaluated(self.content)
         if not factors:
             return leaf
-        known = self._moved.of(WeakKeyDictionary)
+        known = self._moved.get(WeakKeyDictionary)
         moved = known.get(factors)
         return known.setdefault(factors, leaf.placed(factors)) if moved is None else moved
 
 
-def complement(placed: Placed) -> Placed:
+def complement(placed: PlacedNode) -> PlacedNode:
     """Return the complement of a node under a transform; twice gives the original node."""
     content = placed.node.content
     if isinstance(content, Pending) and content.operator == "not":
         inner = content.operands[0]
-        return Placed(inner.node, placed.factors.around(inner.factors))
+        return PlacedNode(inner.node, placed.factors.around(inner.factors))
     # Move the transform outwards: M(not X) and not M(X) are the same set.
-    return Placed(ExpressionNode(Pending("not", (Placed(placed.node, UNMOVED),))), placed.factors)
+    return PlacedNode(
+        ExpressionNode(Pending("not", (PlacedNode(placed.node, IDENTITY_CHAIN),))), placed.factors
+    )
 
 
-def operation(operator: Operator, operands: Sequence[Placed]) -> ExpressionNode:
+def operation(operator: Operator, operands: Sequence[PlacedNode]) -> ExpressionNode:
     """Return a new node, not evaluated, that combines the operands by a set operation."""
-    return ExpressionNode(Pending(operator, tuple(_settled(operand) for operand in operands)))
+    return ExpressionNode(
+        Pending(operator, tuple(_normalized_operand(operand) for operand in operands))
+    )
 
 
-def _settled(placed: Placed) -> Placed:
+def _normalized_operand(placed: PlacedNode) -> PlacedNode:
     """Return an operand; a transformed complement becomes the complement of a transformed solid.
 
     The solid inside the complement is usually bounded, so it has a mesh to transform.
@@ -85,8 +89,8 @@ def _settled(placed: Placed) -> Placed:
     if not placed.factors or not isinstance(content, Pending) or content.operator != "not":
         return placed
     inner = content.operands[0]
-    below = Placed(inner.node, placed.factors.around(inner.factors))
-    return Placed(ExpressionNode(Pending("not", (below,))), UNMOVED)
+    below = PlacedNode(inner.node, placed.factors.around(inner.factors))
+    return PlacedNode(ExpressionNode(Pending("not", (below,))), IDENTITY_CHAIN)
 
 
 def evaluate(root: ExpressionNode) -> ExpressionLeaf:
@@ -104,7 +108,7 @@ def evaluate(root: ExpressionNode) -> ExpressionLeaf:
         if not isinstance(content, Pending):
             continue
         if plan is not None:
-            node.content = content.result.of(plan.execute)
+            node.content = content.result.get(plan.execute)
             continue
         plan = make_plan(node)
         waiting.append((node, plan))
@@ -117,20 +121,22 @@ class Plan:
     """A program for the core, and the operands to which its lines ``("leaf", [k])`` refer."""
 
     program: list[ProgramLine] = field(default_factory=list)
-    operands: list[Placed] = field(default_factory=list)
+    operands: list[PlacedNode] = field(default_factory=list)
 
     def execute(self) -> ExpressionLeaf:
         """Execute the program and return its result; all operands must have been evaluated."""
         leaves = [_operand_leaf(operand) for operand in self.operands]
-        return run(Record(self.program, tuple(leaves)))
+        return evaluated_record(Record(self.program, tuple(leaves)))
 
 
 def make_plan(root: ExpressionNode) -> Plan:
     """Flatten the expression below a node into a program, with operands in reading order."""
     uses = _count_uses(root)
     plan = Plan()
-    lines: dict[Placed, int] = {}
-    waiting: list[tuple[Placed, list[Placed] | None]] = [(Placed(root, UNMOVED), None)]
+    lines: dict[PlacedNode, int] = {}
+    waiting: list[tuple[PlacedNode, list[PlacedNode] | None]] = [
+        (PlacedNode(root, IDENTITY_CHAIN), None)
+    ]
     while waiting:
         placed, arguments = waiting.pop()
         if placed in lines:
@@ -156,25 +162,25 @@ def _evaluated(content: Pending | ExpressionLeaf) -> ExpressionLeaf:
     return content
 
 
-def _operand_leaf(placed: Placed) -> ExpressionLeaf:
+def _operand_leaf(placed: PlacedNode) -> ExpressionLeaf:
     leaf = placed.node.placed(placed.factors)
     # Operands must not keep their own records, or a chain would keep all of its history.
-    return leaf.forgetful() if isinstance(leaf, TreeLeaf) else leaf
+    return leaf.without_record() if isinstance(leaf, TreeLeaf) else leaf
 
 
-def _open_operation(placed: Placed) -> Pending | None:
+def _open_operation(placed: PlacedNode) -> Pending | None:
     """Return a node's operation, or None if the node is evaluated or under a transform."""
     content = placed.node.content
     return content if isinstance(content, Pending) and not placed.factors else None
 
 
-def _arguments(pending: Pending, uses: dict[ExpressionNode, int]) -> list[Placed]:
+def _arguments(pending: Pending, uses: dict[ExpressionNode, int]) -> list[PlacedNode]:
     """Return an operation's operands, those of nested unions or intersections included.
 
     A union in a union or an intersection in an intersection is replaced by its operands, unless the
     program uses it several times: then it keeps its own line.
     """
-    arguments: list[Placed] = []
+    arguments: list[PlacedNode] = []
     waiting = list(reversed(pending.operands))
     while waiting:
         placed = waiting.pop()

@@ -1,9 +1,9 @@
 """Leaves of expressions: operands that are partition trees, or can become one directly.
 
 A leaf returns its tree on the lattice of a pitch, and its image under a transform, which is a chain
-of affine maps (factors). Images follow one rule (`_place`): the outermost factors that are lattice
-motions move the tree exactly; the other factors transform the coordinates of the leaf's mesh, which
-are rounded once and snapped to the lattice again.
+of affine maps (factors). Images follow one rule (`_transformed_leaf`): the outermost factors that
+are lattice motions move the tree exactly; the other factors transform the coordinates of the leaf's
+mesh, which are rounded once and snapped to the lattice again.
 """
 
 from collections.abc import Callable, Generator, Mapping, Sequence
@@ -19,14 +19,14 @@ from .._core import Tree
 from .._types import FloatArray, IndexArray, ProgramLine, WindingRule
 from ..attributes.attributes import Attributes
 from ..attributes.colours import COLOR, one_color
+from ..caching import LastValueCache, LazyValue
 from ..errors import InvalidMeshError, LimitError, UnboundedError, core_errors
 from ..geometry import transform
 from ..geometry.chain import BLOCK, FactorBlock, FactorChain
 from ..geometry.hyperplane import DEFAULT_PITCH, Hyperplane, exact_number
-from ..once import Last, Once
 from ..parameters import MAX_PITCH
-from .extent import EXTENTS, Extent
-from .moving import AttributedMesh
+from .boundedness import EXTENTS, Extent
+from .mesh_transform import AttributedMesh
 from .program import COMPLEMENT
 from .sewing import sewn
 from .source_attributes import (
@@ -35,7 +35,7 @@ from .source_attributes import (
     all_tagged,
     attributes_of,
     inherited,
-    patched,
+    with_patches,
 )
 
 
@@ -44,7 +44,7 @@ def _crosses_there(tree: Tree, motion: transform.LatticeMotion) -> bool:
         return tree.moving_crosses(list(motion.axes), list(motion.shift))
 
 
-class Pitches(Last[int, Tree]):
+class Pitches(LastValueCache[int, Tree]):
     """A cache of one tree on a finer lattice, the last one used, so that its users share it."""
 
     __slots__ = ()
@@ -72,7 +72,7 @@ class MeshLeaf:
     ----------
     vertices : (n, 3) float64, in model units
     faces : (m, 3) int64, indices of `vertices`
-        Both arrays may belong to the caller until `let_go` is called.
+        Both arrays may belong to the caller until `release_arrays` is called.
     pitch : int or None
         Exponent of the lattice step; by default the core chooses it from the size.
     trusted : bool
@@ -97,18 +97,18 @@ class MeshLeaf:
         self._chosen_pitch = pitch
         self._trusted = trusted
         self._winding = winding
-        self._tree: Once[Tree] = Once()
+        self._tree: LazyValue[Tree] = LazyValue()
         self._rounded: str | None = None
         self._is_moved = False
         #: The pitch that transforms keep if its lattice has the range; None to choose by size.
         self.given_pitch = pitch
         self._pitches = Pitches()
-        self.last_moved: Last[FactorChain, ExpressionLeaf] = Last()
+        self.last_moved: LastValueCache[FactorChain, ExpressionLeaf] = LastValueCache()
 
     @property
     def pitch(self) -> int | None:
         """Exponent of the lattice step."""
-        return self.grown().pitch if self._chosen_pitch is None else self._chosen_pitch
+        return self.own_tree().pitch if self._chosen_pitch is None else self._chosen_pitch
 
     @property
     def extent(self) -> Extent:
@@ -124,26 +124,26 @@ class MeshLeaf:
     def arrays(self) -> tuple[FloatArray, IndexArray]:
         """Return the mesh's vertices and faces, after the transform that made the leaf, if any."""
         arrays = self._settled().arrays
-        return self.grown().given_arrays() if arrays is None else arrays
+        return self.own_tree().given_arrays() if arrays is None else arrays
 
-    def let_go(self) -> None:
+    def release_arrays(self) -> None:
         """Release the caller's arrays: their data are read from the tree, or else copied."""
         vertices, faces = self.arrays()
-        held = self.grown().holds_given
+        held = self.own_tree().holds_given
         arrays = None if held else (vertices.copy(), faces.copy())
         self._content = replace(self._settled(), arrays=arrays)
 
-    def grown(self) -> Tree:
+    def own_tree(self) -> Tree:
         """Return the mesh's partition tree on its own lattice; the first call makes the tree."""
-        return self._tree.of(self._grow)
+        return self._tree.get(self._grow)
 
     def tree(self, pitch: int) -> Tree:
         """Return the leaf's partition tree on the lattice of step ``10**pitch``."""
-        return self._pitches.of(self.grown(), pitch)
+        return self._pitches.of(self.own_tree(), pitch)
 
     def placed(self, factors: FactorChain) -> "ExpressionLeaf":
         """Return the leaf's image under a chain of affine maps, the outermost map first."""
-        return _place(self, factors)
+        return _transformed_leaf(self, factors)
 
     def coarsened(self, pitch: int) -> "MeshLeaf | None":
         """Return the leaf on a coarser lattice, with a finding if its corners must be rounded.
@@ -168,7 +168,7 @@ class MeshLeaf:
         """Return the leaf of the mesh whose vertices a chain of affine maps has transformed."""
         # Rounding moves vertices, so the image of a trusted mesh is not trusted.
         said = AttributedMesh(*self.arrays(), self._settled().attributes)
-        found = None if self._trusted else sewn(said, self.grown())
+        found = None if self._trusted else sewn(said, self.own_tree())
         mesh = said if found is None else found.mesh
         return MeshLeaf.moved(mesh, factors, self.given_pitch, self._winding)
 
@@ -177,7 +177,7 @@ class MeshLeaf:
 
         If so, its coordinates must be moved and mended instead of its tree.
         """
-        return self._settled().is_mended or _crosses_there(self.grown(), motion)
+        return self._settled().is_mended or _crosses_there(self.own_tree(), motion)
 
     @classmethod
     def moved(
@@ -192,7 +192,7 @@ class MeshLeaf:
         The leaf is on the lattice of `pitch`, unless that is None or the mesh exceeds its range.
         """
         moved = mesh.moved(factors)
-        held = moved.held_pitch(pitch)
+        held = moved.pitch_in_range(pitch)
         leaf = cls(moved.vertices, moved.faces, held, False, winding, moved.attributes)
         leaf._is_moved = True
         leaf._chosen_pitch = moved.suited_pitch() if held is None else held
@@ -201,9 +201,9 @@ class MeshLeaf:
         return leaf
 
     @cached_property
-    def shown(self) -> Tree:
+    def mesh_tree(self) -> Tree:
         """The tree from which the mesh is made: faces with different attributes are not joined."""
-        return patched(self.grown(), self.source_attributes)
+        return with_patches(self.own_tree(), self.source_attributes)
 
     def _settled(self) -> "_Settled":
         """Return the mesh's arrays and attributes, after mending crossings due to a transform."""
@@ -265,11 +265,11 @@ class _Moved:
     mesh: AttributedMesh
     before: FloatArray
     pitch: int
-    _result: Once[_Settled] = field(default_factory=Once, init=False, repr=False)
+    _result: LazyValue[_Settled] = field(default_factory=LazyValue, init=False, repr=False)
 
     def mended(self) -> _Settled:
         """Return the mesh without the crossings that rounding caused; computed once."""
-        return self._result.of(self._mend)
+        return self._result.get(self._mend)
 
     def _mend(self) -> _Settled:
         found = self.mesh.mended(self.before, self.pitch)
@@ -301,7 +301,7 @@ class TreeLeaf:
     given_pitch : int or None
         As for `MeshLeaf`.
     tags : mapping of str to object
-        The attributes that `tagged` set on all faces, in case the program is run again.
+        The attributes that `tagged_leaf` set on all faces, in case the program is run again.
     """
 
     result: Tree
@@ -311,8 +311,8 @@ class TreeLeaf:
     given_pitch: int | None = None
     tags: Mapping[str, object] = field(default_factory=dict)
     _pitches: Pitches = field(default_factory=Pitches, init=False, repr=False)
-    last_moved: "Last[FactorChain, ExpressionLeaf]" = field(
-        default_factory=Last, init=False, repr=False
+    last_moved: "LastValueCache[FactorChain, ExpressionLeaf]" = field(
+        default_factory=LastValueCache, init=False, repr=False
     )
 
     @property
@@ -326,23 +326,27 @@ class TreeLeaf:
 
     def placed(self, factors: FactorChain) -> "ExpressionLeaf":
         """Return the leaf's image under a chain of affine maps, the outermost map first."""
-        return self if self.is_constant else _place(self, factors)
+        return self if self.is_constant else _transformed_leaf(self, factors)
 
     def transformed(self, factors: FactorChain) -> "ExpressionLeaf | None":
         """Return the leaf of the solid's mesh after a transform; shared vertices stay shared.
 
         If the solid is unbounded, transform its complement. None if both are unbounded.
         """
-        return self._made_anew(lambda leaf: _moved_output(leaf, factors))
+        return self._via_bounded_leaf(lambda leaf: _moved_output(leaf, factors))
 
     def coarsened(self, pitch: int) -> "ExpressionLeaf | None":
         """Return the leaf of the solid's output mesh on a coarser lattice.
 
         None if the solid and its complement are unbounded, or if the mesh measures too few steps.
         """
-        return self._made_anew(lambda leaf: _moved_output(leaf, FactorChain()).coarsened(pitch))
+        return self._via_bounded_leaf(
+            lambda leaf: _moved_output(leaf, FactorChain()).coarsened(pitch)
+        )
 
-    def _made_anew(self, make: "Callable[[TreeLeaf], MeshLeaf | None]") -> "ExpressionLeaf | None":
+    def _via_bounded_leaf(
+        self, make: "Callable[[TreeLeaf], MeshLeaf | None]"
+    ) -> "ExpressionLeaf | None":
         """Return the result of a function of a bounded leaf, or None if there is none.
 
         Apply it to this leaf, or if the solid is unbounded, to its complement, and complement the
@@ -350,18 +354,18 @@ class TreeLeaf:
         """
         if self._is_bounded():
             return make(self)
-        outside = run(Record(COMPLEMENT, (self,)))
+        outside = evaluated_record(Record(COMPLEMENT, (self,)))
         mesh = make(outside) if outside._is_bounded() else None
         if mesh is None:
             return None
-        made = run(Record(COMPLEMENT, (mesh,)))
+        made = evaluated_record(Record(COMPLEMENT, (mesh,)))
         return replace(made, record=None, extent=False)
 
     def touches_itself(self, motion: transform.LatticeMotion) -> bool:
         """Return true if a mesh of the tree would cross itself after a lattice motion."""
         return _crosses_there(self.result, motion)
 
-    def forgetful(self) -> "TreeLeaf":
+    def without_record(self) -> "TreeLeaf":
         """Return the leaf without its record, unless a later transform would need the record.
 
         If a solid and its complement are both unbounded, as results of half-spaces may be, there is
@@ -372,9 +376,9 @@ class TreeLeaf:
         return replace(self, record=None)
 
     @cached_property
-    def shown(self) -> Tree:
+    def mesh_tree(self) -> Tree:
         """The tree from which the mesh is made: faces with different attributes are not joined."""
-        return patched(self.result, self.source_attributes)
+        return with_patches(self.result, self.source_attributes)
 
     @property
     def is_constant(self) -> bool:
@@ -402,7 +406,9 @@ class PlaneLeaf:
     _images: WeakKeyDictionary[FactorBlock, Hyperplane] = field(
         default_factory=WeakKeyDictionary, init=False, repr=False
     )
-    _trees: Last[int, Tree] = field(default_factory=Last, init=False, repr=False)
+    _trees: LastValueCache[int, Tree] = field(
+        default_factory=LastValueCache, init=False, repr=False
+    )
 
     def tree(self, pitch: int) -> Tree:
         """Return the leaf's partition tree on the lattice of step ``10**pitch``."""
@@ -413,7 +419,7 @@ class PlaneLeaf:
         with core_errors():
             return self._trees.keep(pitch, Tree.half_space(plane.row, pitch, plane.note))
 
-    def beyond(self, pitch: int) -> "ConstantLeaf | None":
+    def constant_leaf(self, pitch: int) -> "ConstantLeaf | None":
         """Return the empty set or all of space for a plane beyond the lattice, else None."""
         above = self.plane.is_above_lattice(pitch)
         return None if above is None else ConstantLeaf(above)
@@ -485,14 +491,14 @@ def tree_of(leaf: ExpressionLeaf) -> Tree:
     return leaf.tree(_common_pitch([leaf]))
 
 
-def shown_tree(leaf: ExpressionLeaf) -> Tree:
+def mesh_tree_of(leaf: ExpressionLeaf) -> Tree:
     """Return the tree for a leaf's mesh, in which faces of different attributes are not joined."""
     if leaf.source_attributes and isinstance(leaf, (MeshLeaf, TreeLeaf)):
-        return leaf.shown
+        return leaf.mesh_tree
     return tree_of(leaf)
 
 
-def tagged(leaf: ExpressionLeaf, values: Mapping[str, object]) -> ExpressionLeaf:
+def tagged_leaf(leaf: ExpressionLeaf, values: Mapping[str, object]) -> ExpressionLeaf:
     """Return a leaf of the same set with one value of each given attribute on all faces.
 
     A half-space, the empty set and all of space are returned unchanged, having no faces. The
@@ -525,7 +531,7 @@ def _given_pitch_of(leaves: Sequence[ExpressionLeaf], result: Tree) -> int | Non
     return result.pitch if given == {result.pitch} else None
 
 
-def run(record: Record) -> TreeLeaf:
+def evaluated_record(record: Record) -> TreeLeaf:
     """Evaluate a program on its operands, brought to one lattice, and return the result's leaf."""
     extents = [leaf.extent for leaf in record.leaves]
     extent = EXTENTS.evaluate(record.program, extents)
@@ -559,7 +565,7 @@ def _on_one_lattice(
         return leaves, [leaf.tree(pitch) for leaf in leaves]
     except LimitError:
         coarser = _finest_for_all(leaves, extent)
-        found = [_fitted(leaf, coarser, extent) for leaf in leaves]
+        found = [_on_lattice_or_none(leaf, coarser, extent) for leaf in leaves]
         fitted = [leaf for leaf in found if leaf is not None]
         if len(fitted) < len(found):
             raise
@@ -578,7 +584,7 @@ def _finest_for_all(leaves: Sequence[ExpressionLeaf], extent: Extent) -> int:
 
 def _fits_lattice(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> bool:
     if isinstance(leaf, PlaneLeaf):
-        return extent is not None or leaf.beyond(pitch) is None
+        return extent is not None or leaf.constant_leaf(pitch) is None
     if leaf.pitch is None or leaf.pitch <= pitch:
         return True
     try:
@@ -588,17 +594,17 @@ def _fits_lattice(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> bool:
     return True
 
 
-def _fitted(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> ExpressionLeaf | None:
+def _on_lattice_or_none(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> ExpressionLeaf | None:
     """Return a leaf for the lattice of `pitch`, coarsened if need be; None if that fails."""
     if isinstance(leaf, PlaneLeaf):
-        return leaf if extent is None else leaf.beyond(pitch) or leaf
+        return leaf if extent is None else leaf.constant_leaf(pitch) or leaf
     if isinstance(leaf, ConstantLeaf) or leaf.pitch is None or leaf.pitch >= pitch:
         return leaf
     return leaf if isinstance(leaf, TreeLeaf) and leaf.is_constant else leaf.coarsened(pitch)
 
 
 def _moved_output(leaf: TreeLeaf, factors: FactorChain) -> MeshLeaf:
-    tree = leaf.shown
+    tree = leaf.mesh_tree
     with core_errors():
         vertices, faces = tree.to_mesh()
     said = attributes_of(tree, leaf.source_attributes) if leaf.source_attributes else None
@@ -607,12 +613,12 @@ def _moved_output(leaf: TreeLeaf, factors: FactorChain) -> MeshLeaf:
 
 #: A generator that transforms a leaf: it yields operands to transform, each with its factors, is
 #: sent their images, and returns the image of the leaf.
-_Moving: TypeAlias = Generator[tuple["ExpressionLeaf", FactorChain], "ExpressionLeaf", Any]
+_TransformSteps: TypeAlias = Generator[tuple["ExpressionLeaf", FactorChain], "ExpressionLeaf", Any]
 
 
-def _place(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> ExpressionLeaf:
+def _transformed_leaf(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> ExpressionLeaf:
     """Return a leaf's image under a transform, by a stack of generators, not by recursion."""
-    waiting = [_placing(leaf, factors)]
+    waiting = [_transform_steps(leaf, factors)]
     answer: Any = None
     while waiting:
         try:
@@ -622,7 +628,7 @@ def _place(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> ExpressionLeaf:
             answer = ended.value
             continue
         if isinstance(operand, TreeLeaf) and not operand.is_constant:
-            waiting.append(_placing(operand, under))
+            waiting.append(_transform_steps(operand, under))
             answer = None
         else:
             answer = operand.placed(under)
@@ -630,20 +636,20 @@ def _place(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> ExpressionLeaf:
     return moved
 
 
-def _placing(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
+def _transform_steps(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _TransformSteps:
     """Transform a leaf: its mesh by the inner factors, then its tree by the outer lattice motion.
 
     Transform the mesh by all factors if the outer ones are no exact motion of the tree.
     """
     inner = factors.inner
     if len(inner) == len(factors):
-        return (yield from _transforming(leaf, factors)) if factors else leaf
-    base = (yield from _base(leaf, inner)) if inner else leaf
+        return (yield from _operand_steps(leaf, factors)) if factors else leaf
+    base = (yield from _inner_image(leaf, inner)) if inner else leaf
     motion = factors.outer_motion(_common_pitch([base]))
     if motion is None:
-        return (yield from _transforming(leaf, factors))
+        return (yield from _operand_steps(leaf, factors))
     if isinstance(base, (MeshLeaf, TreeLeaf)) and base.touches_itself(motion):
-        return (yield from _transforming(leaf, factors))
+        return (yield from _operand_steps(leaf, factors))
     try:
         with core_errors():
             moved = tree_of(base).moved(list(motion.axes), list(motion.shift))
@@ -652,18 +658,18 @@ def _placing(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
     except (LimitError, UnboundedError):
         # The leaf leaves this lattice; its coordinates let the core choose a coarser one. Or it is
         # cut off by the border of the lattice, which does not move with it.
-        return (yield from _transforming(leaf, factors))
+        return (yield from _operand_steps(leaf, factors))
 
 
-def _base(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
+def _inner_image(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _TransformSteps:
     """Transform a leaf by the inner factors, and cache the result for other outer motions."""
     known = leaf.last_moved.get(factors)
     if known is not None:
         return known
-    return leaf.last_moved.keep(factors, (yield from _transforming(leaf, factors)))
+    return leaf.last_moved.keep(factors, (yield from _operand_steps(leaf, factors)))
 
 
-def _transforming(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
+def _operand_steps(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _TransformSteps:
     """Transform the mesh of a leaf; if it has none, transform its operands and combine them."""
     moved = leaf.transformed(factors)
     if moved is not None:
@@ -677,4 +683,4 @@ def _transforming(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
     leaves = []
     for operand in leaf.record.leaves:
         leaves.append((yield operand, factors))
-    return tagged(run(Record(leaf.record.program, tuple(leaves))), leaf.tags)
+    return tagged_leaf(evaluated_record(Record(leaf.record.program, tuple(leaves))), leaf.tags)

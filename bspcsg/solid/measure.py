@@ -10,7 +10,7 @@ from ..errors import Finding, core_errors
 from ..mesh.boxes import boxes_of
 from ..mesh.mesh import Mesh, surfaces_of
 from ..parameters import at_least
-from .sides import sides_of
+from .point_classification import sides_of
 
 if TYPE_CHECKING:
     from .solid import Solid
@@ -153,9 +153,9 @@ def _turned_shells(mesh: Mesh, reduced: "Solid") -> tuple[Finding, ...]:
     )
 
 
-def _faults_of(solid: "Solid", told: tuple[Finding, ...]) -> tuple[Finding, ...]:
+def _faults_of(solid: "Solid", findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
     """Return findings about faults of a solid's mesh that the given findings do not cover."""
-    codes = {one.code for one in told}
+    codes = {one.code for one in findings}
     more: tuple[Finding, ...] = ()
     # An inside-out mesh may give the empty set; comparing it with the boundary is then useless.
     if not {"inside_out", "self_overlap"} & codes:

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, Self
 
 from .._types import SideArray
 from ..errors import invalid_parameter
-from ..meant import no_attribute
 from ..parameters import shown
-from .counting import uncounted
+from ..suggestions import attribute_error
+from .ledger import uncounted
 
 
 class PointSet(ABC):
@@ -50,7 +50,7 @@ class PointSet(ABC):
 
         def __getattr__(self, name: str) -> Any:
             """Raise an error that suggests the intended name; hidden from type checkers."""
-            raise no_attribute(self, name, f"{type(self).__name__!r} object")
+            raise attribute_error(self, name, f"{type(self).__name__!r} object")
 
     def union(self, *others: Self | Iterable[Self]) -> Self:
         """Return the union of this set and all others; ``|`` takes one other set."""

@@ -11,8 +11,8 @@ from typing import Generic, Literal, TypeAlias, TypeVar
 
 from .._types import ProgramLine
 from ..errors import invalid_parameter
-from ..meant import question
 from ..parameters import shown
+from ..suggestions import suggestion_text
 
 Operator: TypeAlias = Literal["or", "and", "xor", "not"]
 
@@ -67,7 +67,7 @@ def program_of(op: str, count: int) -> list[ProgramLine]:
     """
     if not isinstance(op, str) or op not in _NAMED:
         message = f"Unknown operation {shown(op)}; known are {', '.join(_NAMED)}."
-        raise invalid_parameter(message + question(op, _NAMED))
+        raise invalid_parameter(message + suggestion_text(op, _NAMED))
     if count == 0:
         raise invalid_parameter(
             f"There are no operands, so the {op} cannot be compared; give at least one operand."

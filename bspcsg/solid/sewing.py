@@ -12,9 +12,9 @@ import numpy as np
 
 from .._core import Tree
 from .._types import IndexArray
-from ..attributes.carrying import Surface, carried, patches_of
+from ..attributes.transfer import Surface, inherited_attributes, patches_of
 from ..errors import core_errors
-from .moving import AttributedMesh
+from .mesh_transform import AttributedMesh
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,12 +24,12 @@ class Sewn:
     Parameters
     ----------
     mesh : AttributedMesh
-    kept : (m,) int64
+    origins : (m,) int64
         For each triangle, the triangle of the original mesh that contains it, ascending.
     """
 
     mesh: AttributedMesh
-    kept: IndexArray
+    origins: IndexArray
 
 
 def sewn(mesh: AttributedMesh, tree: Tree) -> Sewn | None:
@@ -49,8 +49,8 @@ def sewn(mesh: AttributedMesh, tree: Tree) -> Sewn | None:
     with core_errors():
         shown = tree.patched(patches_of(attributes)) if attributes else tree
         surface = Surface(*shown.to_mesh(), shown.origins(), shown.flips())
-    said = carried(surface, attributes, shown.source_arrays) if attributes else None
+    said = inherited_attributes(surface, attributes, shown.source_arrays) if attributes else None
     order = np.argsort(surface.source[:, 1], kind="stable")
-    said = said and said.taken(order)
+    said = said and said.for_faces(order)
     divided = AttributedMesh(surface.vertices, surface.faces[order], said)
     return Sewn(divided, surface.source[order, 1])

@@ -16,28 +16,27 @@ from typing import TYPE_CHECKING, Any, overload
 
 from .._core import Tree
 from .._types import FloatArray, ProgramLine, Scalar, SideArray, Vector, WindingRule
-from ..attributes.attributes import Attributes, Given
+from ..attributes.attributes import Attributes, GivenAttributes
 from ..attributes.material import Material
 from ..errors import BspcsgError, Finding, core_errors, deprecated
-from ..geometry.chain import UNMOVED, FactorChain, common_prefix
+from ..geometry.chain import IDENTITY_CHAIN, FactorChain, common_prefix
 from ..geometry.transform import Factors
-from ..mesh import interop, leaving, visuals
+from ..mesh import interop, library_export, visuals
 from ..mesh.mesh import Mesh
-from ..owned import owning
+from ..method_ownership import with_own_methods
 from ..parameters import (
     SEGMENTS,
+    instance_of,
     no_options,
     not_negative,
-    of_kind,
     optional_pitch,
     positive,
     truth_value,
     winding_rule,
 )
 from .components import Components
-from .counting import count, counted, uncounted
 from .describe import describe
-from .expression import ExpressionNode, Placed, complement, evaluate, operation
+from .expression import ExpressionNode, PlacedNode, complement, evaluate, operation
 from .leaf import (
     ConstantLeaf,
     ExpressionLeaf,
@@ -45,10 +44,11 @@ from .leaf import (
     Record,
     TreeLeaf,
     bounded_on_one_lattice,
-    shown_tree,
-    tagged,
+    mesh_tree_of,
+    tagged_leaf,
     tree_of,
 )
+from .ledger import count, counted, uncounted
 from .measure import (
     LONGEST_VOLUME,
     exact_volume,
@@ -59,10 +59,10 @@ from .measure import (
     volume_residues,
 )
 from .movable import Movable
+from .point_classification import sides_of
 from .point_set import PointSet
 from .profile import Profile
 from .program import Operator
-from .sides import sides_of
 from .source_attributes import SourceAttributes, inherited, later_attributes
 from .triangles import Triangles, triangles_of
 
@@ -71,7 +71,7 @@ if TYPE_CHECKING:
     import trimesh
 
     from ..bsp import HitLists, Hits, Region
-    from ..modelling.bodies.placing import Anchor
+    from ..modelling.bodies.alignment import Anchor
     from ..modelling.making.edges import EdgeSelection
     from ..modelling.making.faces import FaceSelection
     from ..verify.check import CheckReport
@@ -81,7 +81,7 @@ if TYPE_CHECKING:
 _MAX_FACES_FOR_REPR = 20_000
 
 
-@owning
+@with_own_methods
 class Solid(Movable, PointSet):
     """A closed triangle mesh as a set of points.
 
@@ -166,7 +166,7 @@ class Solid(Movable, PointSet):
     ) -> None:
         rule, chosen = winding_rule(winding), optional_pitch(pitch)
         arrays = interop.mesh_arrays(vertices, faces)
-        given = Given(vertex_attributes, corner_attributes, face_attributes, materials)
+        given = GivenAttributes(vertex_attributes, corner_attributes, face_attributes, materials)
         said = given.over(len(arrays[0]), arrays[1])
         leaf = MeshLeaf(
             *arrays,
@@ -176,9 +176,9 @@ class Solid(Movable, PointSet):
             attributes=said,
         )
         # Raise errors in a mesh here, on the user's line, not in the first query.
-        leaf.grown()
-        leaf.let_go()
-        self._set(ExpressionNode(leaf), UNMOVED)
+        leaf.own_tree()
+        leaf.release_arrays()
+        self._set(ExpressionNode(leaf), IDENTITY_CHAIN)
         count(self)
 
     def _set(self, node: ExpressionNode, factors: FactorChain) -> None:
@@ -189,7 +189,7 @@ class Solid(Movable, PointSet):
         self._reduced: Solid | None = None
 
     @classmethod
-    def _of(cls, node: ExpressionNode, factors: FactorChain = UNMOVED) -> "Solid":
+    def _of(cls, node: ExpressionNode, factors: FactorChain = IDENTITY_CHAIN) -> "Solid":
         solid = cls.__new__(cls)
         solid._set(node, factors)
         return solid
@@ -249,7 +249,7 @@ class Solid(Movable, PointSet):
         if isinstance(mesh, (bytes, bytearray, memoryview)) or hasattr(mesh, "readable"):
             from ..io import loads
 
-            suffix = None if format is None else of_kind(str, format, "format")
+            suffix = None if format is None else instance_of(str, format, "format")
             return loads(mesh, suffix, **options)
         arrays = interop.arrays_from(mesh, positive(tolerance, "tolerance"))
         if interop.are_empty(arrays):
@@ -306,14 +306,14 @@ class Solid(Movable, PointSet):
     @counted
     def __invert__(self) -> "Solid":
         """Complement: all of space outside this solid."""
-        return from_node(*complement(Placed(self._node, self._factors)))
+        return from_node(*complement(PlacedNode(self._node, self._factors)))
 
     # Results
 
     @property
     def tree(self) -> Tree:
         """The solid's partition tree, an object of the compiled core; this evaluates the solid."""
-        return shown_tree(self._leaf())
+        return mesh_tree_of(self._leaf())
 
     def _leaf(self) -> ExpressionLeaf:
         """Evaluate the solid and return its leaf, to which the transform has been applied."""
@@ -469,12 +469,12 @@ class Solid(Movable, PointSet):
     @uncounted
     def equals(self, other: "Solid") -> bool:
         """Return true if both solids are exactly the same set of points, as ``==`` does."""
-        return (self ^ of_kind(Solid, other, "other")).is_empty
+        return (self ^ instance_of(Solid, other, "other")).is_empty
 
     @uncounted
     def isdisjoint(self, other: "Solid") -> bool:
         """Return true if the two solids have no volume in common; they may touch."""
-        return (self & of_kind(Solid, other, "other")).is_empty
+        return (self & instance_of(Solid, other, "other")).is_empty
 
     def intersects(self, other: "Solid") -> bool:
         """Return true if the solids have a point in common; it suffices that their surfaces touch.
@@ -612,7 +612,7 @@ class Solid(Movable, PointSet):
         >>> csg.cube(2).ray_cast((1, 0.5, -1), (0, 0, 1)).t
         array([1., 3.])
         """
-        from ..modelling.bodies.casting import ray_cast
+        from ..modelling.bodies.ray_casting import ray_cast
 
         return ray_cast(self, origin, direction)
 
@@ -813,7 +813,7 @@ class Solid(Movable, PointSet):
         >>> lamp.align(x="center", z=("min", "max"), to=table).bounds[0].tolist()
         [3.0, 0.0, 1.0]
         """
-        from ..modelling.bodies.placing import align
+        from ..modelling.bodies.alignment import align
 
         return align(self, {"x": x, "y": y, "z": z}, to)
 
@@ -857,7 +857,7 @@ class Solid(Movable, PointSet):
         >>> inside.volume, outside.volume
         (1.0, 7.0)
         """
-        from ..modelling.bodies.parts import split
+        from ..modelling.bodies.splitting import split
 
         return split(self, normal, offset)
 
@@ -882,7 +882,7 @@ class Solid(Movable, PointSet):
         >>> csg.cube(2).trim((0, 0, 1), 0.5).bounds[0].tolist()
         [0.0, 0.0, 0.5]
         """
-        from ..modelling.bodies.parts import trim
+        from ..modelling.bodies.splitting import trim
 
         return trim(self, normal, offset)
 
@@ -910,7 +910,7 @@ class Solid(Movable, PointSet):
         >>> [part.volume for part in pair.decompose()]
         [8.0, 1.0]
         """
-        from ..modelling.bodies.parts import decompose
+        from ..modelling.bodies.splitting import decompose
 
         return decompose(self)
 
@@ -1442,7 +1442,7 @@ class Solid(Movable, PointSet):
         [1, 2]
         """
         leaf = self._leaf()
-        told = tagged(leaf, values)
+        told = tagged_leaf(leaf, values)
         return self if told is leaf else from_leaf(told)
 
     # Conversion
@@ -1517,7 +1517,7 @@ class Solid(Movable, PointSet):
         >>> csg.torus(3, 1, segments=4).rotate(90, "x").project().bounds.tolist()
         [[-4.0, -1.0], [4.0, 1.0]]
         """
-        from ..modelling.planar.shadows import shadow
+        from ..modelling.planar.projection import shadow
 
         return shadow(self)
 
@@ -1535,7 +1535,7 @@ class Solid(Movable, PointSet):
             If a trimesh cannot show an attribute: colours of corners, pictures of several
             materials.
         """
-        return leaving.trimesh_of(self.normalized().to_mesh())
+        return library_export.trimesh_of(self.normalized().to_mesh())
 
     def to_manifold(self) -> "manifold3d.Manifold":
         """Return the mesh as a `manifold3d.Manifold`; its ``status()`` says if it was accepted.
@@ -1549,7 +1549,7 @@ class Solid(Movable, PointSet):
         LossWarning
             If an attribute is text, as materials are, or not finite.
         """
-        return leaving.manifold_of(self.normalized().to_mesh())
+        return library_export.manifold_of(self.normalized().to_mesh())
 
     def to_csg(self, *, flat: bool = False) -> str:
         """Return the solid's expression as an OpenSCAD `.csg` script (see `bspcsg.csg.dumps`)."""
@@ -1606,7 +1606,7 @@ class Solid(Movable, PointSet):
         mesh = self._mesh_at_hand()
         if self._placed is None:
             return f"Solid({describe(self._node, self._factors, mesh)})"
-        return f"Solid({describe(ExpressionNode(self._placed), UNMOVED, mesh)})"
+        return f"Solid({describe(ExpressionNode(self._placed), IDENTITY_CHAIN, mesh)})"
 
     def _mesh_at_hand(self) -> Mesh | None:
         """Return the mesh if it is cached, or if it is small and the solid is evaluated."""
@@ -1644,7 +1644,7 @@ class Solid(Movable, PointSet):
         """
         leaf, factors = evaluate(self._node), self._factors
         if leaf.extent is None:
-            leaf, factors = self._leaf(), UNMOVED
+            leaf, factors = self._leaf(), IDENTITY_CHAIN
         tree = tree_of(leaf)
         told = (_kept(tree, leaf.source_attributes), leaf.given_pitch)
         needed = 2 if leaf.given_pitch is not None else 1 if leaf.source_attributes else 0
@@ -1670,12 +1670,12 @@ class LastOperation:
     result: Solid
 
 
-def from_node(node: ExpressionNode, factors: FactorChain = UNMOVED) -> Solid:
+def from_node(node: ExpressionNode, factors: FactorChain = IDENTITY_CHAIN) -> Solid:
     """Return the solid of an expression under a transform."""
     return Solid._of(node, factors)
 
 
-def passing_mesh(solid: Solid) -> Mesh:
+def uncached_mesh(solid: Solid) -> Mesh:
     """Return the mesh of a solid, without making the solid cache it."""
     return solid._made_mesh() if solid._mesh is None else solid._mesh
 
@@ -1719,9 +1719,9 @@ def from_leaf(leaf: ExpressionLeaf) -> Solid:
     return Solid._of(ExpressionNode(leaf))
 
 
-def expression_of(solid: Solid) -> Placed:
+def expression_of(solid: Solid) -> PlacedNode:
     """Return the node of a solid's expression, and the transform that is applied to it."""
-    return Placed(solid._node, solid._factors)
+    return PlacedNode(solid._node, solid._factors)
 
 
 def surfaces_meet(first: Solid, second: Solid) -> bool:
@@ -1750,7 +1750,7 @@ def with_record(last: LastOperation, factors: FactorChain) -> Solid:
 def combine(operator: Operator, solids: Sequence[Solid]) -> Solid:
     """Combine solids by an operator, lazily; a transform common to all applies to the result."""
     prefix = common_prefix([solid._factors for solid in solids])
-    operands = [Placed(solid._node, solid._factors.without(len(prefix))) for solid in solids]
+    operands = [PlacedNode(solid._node, solid._factors.without(len(prefix))) for solid in solids]
     return from_node(operation(operator, operands), prefix)
 
 

@@ -7,8 +7,8 @@ from typing import TypeAlias
 import numpy as np
 
 from .._core import Tree
-from ..attributes.attributes import Attributes, Given, Later, array_of
-from ..attributes.carrying import SourceArrays, Surface, carried, patches_of
+from ..attributes.attributes import Attributes, GivenAttributes, Later, array_of
+from ..attributes.transfer import SourceArrays, Surface, inherited_attributes, patches_of
 from ..errors import core_errors
 from ..geometry import transform
 
@@ -16,7 +16,7 @@ from ..geometry import transform
 SourceAttributes: TypeAlias = tuple[Attributes | None, ...]
 
 
-def patched(tree: Tree, source_attributes: SourceAttributes) -> Tree:
+def with_patches(tree: Tree, source_attributes: SourceAttributes) -> Tree:
     """Return a tree whose mesh joins only faces with the same attributes."""
     return tree.patched(patches_of(source_attributes)) if source_attributes else tree
 
@@ -25,7 +25,7 @@ def attributes_of(tree: Tree, source_attributes: SourceAttributes) -> Attributes
     """Return the attributes of a tree's mesh."""
     with core_errors():
         surface = Surface(*tree.to_mesh(), tree.origins(), tree.flips())
-    return carried(surface, source_attributes, tree.source_arrays)
+    return inherited_attributes(surface, source_attributes, tree.source_arrays)
 
 
 def later_attributes(tree: Tree, source_attributes: SourceAttributes) -> Later | None:
@@ -39,13 +39,13 @@ def inherited(result: Tree, operands: Sequence[tuple[Tree, SourceAttributes]]) -
         return ()
     # An empty or full operand may have lost its sources when its lattice was changed.
     known = {
-        identity: said
+        identity: attributes
         for tree, source_attributes in operands
         if source_attributes and tree.sources
-        for identity, said in zip(tree.sources, source_attributes, strict=True)
+        for identity, attributes in zip(tree.sources, source_attributes, strict=True)
     }
     found = tuple(known.get(identity) for identity in result.sources)
-    return found if any(said is not None for said in found) else ()
+    return found if any(attributes is not None for attributes in found) else ()
 
 
 def all_tagged(
@@ -64,13 +64,15 @@ def _tagged(
     """Return a source's attributes after all its faces are given the same values, by name."""
     count = int(arrays[3].max(initial=-1)) + 1
     faces = np.zeros((count, 3), dtype=np.int64) if old is None else old.faces
-    said = Attributes(faces) if old is None else old.without(values)
+    attributes = Attributes(faces) if old is None else old.without(values)
     given = {name: array_of(value, name) for name, value in values.items()}
     face = {
         name: np.broadcast_to(value, (len(faces), *value.shape)) for name, value in given.items()
     }
-    more = Given(face=face).over(0, faces)
-    return said if more is None else replace(said, face={**said.face, **more.face})
+    more = GivenAttributes(face=face).over(0, faces)
+    return (
+        attributes if more is None else replace(attributes, face={**attributes.face, **more.face})
+    )
 
 
 def after_motion(
@@ -81,8 +83,13 @@ def after_motion(
         return ()
     linear = motion.linear
     mirrored = np.linalg.det(linear) < 0
-    turned = [None if said is None else said.turned(linear) for said in source_attributes]
+    turned = [
+        None if attributes is None else attributes.turned(linear)
+        for attributes in source_attributes
+    ]
     if not mirrored:
         return tuple(turned)
     # The core exchanges the last two corners of every face that is mirrored.
-    return tuple(None if said is None else said.reordered([0, 2, 1]) for said in turned)
+    return tuple(
+        None if attributes is None else attributes.reordered([0, 2, 1]) for attributes in turned
+    )

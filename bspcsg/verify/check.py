@@ -31,25 +31,25 @@ from ..errors import BspcsgError, InternalError, invalid_parameter
 from ..mesh.mesh import Mesh
 from ..mesh.pieces import MeshPieces
 from ..operations.setops import OPERATIONS
-from ..parameters import of_kind
+from ..parameters import instance_of
 from ..shapes.primitives import box as box_of
-from ..solid.counting import uncounted
+from ..solid.ledger import uncounted
 from ..solid.program import name_of, program_of
-from ..solid.solid import Solid, passing_mesh
+from ..solid.solid import Solid, uncached_mesh
 from . import oracle
 from .discrepancy import SetDifference, difference_of
-from .likeness import SUMMING, areas_differ, measures_differ, sides_differ, volume_of_film
 from .oracle import Answer
+from .quick_comparison import SUM_ERROR, areas_differ, measures_differ, sides_differ, volume_of_film
 from .referee import Ruling, settle
 from .verdict import CheckReport, Facts, Verdict
 
 __all__ = [
     "CheckReport",
-    "Examination",
     "Facts",
+    "ReportWithMeshes",
     "Verdict",
     "check_result",
-    "examine",
+    "report_with_meshes",
     "same_set_bound",
     "validate",
 ]
@@ -85,7 +85,7 @@ def validate(op: SetOp, *operands: Solid) -> CheckReport:
     """
     program_of(op, len(operands))
     for operand in operands:
-        of_kind(Solid, operand, "An operand")
+        instance_of(Solid, operand, "An operand")
     return check_result(OPERATIONS[op](*operands), op, operands)
 
 
@@ -116,11 +116,11 @@ def check_result(
     UnboundedError
         If the result reaches to infinity.
     """
-    return examine(result, op, operands, depth).report
+    return report_with_meshes(result, op, operands, depth).report
 
 
 @dataclass(frozen=True, eq=False)
-class Examination:
+class ReportWithMeshes:
     """The report of a check, with the meshes that it is based on.
 
     Parameters
@@ -149,12 +149,12 @@ class Examination:
         return _meshes_of(self.came)
 
 
-def examine(
+def report_with_meshes(
     result: Solid,
     op: SetOp | None = None,
     operands: Sequence[Solid] | None = None,
     depth: Depth = "full",
-) -> Examination:
+) -> ReportWithMeshes:
     """Compare a result as `check_result` does, and return the report with the meshes."""
     if op is not None and operands is not None:
         return _Check(op, program_of(op, len(operands)), list(operands), result, depth).run()
@@ -197,10 +197,10 @@ class _Check:
     theirs: Mesh | None = None
     difference: Mesh | None = None
 
-    def run(self) -> Examination:
+    def run(self) -> ReportWithMeshes:
         mesh = self.result.normalized().to_mesh()
         report = self._judged(mesh)
-        return Examination(report, self.program, self.came, mesh, self.theirs, self.difference)
+        return ReportWithMeshes(report, self.program, self.came, mesh, self.theirs, self.difference)
 
     def _judged(self, mesh: Mesh) -> CheckReport:
         ours = Facts.of(mesh)
@@ -224,7 +224,7 @@ class _Check:
         # A generator, so that each mesh is freed once manifold3d has its own copy.
         given = (self._reduced(n, solid) for n, solid in enumerate(self.came, 1))
         try:
-            return oracle.ask(self.program, given, inside)
+            return oracle.manifold_result(self.program, given, inside)
         except oracle.OracleRefusedError:
             deque(given, maxlen=0)
             raise
@@ -237,7 +237,7 @@ class _Check:
         if status != "NoError":
             return f"manifold3d does not accept the result: its status is {status}"
         gap = abs(ours.volume - self.set_volume)
-        if gap > self._film(mesh) * ours.area + SUMMING * abs(ours.volume):
+        if gap > self._film(mesh) * ours.area + SUM_ERROR * abs(ours.volume):
             return (
                 "the volume of the resulting mesh differs from the exact volume of the set by"
                 f" {gap:.3g}"
@@ -273,9 +273,9 @@ class _Check:
 
     def _reduced(self, number: int, solid: Solid) -> Mesh:
         """Return the reduced boundary of an operand; add a note if it differs from the operand."""
-        reduced = passing_mesh(solid.normalized())
+        reduced = uncached_mesh(solid.normalized())
         if solid.normalized() is not solid:
-            faces = passing_mesh(solid).faces
+            faces = uncached_mesh(solid).faces
             if not np.array_equal(faces, reduced.faces):
                 self.notes.append(
                     f"operand {number} overlaps itself, so manifold3d was given its reduced"
@@ -305,7 +305,7 @@ class _Check:
             reason = f"the meshes could not be compared: {error.message}"
             return self._report(Verdict.ORACLE_FAILED, reason, ours, theirs)
         self.difference = None if pieces is None else pieces.mesh
-        verdict, reason = _judged(ours, theirs, found, same, rounding, mesh)
+        verdict, reason = _verdict_on(ours, theirs, found, same, rounding, mesh)
         if (
             verdict is Verdict.DISAGREE
             and pieces is not None
@@ -347,7 +347,7 @@ class _Check:
             self.set_volume,
             found,
             *bounds,
-            oracle.name(),
+            oracle.versioned_name(),
             tuple(self.notes),
             probes,
         )
@@ -357,7 +357,7 @@ def _meshes_of(solids: Sequence[Solid]) -> list[Mesh]:
     return [solid.to_mesh() for solid in solids]
 
 
-def _judged(
+def _verdict_on(
     ours: Facts,
     theirs: Facts,
     found: SetDifference,

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from .._types import FloatArray
-from ..mesh.box_tree import BoxPairs, BoxTree, Nearness, squared_gaps
+from ..mesh.box_tree import BoxPairs, BoxTree, NearPairSearch, squared_gaps
 from ..mesh.distance import distances_to_triangles
 from ..mesh.mesh import Mesh
-from ..solid.counting import uncounted
+from ..solid.ledger import uncounted
 from ..solid.solid import Solid
-from .discrepancy import SetDifference, measured
+from .discrepancy import SetDifference, measured_difference
 from .verdict import Facts
 
 #: A bound of the rounding of distances, as a fraction of the largest coordinate.
@@ -87,7 +87,7 @@ def compare(a: Solid, b: Solid, samples: int = 10_000, seed: int = 0) -> SetComp
     if difference.is_empty:
         return SetComparison(*facts, True, SetDifference(0.0), 0.0)
     mesh = difference.to_mesh()
-    found, _ = measured(difference.volume, mesh)
+    found, _ = measured_difference(difference.volume, mesh)
     if samples == 0 or any(len(one.faces) == 0 for one in (*meshes, mesh)):
         return SetComparison(*facts, False, found)
     *ways, count = hausdorff(*meshes, mesh, samples, seed)
@@ -162,7 +162,7 @@ class _Surface:
         each = np.repeat(np.arange(len(points)), near.shape[1])
         # The distances to triangles in nearby leaves bound the search for the nearest triangle.
         self._lower(found, points, np.column_stack([each, near.ravel()]))
-        search = Nearness(BoxTree.of_points(points), self._tree, self._limit(found))
+        search = NearPairSearch(BoxTree.of_points(points), self._tree, self._limit(found))
         for pairs in search.leaves():
             self._lower(found, points, pairs)
             search.limit = self._limit(found)

@@ -66,10 +66,10 @@ def difference_of(
     difference = _where_windings_differ(a, b, pitch)
     if difference.is_empty:
         return SetDifference(0.0), None
-    return measured(difference.volume, difference.normalized().to_mesh(), film)
+    return measured_difference(difference.volume, difference.normalized().to_mesh(), film)
 
 
-def measured(
+def measured_difference(
     volume: float, mesh: Mesh, film: float = 0.0
 ) -> tuple[SetDifference, MeshPieces | None]:
     """Return the `SetDifference` of a volume with this boundary mesh, and the pieces or None."""

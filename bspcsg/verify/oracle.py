@@ -46,7 +46,7 @@ class Answer:
     tolerance: float
 
 
-def name() -> str:
+def versioned_name() -> str:
     """Return the text "manifold3d" with its version."""
     return f"manifold3d {_version()}"
 
@@ -69,7 +69,7 @@ def status_of(mesh: Mesh) -> str:
     return "NoError" if len(mesh.faces) == 0 else str(interop.to_manifold(mesh).status().name)
 
 
-def ask(
+def manifold_result(
     program: Sequence[ProgramLine], operands: Iterable[Mesh], inside: Mesh | None = None
 ) -> Answer:
     """Return manifold3d's result of a program of set operations.

@@ -84,10 +84,10 @@ def _settled_piece(
 
 def is_inside(mesh: Mesh, point: Point) -> bool | None:
     """Return whether a point's winding number is positive; None if each axis ray grazes an edge."""
-    return Columns(mesh).is_inside(point)
+    return RayClassifier(mesh).is_inside(point)
 
 
-class Columns:
+class RayClassifier:
     """A mesh prepared to classify many points by rays along the axes.
 
     Parameters

@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 
 from .._types import FloatArray
-from ..attributes.colours import are_same_in_bytes, is_color
+from ..attributes.colours import are_equal_in_bytes, is_color
 from ..errors import BspcsgError
 from ..formats.raw import RawMesh
 from ..mesh.mesh import Mesh
 from ..mesh.weld import welded
-from ..solid.counting import uncounted
+from ..solid.ledger import uncounted
 from ..solid.solid import Solid
 
 #: The largest number of names in a message.
@@ -130,7 +130,7 @@ def _changed_attributes(before: RawMesh, after: RawMesh) -> tuple[str, ...]:
             continue
         meant, told = before.attributes.at_corners(name), said.at_corners(name)
         if is_color(name, meant, 2) and is_color(name, told, 2):
-            if not are_same_in_bytes(meant, told):
+            if not are_equal_in_bytes(meant, told):
                 found.append(name)
             continue
         is_float = meant.dtype.kind == "f" and told.dtype.kind == "f"

@@ -250,7 +250,7 @@ class _Trial:
             return
         meshes = [operand.normalized().to_mesh() for operand in record.operands]
         try:
-            theirs = oracle.ask(record.program, meshes).mesh
+            theirs = oracle.manifold_result(record.program, meshes).mesh
         except (oracle.OracleFailedError, oracle.OracleRefusedError):
             return
         ours = float(self.kernel.volume(self.result))

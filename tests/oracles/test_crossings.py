@@ -16,7 +16,7 @@ import trimesh
 import bspcsg as b
 from bspcsg._core import mesh_faults, mesh_in_single, mesh_moved
 from bspcsg._types import FloatArray
-from bspcsg.formats.single import _rounded, settled
+from bspcsg.formats.single_precision import _rounded, in_single_precision
 from bspcsg.geometry.transform import apply, rotation
 from bspcsg.mesh.weld import welded
 from support import DEEP, drawn
@@ -551,7 +551,7 @@ def test_meshes_in_single_precision_do_not_cross(
 
 def crossings_are_told(mesh: "b.Mesh") -> bool:
     """Return true if findings have the number of triangles that cross in single precision."""
-    result, findings = settled(mesh)
+    result, findings = in_single_precision(mesh)
     rounded = result.vertices.astype(np.float32).astype(np.float64)
     found = mesh_faults(rounded, result.faces)
     count = len({*found["flat"].tolist(), *found["crossings"].ravel().tolist()})
@@ -582,7 +582,7 @@ IN_EDGES = [3953, 7910, 8279, 9895]
 @pytest.mark.parametrize("seed", IN_EDGES)
 def test_surfaces_that_cross_in_edges_are_united(seed: int) -> None:
     mesh = scene(seed).normalized().to_mesh()
-    assert [finding.code for finding in settled(mesh)[1]] == ["mended_in_single"]
+    assert [finding.code for finding in in_single_precision(mesh)[1]] == ["mended_in_single"]
     assert crossings_are_told(mesh)
 
 
@@ -594,7 +594,7 @@ def test_what_is_thinner_than_single_precision_keeps_a_volume(
         if len(mesh_in_single(mesh.vertices, mesh.faces)["triangles"]):
             continue
         vanishing += 1
-        result, (finding,) = settled(mesh)
+        result, (finding,) = in_single_precision(mesh)
         assert (finding.code, finding.count) == ("thickened_in_single", len(result.faces)), seed
         assert (result.vertices == result.vertices.astype(np.float32)).all()
         assert_closed(result.faces)
@@ -666,7 +666,7 @@ def test_placements_of_a_turned_part_look_once(monkeypatch: pytest.MonkeyPatch) 
         looks.append(len(faces))
         return mesh_moved(before, vertices, faces, pitch)
 
-    monkeypatch.setattr("bspcsg.solid.moving.mesh_moved", look)
+    monkeypatch.setattr("bspcsg.solid.mesh_transform.mesh_moved", look)
     turned = b.box((1, 2, 3)).rotate(33, (1, 2, 3))
     copies = [turned.translate(10 * k, 0.5, 0).to_mesh() for k in range(1000)]
     assert looks == [12] and all(mesh.certificate.ok for mesh in copies)
@@ -750,7 +750,7 @@ def test_what_single_precision_leaves_is_numbered_anew(
 
 def is_mended_by_uniting(mesh: "b.Mesh", reach: float) -> bool:
     """Return true if a mesh settles in single precision; assert what must be true anyway."""
-    delivered, findings = settled(mesh)
+    delivered, findings = in_single_precision(mesh)
     assert (delivered.vertices == delivered.vertices.astype(np.float32)).all()
     assert_closed(delivered.faces)
     assert "mended_in_single" in {finding.code for finding in findings}

@@ -256,7 +256,10 @@ def test_checks_notice_another_set(op: Any) -> None:
 def test_the_rival_gives_an_answer_of_its_own() -> None:
     meshes = [b.cube(2).to_mesh(), b.cube(2).translate(1, 1, 1).to_mesh()]
     leaves: list[Any] = [("leaf", [0]), ("leaf", [1])]
-    asked = {op: oracle.ask([*leaves, (op, [0, 1])], meshes).mesh for op in ("or", "and", "xor")}
+    asked = {
+        op: oracle.manifold_result([*leaves, (op, [0, 1])], meshes).mesh
+        for op in ("or", "and", "xor")
+    }
     assert {op: mesh.volume for op, mesh in asked.items()} == {"or": 15, "and": 1, "xor": 14}
 
 
@@ -295,13 +298,13 @@ def test_the_judge_hears_a_rival_unless_that_is_wrong_itself(monkeypatch: Patch)
     scene = Scene((Body((low,)), Body((high,))), ("|", 0, 1), ())
     heard = [word for word in judge(scene, Larger()) if word.startswith("rival")]
     assert heard == ["rival: manifold3d has the volume 15.0, not 16.0"]
-    right = oracle.ask
+    right = oracle.manifold_result
 
     def wrong(*given: Any) -> oracle.Answer:
         answer = right(*given)
         return replace(answer, mesh=replace(answer.mesh, vertices=answer.mesh.vertices * 1.5))
 
-    monkeypatch.setattr(oracle, "ask", wrong)
+    monkeypatch.setattr(oracle, "manifold_result", wrong)
     assert judge(scene) == []
     assert any(word.startswith("rival") for word in judge(scene, Larger()))
 

@@ -119,7 +119,7 @@ def test_repairs_that_close_nothing(
 ) -> None:
     from bspcsg.repair.repair import Repair
 
-    monkeypatch.setattr("bspcsg.assembly.mending.repair", lambda raw: Repair(raw, {}, 0))
+    monkeypatch.setattr("bspcsg.assembly.object_repair.repair", lambda raw: Repair(raw, {}, 0))
     code, _, err = ran(capsys, "union", "a.off", "open.off", "-o", "x", "--to", "off",
                        "--on-invalid", "repair")  # fmt: skip
     assert (

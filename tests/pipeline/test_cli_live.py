@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import bspcsg as b
-from bspcsg.cli.pages.live import LiveServer, Site, stamp
+from bspcsg.cli.pages.live_server import LiveServer, Site, change_stamp
 from support.cli import Capture, process, put, ran
 from support.shapes import cuboid
 
@@ -179,14 +179,14 @@ def test_a_result_is_shown_without_a_file(folder: Path) -> None:
 
 def test_the_stamp_sees_every_change(tmp_path: Path) -> None:
     inside = tmp_path / "a.txt"
-    seen = [stamp([tmp_path])]
+    seen = [change_stamp([tmp_path])]
     inside.write_text("1")
-    seen.append(stamp([tmp_path]))
+    seen.append(change_stamp([tmp_path]))
     os.utime(inside, ns=(1, 1))
-    seen.append(stamp([tmp_path]))
+    seen.append(change_stamp([tmp_path]))
     inside.unlink()
-    assert len({*seen}) == 3 and stamp([tmp_path]) == seen[0]
-    assert stamp([inside]) == stamp([inside])
+    assert len({*seen}) == 3 and change_stamp([tmp_path]) == seen[0]
+    assert change_stamp([inside]) == change_stamp([inside])
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ import pytest
 
 import bspcsg as b
 from bspcsg.io import RawMesh, write
-from bspcsg.repair.marks import marks_of
+from bspcsg.repair.defective_elements import defective_elements_of
 from support.browser import Browser
 from support.cli import Capture, put, ran
 from support.shapes import cube, cuboid, joined
@@ -83,7 +83,7 @@ def test_crossings_are_marked(folder: Path, capsys: Capture) -> None:
     both = np.concatenate([one[0], other[0]]), np.concatenate([one[1], other[1] + len(one[0])])
     put("both.off", both)
     ran(capsys, "check", "both.off", "--html", "x.html")
-    marks = marks_of(RawMesh(*both))
+    marks = defective_elements_of(RawMesh(*both))
     assert layers("x.html")["crossing triangles"] == len(np.unique(marks.crossings)) > 0
     assert names("x.html")[0].startswith("crossing 1: triangles ")
 
@@ -91,12 +91,12 @@ def test_crossings_are_marked(folder: Path, capsys: Capture) -> None:
 def test_other_faults_are_marked(folder: Path) -> None:
     vertices, faces = cube()
     turned = np.concatenate([faces[:-1], faces[-1:, ::-1]])
-    assert len(marks_of(RawMesh(vertices, turned)).turned) == 3
+    assert len(defective_elements_of(RawMesh(vertices, turned)).turned) == 3
     fin = np.vstack([faces, [[*faces[0][:2], len(vertices)]]])
-    marks = marks_of(RawMesh(np.vstack([vertices, [[5.0, 5, 5]]]), fin))
+    marks = defective_elements_of(RawMesh(np.vstack([vertices, [[5.0, 5, 5]]]), fin))
     assert len(marks.crowded) == 1 and len(marks.open) == 2 and len(set(marks.holes.tolist())) == 1
     flat = np.vstack([faces, [[0, 0, 1]], faces[:1]])
-    marks = marks_of(RawMesh(vertices, flat))
+    marks = defective_elements_of(RawMesh(vertices, flat))
     assert marks.flat.tolist() == [12] and marks.repeated.tolist() == [13]
 
 

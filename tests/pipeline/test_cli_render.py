@@ -265,6 +265,6 @@ def test_very_many_triangles_are_drawn_by_a_buffer(
     folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("bspcsg.bsp.painting.picture._MAX_TRIANGLES_ORDERED", 0)
-    monkeypatch.setattr("bspcsg.bsp.painting.picture.painted", None)
+    monkeypatch.setattr("bspcsg.bsp.painting.picture.painting_of", None)
     code, out, _ = ran(capsys, "render", "a.off", "c.stl", "-o", "x.png", "--view", "top")
     assert code == 0 and "24 polygons" in out and Path("x.png").stat().st_size > 500

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 import bspcsg as b
-from bspcsg.cli.console import standard
+from bspcsg.cli.console import standard_streams
 from support.cli import Capture, Piped, finished, process, put, ran
 from support.results import disagreeing, header, write_results
 from support.shapes import icosphere, moved
@@ -348,7 +348,7 @@ def test_systems_that_take_a_part_at_a_time() -> None:
             return min(len(data), 7)
 
     data = bytes(range(256)) * 10
-    whole = standard._CompleteWriter(Sparing(), None, standard._refuse)
+    whole = standard_streams._CompleteWriter(Sparing(), None, standard_streams._refuse)
     assert whole.write(data) == len(data) and bytes(taken) == data
 
 

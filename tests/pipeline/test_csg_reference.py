@@ -110,6 +110,6 @@ def test_every_module_of_the_page_has_its_scripts() -> None:
 
 def test_drawings_of_openscad_are_read() -> None:
     text = '<svg><path d="\nM 0,-0 L 4,-0 L 4,-4\n L 0,-4 z\nM 1,-1 L 1,-2 L 2,-2 z\n"/></svg>'
-    region = openscad_suite.drawn(text)
+    region = openscad_suite.region_of_svg(text)
     assert region.area == 16 - 0.5 and region.bounds is not None
     assert region.bounds.tolist() == [[0, 0], [4, 4]]

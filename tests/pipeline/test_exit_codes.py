@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 import bspcsg as b
-from bspcsg.cli.console import standard
+from bspcsg.cli.console import standard_streams
 from bspcsg.cli.main import _VERBS, run
 from bspcsg.errors import missing_part
 from bspcsg.operations.setops import OPERATIONS
@@ -389,8 +389,10 @@ def test_code_5_when_standard_output_is_full(
             raise OSError(number, "no more")
 
     with monkeypatch.context() as place_of_output:
-        place_of_output.setattr("bspcsg.cli.console.standard.discard", lambda *_: None)
-        raw = standard._CompleteWriter(Full(), None, standard._refuse)
+        place_of_output.setattr(
+            "bspcsg.cli.console.standard_streams.redirect_to_null", lambda *_: None
+        )
+        raw = standard_streams._CompleteWriter(Full(), None, standard_streams._refuse)
         place_of_output.setattr(sys, "stdout", io.TextIOWrapper(io.BufferedWriter(raw)))
         assert run(["info", "a.off"]) == 5
         raw.write = len  # type: ignore[method-assign]

@@ -120,7 +120,7 @@ def test_interrupts_are_quiet_at_any_moment(tmp_path: Path, delay: float) -> Non
 
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize("program", ["/usr/bin/bspcsg", "bspcsg.exe", "-m", "other.py"])
-@pytest.mark.parametrize("name", ["bspcsg._core", "bspcsg.meant", "nothing"])
+@pytest.mark.parametrize("name", ["bspcsg._core", "bspcsg.suggestions", "nothing"])
 def test_interrupts_are_quiet_while_the_package_is_imported(program: str, name: str) -> None:
     """As long as it is imported for the command line; other programs are told."""
     done = subprocess.run(

@@ -10,10 +10,10 @@ from selenium.webdriver.common.keys import Keys
 
 import bspcsg as b
 from bspcsg.cli.main import run
+from bspcsg.report.campaign_page import report_page
 from bspcsg.report.merging import merged
-from bspcsg.report.page import report_page
 from bspcsg.report.viewer.layer import COLOURS, Layer
-from bspcsg.report.viewer.view import view_page
+from bspcsg.report.viewer.view_page import view_page
 from support.browser import Browser, started
 from support.cli import put
 from support.results import records, write_results

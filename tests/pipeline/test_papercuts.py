@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import bspcsg as b
-from bspcsg.cli.console import status
+from bspcsg.cli.console import status_line
 from bspcsg.cli.console.tables import table_text
 from support.cli import Capture, Piped, finished, process, put, ran
 from support.shapes import cuboid, icosphere
@@ -372,14 +372,14 @@ def test_long_work_says_for_how_long_at_a_terminal(folder: Path) -> None:
 
 
 def test_nothing_is_under_way_in_pipes(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(status, "_LINE_DELAY", 0.0)
-    with status.watched("work", quiet=False):
-        assert status._line is None
+    monkeypatch.setattr(status_line, "_LINE_DELAY", 0.0)
+    with status_line.displayed("work", quiet=False):
+        assert status_line._line is None
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     for name, quiet in (("dumb", False), ("xterm", True)):
         monkeypatch.setenv("TERM", name)
-        with status.watched("work", quiet):
-            assert status._line is None
+        with status_line.displayed("work", quiet):
+            assert status_line._line is None
 
 
 # Found: control sequences in names of files reached the terminal.

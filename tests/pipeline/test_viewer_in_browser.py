@@ -14,9 +14,14 @@ import bspcsg as b
 from bspcsg.io import read
 from bspcsg.report.viewer.landmark import Landmark
 from bspcsg.report.viewer.layer import Layer
+from bspcsg.report.viewer.layer_making import (
+    layers_of_file,
+    layers_of_solid,
+    with_distinct_colours,
+    with_thickness,
+)
 from bspcsg.report.viewer.paint import Labels
-from bspcsg.report.viewer.parts import layers_of_file, layers_of_solid, told_apart, with_thickness
-from bspcsg.report.viewer.view import view_page
+from bspcsg.report.viewer.view_page import view_page
 from support.browser import Browser
 from support.shapes import icosphere
 
@@ -29,7 +34,7 @@ def part(tmp_path_factory: pytest.TempPathFactory) -> Path:
     plate = b.box((8, 6, 2)) - b.cylinder(h=4, r=1, segments=32).translate(4, 3, -1)
     ball = b.sphere(r=1, segments=16).translate(12, 3, 1)
     layers = [*layers_of_solid(plate, "plate"), *layers_of_solid(ball, "ball")]
-    layers = [with_thickness(layer) for layer in told_apart(layers)]
+    layers = [with_thickness(layer) for layer in with_distinct_colours(layers)]
     place = Landmark("the hole", np.array([4.0, 3.0, 2.0]), 1.0)
     page = tmp_path_factory.mktemp("view") / "part.html"
     text = view_page(layers, "plate & ball", unit="mm", landmarks=[place])

@@ -129,7 +129,7 @@ def _share(mesh: "b.Mesh", path: Path, text: bool, turns: int) -> float:
     return median(shares)
 
 
-class _Watched(atomic._Growing):
+class _Watched(atomic._LazyFile):
     """A file that is written while it is read back, with the time spent on writing."""
 
     writing = 0.0

@@ -23,7 +23,7 @@ import numpy as np
 
 import bspcsg as b
 from bspcsg import bsp
-from bspcsg.machine import held_mb
+from bspcsg.machine import memory_mb
 
 Corner: TypeAlias = tuple[float, ...]
 
@@ -349,9 +349,9 @@ def memory(count: int = 100_000) -> None:
             assert small_job(k).volume > 0
 
     operations(0, 2000)
-    before = held_mb()
+    before = memory_mb()
     operations(2000, count)
-    sys.stdout.write(f"{held_mb() - before}\n")
+    sys.stdout.write(f"{memory_mb() - before}\n")
 
 
 def stack(count: int = 300) -> None:

@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 import bspcsg as b
-from bspcsg.attributes.colours import are_same_in_bytes, is_color
+from bspcsg.attributes.colours import are_equal_in_bytes, is_color
 
 RNG = np.random.default_rng(4)
 VERTICES, FACES = b.cube(1).to_mesh()
@@ -108,7 +108,7 @@ def is_equal(before: b.Mesh, after: b.Mesh, name: str) -> bool:
         return False
     one, other = rows(before, name), rows(after, name)
     if is_color(name, one, 1) and is_color(name, other, 1):
-        return are_same_in_bytes(one, other)
+        return are_equal_in_bytes(one, other)
     if one.shape != other.shape or (one.dtype.kind == "U") != (other.dtype.kind == "U"):
         return False
     if one.dtype.kind == "U":

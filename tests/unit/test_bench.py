@@ -13,11 +13,20 @@ import trimesh
 
 import bspcsg as b
 from bspcsg._types import MeshArrays
-from bspcsg.bench import dense, engines, meter, program, real, runner, shapes, table
+from bspcsg.bench import (
+    command_line,
+    dense_meshes,
+    engines,
+    meter,
+    public_meshes,
+    runner,
+    shapes,
+    table,
+)
 from bspcsg.bench.cases import CASES, SHORT
-from bspcsg.bench.cliffs import CLIFFS
-from bspcsg.bench.facts import facts_of, mesh_volume
-from bspcsg.bench.runner import judged
+from bspcsg.bench.dense_cases import DENSE_CASES
+from bspcsg.bench.result_facts import facts_of, mesh_volume
+from bspcsg.bench.runner import with_volumes_compared
 from bspcsg.bench.targets import (
     DoublingTarget,
     Faster,
@@ -29,8 +38,8 @@ from bspcsg.bench.targets import (
     Within,
     WorkWithin,
 )
-from bspcsg.bench.work import Expression, OneMesh, OverlappingPair, Pair, PairAsBalls, Work
 from bspcsg.bench.worker import Task, perform
+from bspcsg.bench.workloads import Expression, OneMesh, OverlappingPair, Pair, PairAsBalls, Work
 from bspcsg.machine import machine
 from support.shapes import exact_volume
 
@@ -53,9 +62,9 @@ def test_all_shapes_are_closed() -> None:
         assert facts.volume > 0
 
 
-@pytest.mark.parametrize("name", CLIFFS)
+@pytest.mark.parametrize("name", DENSE_CASES)
 def test_operands_of_dense_places_are_closed_and_twice_as_many(name: str, tmp_path: Path) -> None:
-    less, more = (make(tmp_path) for make in CLIFFS[name].small.values())
+    less, more = (make(tmp_path) for make in DENSE_CASES[name].small.values())
     for work in (less, more):
         for mesh in _operands(work):
             facts = facts_of(mesh)
@@ -76,7 +85,7 @@ def _operands(work: Work) -> list[MeshArrays]:
 
 
 def test_needles_of_a_bundle_are_apart() -> None:
-    bundle, _ = dense.bundles(20)
+    bundle, _ = dense_meshes.bundles(20)
     lows = bundle[0].reshape(20, 4, 3).min(axis=1)
     highs = bundle[0].reshape(20, 4, 3).max(axis=1)
     for i in range(20):
@@ -108,7 +117,7 @@ def test_the_error_of_a_volume_is_bounded() -> None:
 
 
 def test_tools_of_the_swept_chain_are_turned_right_side_out(shared_meshes: Path) -> None:
-    base, tools = real.swept_capsules(shared_meshes.parent)
+    base, tools = public_meshes.swept_capsules(shared_meshes.parent)
     assert mesh_volume(base).value == pytest.approx(1)
     assert len(tools) == 100
     assert all(mesh_volume(tool).value > 0 for tool in tools)
@@ -127,7 +136,9 @@ def _result(seconds: float, volume: float = 1.0, **more: Any) -> dict[str, Any]:
 
 def _item(ours: float, theirs: float, volume: float = 1.0, **more: Any) -> dict[str, Any]:
     engines = {"bspcsg": _result(ours), "manifold3d": _result(theirs, volume)}
-    return judged({"item": "x", "area": 6.0, "size": 1.0, "engines": engines, **more})
+    return with_volumes_compared(
+        {"item": "x", "area": 6.0, "size": 1.0, "engines": engines, **more}
+    )
 
 
 def test_ratios_count_only_if_answers_agree() -> None:
@@ -219,7 +230,7 @@ def test_huge_spheres_are_compared_with_balls() -> None:
 
 
 def test_sets_that_overlap_themselves_are_checked_at_points() -> None:
-    first = shapes.joined(dense.turned_cubes(3))
+    first = shapes.joined(dense_meshes.turned_cubes(3))
     work = OverlappingPair(first, shapes.box((0, 0, 0), (1, 1, 1)), samples=30)
     vertices, faces = b.difference(b.Solid(*first), b.Solid(*work.second)).to_mesh()
     assert work.proof((vertices, faces)).agrees
@@ -228,10 +239,10 @@ def test_sets_that_overlap_themselves_are_checked_at_points() -> None:
 
 def test_overlapping_pairs_overlap_and_others_do_not(shared_meshes: Path) -> None:
     data = shared_meshes.parent
-    names = real.solid_names(data, real.SMALL)
-    overlapping = real.solid_names(data, real.SMALL, overlapping=True)
+    names = public_meshes.solid_names(data, public_meshes.SMALL)
+    overlapping = public_meshes.solid_names(data, public_meshes.SMALL, overlapping=True)
     assert len(names) > 50 and len(overlapping) >= 20 and not {*names} & {*overlapping}
-    first, second = real.overlapping_pair(data, 3)
+    first, second = public_meshes.overlapping_pair(data, 3)
     assert facts_of(first).open_edges == facts_of(second).open_edges == 0
     assert np.linalg.norm(np.ptp(first[0], axis=0)) <= 2 * 3**0.5
 
@@ -241,7 +252,7 @@ def test_the_command_line_is_metered_in_a_process_of_its_own(
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     work = CASES["files-unchecked"].small["2 × 5 120"](Path())
-    assert isinstance(work, program.CommandLine)
+    assert isinstance(work, command_line.CommandLine)
     ours = engines.ENGINES["bspcsg"]()
     done = work.run(ours, work.prepare(ours), lambda _: None)
     assert done.process is not None and 20 < done.process.peak_mb < 500
@@ -249,7 +260,7 @@ def test_the_command_line_is_metered_in_a_process_of_its_own(
     assert work.proof(done.mesh).agrees
     assert not work.proof(work.first).agrees
     assert {path.name for path in work.folder.iterdir()} == {"a.stl", "b.stl", "c.stl"}
-    wrong = program.CommandLine(work.first, work.second, ("--no-such-option",))
+    wrong = command_line.CommandLine(work.first, work.second, ("--no-such-option",))
     with pytest.raises(engines.EngineError, match="help"):
         wrong.run(ours, wrong.prepare(ours), lambda _: None)
 
@@ -257,7 +268,7 @@ def test_the_command_line_is_metered_in_a_process_of_its_own(
 def test_a_meter_tells_exit_codes_and_memory_of_the_command_alone() -> None:
     held = np.ones(30_000_000)
     said = "import sys; a = b'x' * 50_000_000; sys.stderr.write('no'); sys.exit(3)"
-    found = meter.metered([sys.executable, "-c", said])
+    found = meter.run_metered([sys.executable, "-c", said])
     assert (found.code, found.said) == (3, "no")
     assert 50 < found.peak_mb < held.nbytes / 1e6
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import bspcsg as b
-from bspcsg.solid import counting
+from bspcsg.solid import ledger
 
 
 def test_a_difference_takes_the_first_less_the_rest() -> None:
@@ -175,7 +175,7 @@ def test_errors_leave_no_solid_and_no_open_block() -> None:
     with pytest.raises(b.InvalidMeshError) as caught:
         _ = inner.solid
     assert caught.value.code == "open_block"
-    assert counting.current() is None
+    assert ledger.current_ledger() is None
 
 
 def test_an_open_block_has_no_solid_yet() -> None:

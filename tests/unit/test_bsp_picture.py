@@ -113,7 +113,7 @@ def test_smooth_surfaces_show_creases_and_contours_only() -> None:
 
 def test_too_many_edges_are_painted_with_their_polygons(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = bsp.picture(shapes.icosphere(2), edges="all", size=(120, 120))
-    monkeypatch.setattr("bspcsg.bsp.painting.hidden._MAX_NEAR_PAIRS", 10)
+    monkeypatch.setattr("bspcsg.bsp.painting.hidden_lines._MAX_NEAR_PAIRS", 10)
     simple = bsp.picture(shapes.icosphere(2), edges="all", size=(120, 120))
     assert len(simple.painting.lines) == 0 and simple.painting.polygons.marked.any()
     assert len(whole.painting.lines) and not whole.painting.polygons.marked.any()

@@ -117,7 +117,7 @@ def test_manifold_that_fails_is_overruled_by_pymeshlab(monkeypatch: Settle) -> N
     def fails(*_: Any) -> Any:
         raise oracle.OracleFailedError("manifold3d raised RuntimeError: no")
 
-    monkeypatch.setattr(oracle, "ask", fails)
+    monkeypatch.setattr(oracle, "manifold_result", fails)
     found = asked("union")
     assert found["verdict"] == "oracle failed"
     assert "pymeshlab agrees with bspcsg" in found["reason"]

@@ -12,24 +12,24 @@ import pytest
 import bspcsg as b
 from bspcsg.campaign.engines import openscad as openscad_engine
 from bspcsg.campaign.engines import pymeshlab as pymeshlab_engine
-from bspcsg.campaign.engines.questions import NoOpinionError, Question
+from bspcsg.campaign.engines.engine_request import EngineRequest, NoOpinionError
 from bspcsg.campaign.judging.opinions import crossings_opinion, opinion, script_opinion
-from bspcsg.campaign.judging.ruling import ruled
+from bspcsg.campaign.judging.verdict import verdict_of
 from bspcsg.mesh.mesh import Mesh
-from bspcsg.verify.check import CheckReport, Facts, Verdict, examine
+from bspcsg.verify.check import CheckReport, Facts, Verdict, report_with_meshes
 
 needs_openscad = pytest.mark.skipif(
     not shutil.which("openscad"), reason="openscad is not installed"
 )
 
 
-def question(ours: "b.Solid | None" = None, operation: str = "difference") -> Question:
+def question(ours: "b.Solid | None" = None, operation: str = "difference") -> EngineRequest:
     """Return a question about a cube without a corner, with `ours` as our result."""
     operands = [b.cube(3), b.cube(2).translate(2, 2, 2)]
-    found = examine(operands[0] - operands[1], "difference", operands)
+    found = report_with_meshes(operands[0] - operands[1], "difference", operands)
     meshes = [solid.normalized().to_mesh() for solid in operands]
     mesh = found.ours if ours is None else ours.normalized().to_mesh()
-    return Question(operation, found.program, meshes, mesh, -9, 60.0)
+    return EngineRequest(operation, found.program, meshes, mesh, -9, 60.0)
 
 
 WRONG = b.cube(3)
@@ -44,7 +44,9 @@ def test_pymeshlab_tells_right_from_wrong() -> None:
 
 def test_empty_answer_of_pymeshlab_is_an_answer() -> None:
     apart = [b.cube(1).to_mesh(), b.cube(1).translate(5, 0, 0).to_mesh()]
-    found = pymeshlab_engine.ask_pymeshlab(Question("intersection", [], apart, apart[0], -9, 60.0))
+    found = pymeshlab_engine.ask_pymeshlab(
+        EngineRequest("intersection", [], apart, apart[0], -9, 60.0)
+    )
     assert len(found.mesh.faces) == 0
 
 
@@ -80,12 +82,12 @@ def test_lattices_of_two_pitches_are_no_disagreement() -> None:
     large = b.cube(1, center=True).rotate(33, axis=(1, 2, 3)).to_mesh()
     operands = [b.Solid(*large), b.box(1, 0.8, 0.6), b.cube(1e-4).translate(3, 0, 0)]
     result = b.union(operands)
-    found = examine(result, "union", operands)
+    found = report_with_meshes(result, "union", operands)
     meshes = [large, *(solid.to_mesh() for solid in operands[1:])]
     place = ("union", found.program, meshes, found.ours, result.pitch, 60.0)
     assert result.pitch < operands[0].pitch
-    assert opinion("pymeshlab", Question(*place, result.tree.snapped_by))["agrees"] is True
-    assert opinion("pymeshlab", Question(*place))["agrees"] is False
+    assert opinion("pymeshlab", EngineRequest(*place, result.tree.snapped_by))["agrees"] is True
+    assert opinion("pymeshlab", EngineRequest(*place))["agrees"] is False
 
 
 def test_question_in_openscads_language_is_the_same_question(
@@ -121,12 +123,12 @@ def test_openscad_that_writes_nothing_has_no_opinion(monkeypatch: pytest.MonkeyP
 def test_openscad_is_not_asked_about_large_meshes() -> None:
     large = b.sphere(1, segments=64).to_mesh()
     with pytest.raises(NoOpinionError, match="takes at most"):
-        openscad_engine.ask_openscad(Question("union", [], [large, large], large, -9, 1.0))
+        openscad_engine.ask_openscad(EngineRequest("union", [], [large, large], large, -9, 1.0))
 
 
 def test_engine_that_takes_too_long_has_no_opinion() -> None:
     found = question()
-    late = Question(found.operation, found.program, found.operands, found.ours, -9, 0.001)
+    late = EngineRequest(found.operation, found.program, found.operands, found.ours, -9, 0.001)
     assert opinion("pymeshlab", late)["says"] == "pymeshlab took longer than 0.001 s"
 
 
@@ -177,19 +179,19 @@ def test_ruling(
     verdict: Verdict, others: list[tuple[str, bool | None]], ruling: str, words: str
 ) -> None:
     reason = "" if verdict is Verdict.AGREE else "why"
-    found = ruled(report(verdict, reason), [said(*other) for other in others], None)
+    found = verdict_of(report(verdict, reason), [said(*other) for other in others], None)
     assert found[0] == ruling and words in found[1] and reason in found[1]
 
 
 def test_broken_identity_fails_us_whoever_agrees() -> None:
     broken: Any = {"equation": "1 = 2", "holds": False}
-    found = ruled(report(Verdict.AGREE), [said(LAB, True)], broken)
+    found = verdict_of(report(Verdict.AGREE), [said(LAB, True)], broken)
     assert found == ("subject failed", "the volumes violate the identity 1 = 2")
 
 
 def test_openscad_counts_alone_about_its_own_language() -> None:
-    assert ruled(report(Verdict.AGREE), [said(SCAD, False)], None, True)[0] == "DISAGREE"
-    assert ruled(report(Verdict.AGREE), [said(SCAD, None)], None, True)[0] == "agree"
+    assert verdict_of(report(Verdict.AGREE), [said(SCAD, False)], None, True)[0] == "DISAGREE"
+    assert verdict_of(report(Verdict.AGREE), [said(SCAD, None)], None, True)[0] == "agree"
 
 
 def test_child_without_pymeshlab_is_no_opinion(

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import bspcsg as b
-from bspcsg.campaign.cases.sources import Draw, cases_of, inputs_in
+from bspcsg.campaign.cases.sources import PairSelection, cases_of, inputs_in
 from bspcsg.cli.options.patterns import files_of
 from bspcsg.parameters import SET_OPS
 from support.cli import put
@@ -34,7 +34,7 @@ def inside(folder: Path) -> list[Path]:
 
 
 def test_folder_is_paired_with_itself(parts: Path) -> None:
-    cases = cases_of(inputs_in(inside(parts)), ("union", "xor"), Draw())
+    cases = cases_of(inputs_in(inside(parts)), ("union", "xor"), PairSelection())
     names = [case.name for case in cases]
     named = ("0000-a-b", "0001-a-c", "0002-b-c")
     assert names == [*(f"{pair}-{op}" for pair in named for op in ("union", "xor")), "m.csg"]
@@ -47,24 +47,30 @@ def test_cases_are_called_by_their_files(parts: Path) -> None:
     (parts / "elsewhere").mkdir()
     (parts / "elsewhere" / "b.off").write_bytes((parts / "a.off").read_bytes())
     files = [parts / "a.off", parts / "b.stl", parts / "elsewhere" / "b.off"]
-    cases = cases_of(inputs_in(files), ("xor",), Draw())
+    cases = cases_of(inputs_in(files), ("xor",), PairSelection())
     assert [case.name for case in cases] == ["0000-a-b-xor", "0001-a-b-xor", "0002-b-b-xor"]
 
 
 def test_draws_are_the_same_each_time(parts: Path) -> None:
-    draws = [cases_of(inputs_in(inside(parts)), SET_OPS, Draw(20, seed)) for seed in (1, 1, 2)]
+    draws = [
+        cases_of(inputs_in(inside(parts)), SET_OPS, PairSelection(20, seed)) for seed in (1, 1, 2)
+    ]
     assert draws[0] == draws[1] and [case.key for case in draws[0]] == [c.key for c in draws[1]]
     assert draws[0] != draws[2]
     poses = Counter(case.pose for case in draws[0] if case.kind == "pose")
     assert poses["random"] == 40 and sum(poses.values()) == 80 and len(poses) > 3
-    longer = cases_of(inputs_in(inside(parts)), SET_OPS, Draw(30, 1))
+    longer = cases_of(inputs_in(inside(parts)), SET_OPS, PairSelection(30, 1))
     assert longer[:80] == draws[0][:80]
 
 
 def test_pose_can_be_named(parts: Path) -> None:
-    cases = cases_of(inputs_in([parts / "a.off", parts / "b.stl"]), ("union",), Draw(pose="beside"))
+    cases = cases_of(
+        inputs_in([parts / "a.off", parts / "b.stl"]), ("union",), PairSelection(pose="beside")
+    )
     assert [(case.pose, case.number) for case in cases] == [("beside", 0)]
-    one = cases_of(inputs_in([parts / "a.off"]), ("union",), Draw(seed=3, pose="copy", number=7))
+    one = cases_of(
+        inputs_in([parts / "a.off"]), ("union",), PairSelection(seed=3, pose="copy", number=7)
+    )
     assert [(case.name, case.seed) for case in one] == [("0007-a-a-copy-union", 3)]
     assert one[0].command.endswith("--op union --pose copy:7 --seed 3")
 
@@ -94,7 +100,7 @@ def test_other_files_of_cases_are_refused(tmp_path: Path, document: Any) -> None
     with pytest.raises(
         b.FormatError, match=r"cases\.json: the file is not a valid list of cases"
     ) as caught:
-        cases_of(inputs_in([path]), SET_OPS, Draw())
+        cases_of(inputs_in([path]), SET_OPS, PairSelection())
     assert '{"cases": [{"operation"' in caught.value.message
 
 
@@ -102,4 +108,4 @@ def test_missing_operand_is_named(tmp_path: Path) -> None:
     path = tmp_path / "cases.json"
     path.write_text(json.dumps({"cases": [{"operands": [{"file": "gone.stl"}]}]}))
     with pytest.raises(b.FormatError, match=r"gone\.stl: cannot read"):
-        cases_of(inputs_in([path]), SET_OPS, Draw())
+        cases_of(inputs_in([path]), SET_OPS, PairSelection())

@@ -249,7 +249,7 @@ def test_operands_the_oracle_refuses() -> None:
     vertices, faces = cube()
     mesh = b.Mesh(vertices, faces[1:], np.zeros((11, 2), np.int64))
     with pytest.raises(oracle.OracleRefusedError, match="operand 1: NotManifold"):
-        oracle.ask([("leaf", [0])], [mesh])
+        oracle.manifold_result([("leaf", [0])], [mesh])
 
 
 def test_operands_after_a_refused_one_have_their_notes(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -267,10 +267,12 @@ def test_operands_after_a_refused_one_have_their_notes(monkeypatch: pytest.Monke
 def test_the_oracle_knows_complements() -> None:
     a, c = (solid.to_mesh() for solid in boxes())
     leaves: list[tuple[str, list[int]]] = [("leaf", [0]), ("leaf", [1]), ("not", [1])]
-    assert oracle.ask([*leaves, ("and", [0, 2])], [a, c]).mesh.volume == 7
-    assert oracle.ask([*leaves, ("xor", [0, 2]), ("not", [3])], [a, c]).mesh.volume == 14
+    assert oracle.manifold_result([*leaves, ("and", [0, 2])], [a, c]).mesh.volume == 7
+    assert (
+        oracle.manifold_result([*leaves, ("xor", [0, 2]), ("not", [3])], [a, c]).mesh.volume == 14
+    )
     with pytest.raises(oracle.OracleRefusedError, match="unbounded"):
-        oracle.ask([*leaves, ("or", [0, 2])], [a, c])
+        oracle.manifold_result([*leaves, ("or", [0, 2])], [a, c])
 
 
 def test_reports_are_json_and_words() -> None:

@@ -8,7 +8,7 @@ import pytest
 
 import bspcsg as b
 from bspcsg import csg
-from bspcsg.csg.nodes.registry import RECIPES
+from bspcsg.csg.nodes.registry import NODE_KINDS
 from support.scripts import moved, region, volume
 
 SQUARE = "square(size = [2, 2], center = true);"
@@ -25,11 +25,11 @@ def told(text: str) -> list[str]:
 # Found: no node reported arguments that it does not know.
 @pytest.mark.parametrize("name", csg.node_names())
 def test_every_node_tells_of_arguments_that_it_does_not_know(name: str) -> None:
-    [complaint] = RECIPES[name].takes.complaints(csg.parse(f"{name}(raduis = 3);").nodes[0])
+    [complaint] = NODE_KINDS[name].takes.complaints(csg.parse(f"{name}(raduis = 3);").nodes[0])
     assert "no argument “raduis”" in complaint
-    count = len(RECIPES[name].takes.order)
+    count = len(NODE_KINDS[name].takes.order)
     unnamed = csg.parse(f"{name}({', '.join('123456789'[: count + 1])});").nodes[0]
-    assert any("unnamed" in one for one in RECIPES[name].takes.complaints(unnamed))
+    assert any("unnamed" in one for one in NODE_KINDS[name].takes.complaints(unnamed))
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import pytest
 import bspcsg as b
 from bspcsg import csg
 from bspcsg.bsp import Region
-from bspcsg.csg.making import drawings
+from bspcsg.csg.making import dxf_import
 from bspcsg.csg.syntax import arguments
 
 # Files
@@ -190,7 +190,7 @@ def test_files_that_are_not_what_they_should(
 
 
 def test_blocks_of_drawings_have_a_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(drawings, "MAX_BLOCK_ENTITIES", 300)
+    monkeypatch.setattr(dxf_import, "MAX_BLOCK_ENTITIES", 300)
     ezdxf = pytest.importorskip("ezdxf")
     document = ezdxf.new()
     document.blocks.new("0").add_circle((0, 0), 1)

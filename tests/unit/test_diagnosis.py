@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from bspcsg.assembly.examining import examine
+from bspcsg.assembly.object_diagnosis import examine
 from bspcsg.io import RawMesh
 from bspcsg.repair.diagnosis import diagnose
 from support.shapes import Arrays, cube, cuboid, flipped, joined, moved
@@ -167,30 +167,30 @@ def test_objects_that_touch_are_solids_that_touch() -> None:
     for other in (moved(cube(), (0, 0, 1)), cuboid((0.25, 0.25, 1), (2, 0.75, 2)), cube()[:2]):
         raw = with_objects(cube(), other)
         found = examine(raw)
-        clashes = [one for one in found.found.findings if one.code == "clash"]
-        assert [one.found.verdict for one in found.objects] == ["solid", "solid"]
-        assert found.found.manifold and found.found.verdict == "solid"
+        clashes = [one for one in found.diagnosis.findings if one.code == "clash"]
+        assert [one.diagnosis.verdict for one in found.objects] == ["solid", "solid"]
+        assert found.diagnosis.manifold and found.diagnosis.verdict == "solid"
         # What is in the other's place clashes, as `clash` says, too.
-        assert bool(clashes) == bool(found.clashes) == bool(found.found.self_overlapping)
+        assert bool(clashes) == bool(found.clashes) == bool(found.diagnosis.self_overlapping)
         assert bool(clashes) == np.array_equal(other[0], cube()[0])
 
 
 def test_objects_that_clash_are_told_with_place_and_measured_once() -> None:
     found = examine(with_objects(cube(2), moved(cube(), (5, 0, 0)), moved(cube(), (1.5, 0, 0))))
-    (finding,) = found.found.findings
+    (finding,) = found.diagnosis.findings
     assert (finding.code, finding.severity, finding.count) == ("clash", "warning", 1)
     assert "“a” and “c”, with a common volume of 0.5 near (1.75, 0.5, 0.5)" in finding.message
-    assert found.found.volume == 8 + 1 + 0.5 and found.found.signed_volume == 10
+    assert found.diagnosis.volume == 8 + 1 + 0.5 and found.diagnosis.signed_volume == 10
 
 
 def test_findings_name_the_object_and_the_triangles_of_the_file() -> None:
     found = examine(with_objects(cube(), moved(without(3), (5, 0, 0)), flipped(cube())))
-    assert [one.found.verdict for one in found.objects] == ["solid", "not closed", "inside out"]
-    assert found.found.verdict == "not closed" and found.found.volume is None
-    messages = [(one.message[:3], one.code) for one in found.found.findings]
+    assert [one.diagnosis.verdict for one in found.objects] == ["solid", "not closed", "inside out"]
+    assert found.diagnosis.verdict == "not closed" and found.diagnosis.volume is None
+    messages = [(one.message[:3], one.code) for one in found.diagnosis.findings]
     assert messages == [("“b”", "open_edges"), ("“c”", "inside_out")]
-    assert min(found.found.findings[0].where) >= 12
-    assert max(found.objects[1].found.findings[0].where) < 11
+    assert min(found.diagnosis.findings[0].where) >= 12
+    assert max(found.objects[1].diagnosis.findings[0].where) < 11
 
 
 def test_patches_of_one_surface_are_one_object() -> None:
@@ -198,13 +198,13 @@ def test_patches_of_one_surface_are_one_object() -> None:
     halves = [(vertices, faces[:5]), (vertices, faces[5:])]
     found = examine(with_objects(*halves, moved(cube(), (3, 0, 0))))
     assert [one.name for one in found.objects] == ["a + b", "c"]
-    assert found.found.verdict == "solid" and found.found.volume == 2
+    assert found.diagnosis.verdict == "solid" and found.diagnosis.volume == 2
     # Of nothing but patches there is one object, as of a file that tells none apart.
     assert examine(with_objects(*halves)).objects == ()
-    assert examine(with_objects(*halves)).found.is_solid
+    assert examine(with_objects(*halves)).diagnosis.is_solid
 
 
 def test_objects_of_one_name_are_told_apart() -> None:
     raw = RawMesh(*joined(cube(), moved(cube(), (3, 0, 0))), objects=(("a", 12), ("a", 12)))
     assert [one.name for one in examine(raw).objects] == ["a", "a (2)"]
-    json.dumps(examine(raw).found.to_dict(), allow_nan=False)
+    json.dumps(examine(raw).diagnosis.to_dict(), allow_nan=False)

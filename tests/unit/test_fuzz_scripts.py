@@ -12,7 +12,7 @@ import pytest
 import fuzz
 from fuzzing.guided import Guided, outcome_of
 from mutants import MUTANTS, Mutant
-from recording import REPOSITORY, keep_rows
+from recording import REPOSITORY, write_rows
 
 SAID = """INFO: seed corpus: files: 40
 #41\tINITED cov: 1200 ft: 3400 corp: 30/9Kb
@@ -129,7 +129,7 @@ def test_records_keep_what_earlier_runs_said(
     (tmp_path / "mutants.json").write_text(json.dumps({"mutants": earlier}))
     monkeypatch.setattr("recording.RECORDS", tmp_path)
     again = [{"mutant": what, "verdict": "SURVIVED"} for what in ("third", "first")]
-    path = keep_rows("mutants", again, "mutant", order)
+    path = write_rows("mutants", again, "mutant", order)
     rows = json.loads(path.read_text("utf-8"))["mutants"]
     assert [row["verdict"] for row in rows] == ["SURVIVED", "noticed", "SURVIVED"]
     assert [row["mutant"] for row in rows] == order and ["commit" in row for row in rows] == [

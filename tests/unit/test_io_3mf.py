@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg.errors import held
+from bspcsg.errors import not_none
 from bspcsg.formats.threemf import package as threemf
 from bspcsg.io import RawMesh, read, write
 from support.io import cube_mesh, refusal
@@ -339,7 +339,7 @@ def test_a_cut_has_the_colours_of_what_it_was_cut_with(tmp_path: Path) -> None:
     blue = CUBE.replace('id="1"', 'id="2" pid="9" pindex="1"')
     objects = bases + red + blue + shape(3, 1, "difference", f'objectid="2" {by(0.5)}')
     raw = read(package(tmp_path / "x.3mf", model(objects, '<item objectid="3"/>')))
-    said = held(raw.attributes, "attributes")
+    said = not_none(raw.attributes, "attributes")
     at_cut = (raw.vertices[raw.faces][:, :, 0] == 0.5).all(axis=1)
     assert set(said.face["material"][at_cut]) == {"blue"}
     assert set(said.face["material"][~at_cut]) == {"red"}
@@ -460,7 +460,7 @@ def test_materials_of_one_name_stay_apart(
     )
     path = package(tmp_path / "x.3mf", model(painted(red + blue), ITEM))
     write(read(path), path)
-    said = held(read(path).attributes, "the attributes")
+    said = not_none(read(path).attributes, "the attributes")
     assert said.face["material"].tolist() == expected * 6
     colors = [said.materials[name].color for name in expected]
     assert colors == [(1, 0, 0, 1), (0, 0, 1, 1)]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg.formats.glb import light
+from bspcsg.formats.glb import linear_colours
 
 #: Colours of the screen and their light, from the definition of sRGB, to eight digits.
 KNOWN = [
@@ -29,18 +29,18 @@ def parts_of(path: Path) -> tuple[dict[str, Any], bytes]:
 
 @pytest.mark.parametrize(("screen", "amount"), KNOWN)
 def test_the_curve_has_known_values(screen: float, amount: float) -> None:
-    assert light.to_light([screen] * 3 + [0.5]).tolist() == pytest.approx(
+    assert linear_colours.to_linear([screen] * 3 + [0.5]).tolist() == pytest.approx(
         [amount] * 3 + [0.5], abs=1e-8
     )
-    assert light.to_screen([amount] * 3).tolist() == pytest.approx([screen] * 3, abs=1e-7)
+    assert linear_colours.to_srgb([amount] * 3).tolist() == pytest.approx([screen] * 3, abs=1e-7)
 
 
 def test_all_bytes_come_back() -> None:
     colors = np.repeat(np.arange(256, dtype=np.uint8)[:, None], 4, axis=1)
-    words = light.words_of(colors)
+    words = linear_colours.linear_words(colors)
     assert len(np.unique(words[:, 0])) == 256
     assert np.array_equal(
-        light.shown(words / np.float32(65535), is_whole=True)[:, :3], colors[:, :3]
+        linear_colours.srgb_colours(words / np.float32(65535), is_whole=True)[:, :3], colors[:, :3]
     )
 
 
@@ -77,5 +77,5 @@ def test_materials_are_written_as_light_and_read_as_colours(tmp_path: Path) -> N
 
 
 def test_light_in_floats_becomes_colours_in_floats() -> None:
-    found = light.shown(np.array([[0.5, 0.0, 1.0]], np.float32), is_whole=False)
+    found = linear_colours.srgb_colours(np.array([[0.5, 0.0, 1.0]], np.float32), is_whole=False)
     assert found.dtype == np.float32 and found[0].tolist() == pytest.approx([0.7353570, 0, 1])

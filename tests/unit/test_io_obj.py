@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg.errors import held
+from bspcsg.errors import not_none
 from bspcsg.io import RawMesh, decoded, loads, read, write
 from support.io import area, cube_mesh, read_text, refusal, same_mesh, signed_area
 from support.pictures import PIXEL
@@ -85,7 +85,7 @@ def test_negative_references_to_texture_and_normal_count_from_where_they_stand(
     rows = "v {0} 0 0\nv {0} 1 0\nv {0} 0 1\nvt {0} 0\nvt {0} 1\nvn {0} 0 1\n"
     face = "f -3/-2/-1 -2/-1/-1 -1/-3/-1\n"  # the third names no texture the first time
     texts = (rows.format(number) + face for number in (0, 5))
-    corner = held(read_text(tmp_path / "x.obj", "".join(texts)).attributes, "said").corner
+    corner = not_none(read_text(tmp_path / "x.obj", "".join(texts)).attributes, "said").corner
     nowhere = [math.nan, math.nan]
     expected = [[[0, 0], [0, 1], nowhere], [[5, 0], [5, 1], [0, 1]]]
     np.testing.assert_array_equal(corner["uv"], expected)
@@ -95,7 +95,7 @@ def test_negative_references_to_texture_and_normal_count_from_where_they_stand(
 # Found: an OBJ face whose first corner names no texture lost those of the others.
 def test_the_first_corner_may_name_no_texture(tmp_path: Path) -> None:
     raw = read_text(tmp_path / "x.obj", f"{SQUARE}vt 7 8\nf 1 2/1 3/1\n")
-    uv = held(raw.attributes, "said").corner["uv"]
+    uv = not_none(raw.attributes, "said").corner["uv"]
     np.testing.assert_array_equal(uv, [[[math.nan] * 2, [7, 8], [7, 8]]])
 
 
@@ -179,7 +179,7 @@ def painted(names: list[str], files: dict[str, bytes], library: str = "m.mtl") -
 
 def colors(raw: RawMesh) -> list[tuple[float, ...]]:
     """Return the colour of each triangle's material."""
-    said = held(raw.attributes, "said")
+    said = not_none(raw.attributes, "said")
     return [said.materials[name].color[:3] for name in said.face["material"].tolist()]
 
 
@@ -221,7 +221,7 @@ def test_a_byte_order_mark_hides_no_material() -> None:
 def test_a_picture_of_another_kind_leaves_the_colour() -> None:
     library = b"newmtl a\nKd 1 0 0\nd .5\nmap_Kd t.tga\n"
     raw = painted(["a", "a"], {"m.mtl": library, "t.tga": bytes(40)})
-    assert held(raw.attributes, "said").materials["a"] == b.Material((1, 0, 0, 0.5))
+    assert not_none(raw.attributes, "said").materials["a"] == b.Material((1, 0, 0, 0.5))
     assert raw.dropped == ("pictures that are neither PNG nor JPEG",)
 
 
@@ -243,7 +243,7 @@ def test_colours_as_libraries_write_them(color: str, meant: tuple[float, ...]) -
     raw = painted(
         ["a", "a"], {"m.mtl": f"newmtl a\n{color}\nmap_Kd p.png".encode(), "p.png": PIXEL}
     )
-    material = held(raw.attributes, "said").materials["a"]
+    material = not_none(raw.attributes, "said").materials["a"]
     assert (material.color[:3], material.texture) == (meant, PIXEL)
     assert bool(raw.dropped) == (meant == (0.8, 0.8, 0.8))
 
@@ -271,7 +271,7 @@ def test_a_picture_is_found_by_its_whole_name(words: str) -> None:
     files = {"m.mtl": f"newmtl a\nmap_Kd {words}\n".encode(), "my pic.png": PIXEL}
     files["pic.png"] = PIXEL if words.startswith("-clamp") else b"another"
     raw = painted(["a", "a"], files)
-    assert held(raw.attributes, "said").materials["a"].texture == PIXEL
+    assert not_none(raw.attributes, "said").materials["a"].texture == PIXEL
 
 
 # Found: materials whose names OBJ writes alike became one.

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bspcsg.errors import held
+from bspcsg.errors import not_none
 from bspcsg.io import RawMesh, decoded, read, write
 from support.io import cube_mesh, read_text, refusal, same_mesh, signed_area
 
@@ -192,7 +192,7 @@ PLACES = "property list uchar float texcoord\n"
 # corners, vanished while `convert` said that nothing was lost.
 def test_colours_that_two_elements_have_are_told() -> None:
     raw = read_square(COLOUR, COLOUR, "255 0 0", "3 0 1 2 0 0 255\n3 0 2 3 0 0 255\n")
-    assert held(raw.attributes, "said").vertex["color"].tolist() == [[255, 0, 0]] * 4
+    assert not_none(raw.attributes, "said").vertex["color"].tolist() == [[255, 0, 0]] * 4
     assert raw.dropped == ("face properties red, green, blue",)
 
 
@@ -202,7 +202,7 @@ def test_texture_coordinates_of_polygons_are_kept(quad: tuple[int, ...]) -> None
     places = {0: "0 0", 1: "1 0", 2: "1 1", 3: "0 1"}
     line = f"4 {' '.join(map(str, quad))} 8 {' '.join(places[k] for k in quad)}\n"
     raw = read_square("", PLACES, "", line)
-    uv = held(raw.attributes, "said").corner["uv"]
+    uv = not_none(raw.attributes, "said").corner["uv"]
     np.testing.assert_array_equal(uv, raw.vertices[raw.faces][..., :2])
     assert raw.dropped == ("faces of more than three corners",)
 
@@ -217,7 +217,7 @@ def test_lists_that_do_not_go_with_the_corners_are_told(lines: str) -> None:
 # Found: `u` and `v` beside `s` and `t` vanished in silence.
 def test_texture_coordinates_of_two_names_are_both_kept() -> None:
     columns = "".join(f"property float {name}\n" for name in "uvst")
-    vertex = held(read_square(columns, "", "1 2 3 4", "3 0 1 2\n").attributes, "said").vertex
+    vertex = not_none(read_square(columns, "", "1 2 3 4", "3 0 1 2\n").attributes, "said").vertex
     assert vertex["uv"].tolist() == [[3, 4]] * 4
     assert (vertex["u"].tolist(), vertex["v"].tolist()) == ([1] * 4, [2] * 4)
 

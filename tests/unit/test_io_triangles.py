@@ -9,7 +9,7 @@ import pytest
 from bspcsg._types import FloatArray
 from bspcsg.formats.triangles import are_flat, are_turned
 from bspcsg.io import RawMesh, write
-from bspcsg.mesh.weld import distinct, welded
+from bspcsg.mesh.weld import distinct_count, welded
 from support.shapes import cube, icosphere, moved
 
 Vector = tuple[Fraction, ...]
@@ -51,8 +51,8 @@ def test_distinct_counts_what_welding_leaves() -> None:
     for high in (2, 5, 10**6):
         points = rng.integers(0, high, (500, 3)).astype(np.float64)
         points[::3] *= -0.0
-        assert distinct(points) == len(welded(points)[0])
-    assert distinct(np.zeros((0, 3))) == 0
+        assert distinct_count(points) == len(welded(points)[0])
+    assert distinct_count(np.zeros((0, 3))) == 0
 
 
 @pytest.mark.parametrize("suffix", [".stl", ".glb"])

@@ -10,11 +10,11 @@ import pytest
 
 import bspcsg as b
 from bspcsg._types import FloatArray, IndexArray
-from bspcsg.modelling.bodies import touching
+from bspcsg.modelling.bodies import surface_sweep
 from bspcsg.modelling.bodies.hulls import hull_of
 from bspcsg.modelling.bodies.polyhedra import in_steps, in_units, polyhedron_of
 from bspcsg.modelling.bodies.sums import convex_parts, is_convex
-from bspcsg.modelling.bodies.touching import swept_mesh
+from bspcsg.modelling.bodies.surface_sweep import swept_mesh
 from support.checks import assert_sound
 from support.small import random_set, random_shapes
 
@@ -131,7 +131,7 @@ def test_sums_refuse_what_is_unbounded_or_too_large() -> None:
 
 
 def test_sums_refuse_what_would_take_all_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(touching, "_MAX_PIECE_FACES", 100)
+    monkeypatch.setattr(surface_sweep, "_MAX_PIECE_FACES", 100)
     with pytest.raises(b.LimitError, match="choose solids with fewer faces") as caught:
         b.minkowski(frame(), b.cube(1))
     assert caught.value.code == "too_large"

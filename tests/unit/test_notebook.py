@@ -14,7 +14,7 @@ from PIL import Image
 
 import bspcsg as b
 from bspcsg.report.assets import bundle
-from bspcsg.report.viewer import notebook, sharing
+from bspcsg.report.viewer import notebook, shared_script
 
 
 def test_the_view_is_a_page_in_a_frame() -> None:
@@ -157,7 +157,7 @@ def kernel(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> K
     monkeypatch.setattr(display, "display", found.shown.append, raising=False)
     monkeypatch.setitem(sys.modules, "IPython", ipython)
     monkeypatch.setitem(sys.modules, "IPython.display", display)
-    monkeypatch.setattr(notebook, "NOTEBOOK", sharing.Notebook())
+    monkeypatch.setattr(notebook, "NOTEBOOK", shared_script.Notebook())
     return found
 
 
@@ -181,10 +181,10 @@ def test_solids_in_a_notebook_share_one_viewer(kernel: Kernel) -> None:
     assert bundle() in first and bundle() not in second + third
     for shown in (first, second, third):
         page = frame_of(shown)
-        assert bundle() not in page and f'data-ask="{sharing.viewer_name()}"' in page
+        assert bundle() not in page and f'data-ask="{shared_script.viewer_name()}"' in page
         assert "<img src=" in page
     assert "<script>" not in second.partition("<iframe")[0] + second.partition("</iframe>")[2]
-    assert f'const name = "{sharing.viewer_name()}"' in first
+    assert f'const name = "{shared_script.viewer_name()}"' in first
 
 
 def test_the_cell_with_the_viewer_holds_it_when_it_runs_again(kernel: Kernel) -> None:

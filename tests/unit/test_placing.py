@@ -13,7 +13,7 @@ import pytest
 import bspcsg as b
 from bspcsg.formats.files import decoded
 from bspcsg.formats.glb import scene as glb
-from bspcsg.formats.placing import PlacedMesh, is_exact, placed, rescaled
+from bspcsg.formats.mesh_placement import PlacedMesh, is_exact, placed_meshes, rescaled
 from bspcsg.formats.raw import RawMesh
 from bspcsg.formats.scene import SceneNode
 from bspcsg.formats.solids import solid_of
@@ -135,7 +135,7 @@ def test_what_is_said_of_faces_stays_where_placing_is_mended() -> None:
     mended = 0
     for _ in range(TURNS):
         matrix = some_matrix(rng)
-        found = placed([PlacedMesh(raw, partial(transform.apply, matrix), keeps=False)])
+        found = placed_meshes([PlacedMesh(raw, partial(transform.apply, matrix), is_exact=False)])
         assert found.attributes is not None
         assert len(found.attributes.face["material"]) == len(found.faces)
         assert np.array_equal(found.attributes.faces, found.faces)
@@ -219,7 +219,9 @@ def test_what_a_map_lays_on_each_other_is_told_at_once() -> None:
     mesh = solid.to_mesh()
     raw = RawMesh(mesh.vertices, mesh.faces, "part")
     began = time.process_time()
-    found = placed([PlacedMesh(raw, lambda points: points * (1, 1, 1e-20) + (0, 0, 1), False)])
+    found = placed_meshes(
+        [PlacedMesh(raw, lambda points: points * (1, 1, 1e-20) + (0, 0, 1), False)]
+    )
     assert time.process_time() - began < 1
     (finding,) = found.findings
     assert (finding.code, finding.severity) == ("crossing", "warning")
@@ -270,7 +272,7 @@ def test_triangles_without_area_are_kept_or_told(
 
     keeps = is_exact(raw.vertices, linear, np.zeros(3))
     pieces = [PlacedMesh(raw, image, keeps, b"a"), PlacedMesh(raw, image, keeps, b"b")]
-    found = rescaled(raw, 25.4) if place == "rescaled" else placed(pieces)
+    found = rescaled(raw, 25.4) if place == "rescaled" else placed_meshes(pieces)
     told = sum(one.count for one in found.findings if one.code == "zero_area")
     count = len(raw.faces) * (1 if place == "rescaled" else 2)
     assert len(found.faces) + told == count

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 import bspcsg as b
-from bspcsg import watching
+from bspcsg import progress_display
 from support.cli import Capture
 
 
@@ -101,7 +101,7 @@ def on_terminal(monkeypatch: pytest.MonkeyPatch) -> Terminal:
     """Replace standard error by a terminal, without the delay of the progress bar; return it."""
     found = Terminal()
     monkeypatch.setattr(sys, "stderr", found)
-    monkeypatch.setattr(watching, "_BAR_DELAY", 0.0)
+    monkeypatch.setattr(progress_display, "_BAR_DELAY", 0.0)
     return found
 
 

@@ -11,8 +11,8 @@ from bspcsg.errors import BspcsgError, InvalidMeshError, MissingPartError
 from bspcsg.io import RawMesh
 from bspcsg.mesh.weld import welded
 from bspcsg.repair import repair as repairing
-from bspcsg.repair.child import stray_faces
 from bspcsg.repair.diagnosis import diagnose
+from bspcsg.repair.pymeshlab_child import stray_faces
 from bspcsg.repair.repair import repair
 from support.shapes import Arrays, cube, cuboid, flipped, icosphere, joined, moved
 

@@ -8,12 +8,12 @@ import pytest
 
 import bspcsg as b
 from bspcsg.campaign.record import VERDICTS, Results
-from bspcsg.report import cards
-from bspcsg.report.cards import Card, PageBudget, cards_of
+from bspcsg.report import campaign_cards
+from bspcsg.report.campaign_cards import Card, PageBudget, cards_of
+from bspcsg.report.campaign_page import report_page
 from bspcsg.report.charts import share_below
+from bspcsg.report.formatting import meaning, milliseconds, number, tone, vector, whole
 from bspcsg.report.merging import merged
-from bspcsg.report.page import report_page
-from bspcsg.report.wording import meaning, milliseconds, number, tone, vector, whole
 from support.results import case, header, keep_meshes, records, write_results
 from support.shapes import icosphere
 
@@ -84,7 +84,7 @@ def test_cards_are_as_many_as_asked_for(results: Results) -> None:
 def test_views_are_simplified_or_left_out_to_stay_within_the_size(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(cards, "still", lambda *_, **__: "a picture")
+    monkeypatch.setattr(campaign_cards, "still_picture", lambda *_, **__: "a picture")
     # Shuffled, because regular meshes are packed into next to nothing.
     rng = np.random.default_rng(5)
     vertices, faces = icosphere(4)

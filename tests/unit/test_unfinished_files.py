@@ -31,7 +31,7 @@ write_file("x.stl", chunks())
 CROWD = """
 from bspcsg.formats import atomic
 for k in range(30):
-    atomic._swept.clear()
+    atomic._cleaned_folders.clear()
     atomic.write_file(f"x{k % 3}.stl", [b"all of it"])
 """
 
@@ -66,7 +66,7 @@ def names(folder: Path) -> list[str]:
 
 @pytest.fixture(autouse=True)
 def at_first(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(atomic, "_swept", set())
+    monkeypatch.setattr(atomic, "_cleaned_folders", set())
 
 
 # Found: after kill -9, hidden files of full size stayed for ever.
@@ -85,7 +85,7 @@ def test_files_of_the_dead_go_and_those_of_the_living_stay(tmp_path: Path) -> No
 def test_a_file_of_this_very_process_stays(tmp_path: Path) -> None:
     def chunks() -> Iterator[bytes]:
         yield b"x"
-        atomic._swept.clear()
+        atomic._cleaned_folders.clear()
         write_file(tmp_path / "y.stl", [b"y"])
 
     write_file(tmp_path / "x.stl", chunks())
@@ -99,7 +99,7 @@ def test_a_file_stays_until_it_has_its_name(
 
     def late(one: Path, other: Path) -> None:
         monkeypatch.setattr(os, "replace", replace)
-        atomic._swept.clear()
+        atomic._cleaned_folders.clear()
         write_file(tmp_path / "y.stl", [b"y"])
         replace(one, other)
 

@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 
 from ..._types import FloatArray, Scalar, WindingRule
-from ...errors import FormatError, format_errors, invalid_parameter, words_of
+from ...errors import FormatError, format_errors, invalid_parameter, message_of
 from ...formats.atomic import write_file
 from ...formats.source import limited_content
-from ...parameters import file_path, of_kind, positive, shown
+from ...parameters import file_path, instance_of, positive, shown
 from ..sets.region import Region
 from .dxf_curves import chains_of
-from .dxf_layouts import drawn_layout
+from .dxf_layouts import layout_with_content
 from .dxf_markers import module_of_ezdxf, with_markers
-from .left_out import LeftOut
+from .unread_content import UnreadContent
 
 
 def load_dxf(
@@ -63,15 +63,15 @@ def load_dxf(
     names = None if layers is None else _names(layers)
     document = read_document(path)
     with format_errors(os.fspath(path), "DXF"):
-        wanted = None if names is None else _wanted(names, document, os.fspath(path))
-        lost = LeftOut()
+        wanted = None if names is None else _known_layers(names, document, os.fspath(path))
+        lost = UnreadContent()
         is_wanted = partial(_is_among, wanted)
-        layout = drawn_layout(document, is_wanted, lost)
+        layout = layout_with_content(document, is_wanted, lost)
         chains = list(chains_of(layout, is_wanted, chord, lost))
     region = Region(
         lost.surrounding(_closed(chains, os.fspath(path))), winding=winding, pitch=pitch
     )
-    lost.tell(path, region)
+    lost.warn(path, region)
     return region
 
 
@@ -87,7 +87,7 @@ def _names(layers: Any) -> set[str]:
     return names
 
 
-def _wanted(names: set[str], document: Any, file: str) -> set[str]:
+def _known_layers(names: set[str], document: Any, file: str) -> set[str]:
     """Return layer names in lower case, since DXF ignores case, or raise an error for unknown ones.
 
     A layer need not be declared: an entity on it suffices.
@@ -104,8 +104,8 @@ def _wanted(names: set[str], document: Any, file: str) -> set[str]:
     return {name.casefold() for name in names}
 
 
-def _is_among(wanted: set[str] | None, layer: str) -> bool:
-    return wanted is None or layer.casefold() in wanted
+def _is_among(layers: set[str] | None, layer: str) -> bool:
+    return layers is None or layer.casefold() in layers
 
 
 def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
@@ -126,9 +126,9 @@ def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
 def dxf_data(region: Region) -> bytes:
     """Return the bytes of the DXF file that `save_dxf` writes for a region."""
     ezdxf = module_of_ezdxf()
-    outlines = of_kind(Region, region, "region").to_polygons()
+    outlines = instance_of(Region, region, "region").to_polygons()
     text = io.StringIO()
-    with _without_time(ezdxf.options):
+    with _reproducible_output(ezdxf.options):
         document = ezdxf.new("R2010")
         for points in outlines:
             document.modelspace().add_lwpolyline(points.tolist(), close=True)
@@ -141,16 +141,16 @@ def dxf_data(region: Region) -> bytes:
 
 
 #: Locked while the options of ezdxf, which all threads share, are changed.
-_ONE_AT_A_TIME = threading.Lock()
+_OPTIONS_LOCK = threading.Lock()
 
 
 @contextmanager
-def _without_time(options: Any) -> Iterator[None]:
+def _reproducible_output(options: Any) -> Iterator[None]:
     """Make ezdxf write no time and no random number within a ``with`` block.
 
     So the output is reproducible.
     """
-    with _ONE_AT_A_TIME:
+    with _OPTIONS_LOCK:
         before = options.write_fixed_meta_data_for_testing
         options.write_fixed_meta_data_for_testing = True
         try:
@@ -180,7 +180,7 @@ def read_document(path: str | os.PathLike[str]) -> Any:
         return ezdxf.document.Drawing.load(with_markers(io.StringIO(text)))
     except Exception as error:  # ezdxf raises errors of any type on damaged files
         raise FormatError(
-            f"{name}: the file is not a valid DXF drawing: {words_of(error)}.", "syntax"
+            f"{name}: the file is not a valid DXF drawing: {message_of(error)}.", "syntax"
         ) from error
 
 
@@ -202,15 +202,15 @@ def _closed(chains: list[FloatArray], name: str) -> list[FloatArray]:
     if rest:
         ends = np.array([(chain[0], chain[-1]) for chain in rest])
         size = float(np.ptp(np.concatenate(chains), axis=0).max())
-        loops += _joined(rest, _places(ends, size), name)
+        loops += _joined(rest, _end_groups(ends, size), name)
     return loops
 
 
 #: Ends of chains are joined up to this distance, as a fraction of the drawing's extent.
-_JOINED = 1e-6
+_MAX_GAP = 1e-6
 
 
-def _places(ends: FloatArray, size: float) -> Any:
+def _end_groups(ends: FloatArray, size: float) -> Any:
     """Return a group number for each end of chains, (n, 2); ends with one number are joined.
 
     `ends` is (n, 2, 2); `size` is the extent of the drawing.
@@ -220,23 +220,23 @@ def _places(ends: FloatArray, size: float) -> Any:
     places = places.ravel()
     # Compare only ends without an equal one, since a chain may be shorter than a step.
     loose = np.flatnonzero(np.bincount(places)[places] == 1)
-    step = max(size * _JOINED, np.finfo(np.float64).tiny)
-    places[loose] = len(flat) + _near(flat[loose], step)
+    step = max(size * _MAX_GAP, np.finfo(np.float64).tiny)
+    places[loose] = len(flat) + _near_groups(flat[loose], step)
     return places.reshape(-1, 2)
 
 
-def _near(points: FloatArray, step: float) -> Any:
+def _near_groups(points: FloatArray, step: float) -> Any:
     """Return a group number for each point; points at most `step` apart in x and y share it."""
     numbers = np.arange(len(points))
     # Two such points share a cell in at least one of these four grids.
     for shift in ((0, 0), (0, 1), (1, 0), (1, 1)):
         cells = np.floor((points / step + shift) / 2)
         _, cell = np.unique(cells, axis=0, return_inverse=True)
-        numbers = _merged(numbers, cell.ravel())
+        numbers = _merged_groups(numbers, cell.ravel())
     return numbers
 
 
-def _merged(first: Any, second: Any) -> Any:
+def _merged_groups(first: Any, second: Any) -> Any:
     """Return group numbers for points, equal if the points share a group in either list.
 
     Groups are joined transitively.
@@ -268,11 +268,11 @@ def _joined(chains: list[FloatArray], places: Any, name: str) -> list[FloatArray
             )
     loops, left = [], set(range(len(chains)))
     while left:
-        loops.append(_walk(chains, places, at, left))
+        loops.append(_joined_loop(chains, places, at, left))
     return loops
 
 
-def _walk(
+def _joined_loop(
     chains: list[FloatArray], places: Any, at: dict[int, list[int]], left: set[int]
 ) -> FloatArray:
     """Return the loop that starts with the first chain in `left` and follows chains end to end.

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from ..._types import FloatArray
-from .dxf_layouts import ANY_LAYER, WINDOW
-from .left_out import LeftOut
+from .dxf_layouts import ANY_LAYER, VIEWPORT
+from .unread_content import UnreadContent
 
 #: The kinds of entities that are outlines, and the kind that inserts a block of entities.
 _CURVES = frozenset(["LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE", "LWPOLYLINE", "POLYLINE"])
@@ -29,14 +29,14 @@ _MAX_BLOCK_DEPTH = 64
 _MAX_ARC_CHORDS = 1 << 20
 
 #: The empty chain, for entities that are no outlines.
-_NONE = np.zeros((0, 2))
+_EMPTY_CHAIN = np.zeros((0, 2))
 
 #: The flag of vertices that are only control points of a spline, not corners.
-_FRAME = 16
+_CONTROL_POINT_FLAG = 16
 
 
 def chains_of(
-    layout: Any, is_wanted: Callable[[str], bool], chord: float, lost: LeftOut
+    layout: Any, is_wanted: Callable[[str], bool], chord: float, lost: UnreadContent
 ) -> Iterator[FloatArray]:
     """Yield the corners of each outline, (n, 2); a closed outline ends with its first corner.
 
@@ -48,7 +48,7 @@ def chains_of(
         Returns whether to read the layer of this name.
     chord : float
         The largest distance between a curve and its chords.
-    lost : LeftOut
+    lost : UnreadContent
         Collects entities that are no outlines.
 
     Raises
@@ -58,12 +58,12 @@ def chains_of(
     """
     for entity, layer, is_placed in _entities(layout):
         if is_wanted(layer):
-            chain = _NONE
+            chain = _EMPTY_CHAIN
             if is_placed and entity.dxftype() in _CURVES:
                 chain = _chain(entity, chord)
             if len(chain) > 1:
                 yield chain
-            elif entity.dxftype() != WINDOW:
+            elif entity.dxftype() != VIEWPORT:
                 lost.add(entity.dxftype())
 
 
@@ -90,12 +90,12 @@ def _entities(layout: Any) -> Iterator[tuple[Any, str, bool]]:
         if entity.dxftype() == _BLOCK and is_placed:
             if len(waiting) > _MAX_BLOCK_DEPTH:
                 raise ValueError(f"its blocks are nested deeper than {_MAX_BLOCK_DEPTH} levels")
-            waiting.append((inserted(entity), layer))
+            waiting.append((block_entities(entity), layer))
         else:
             yield entity, layer, is_placed
 
 
-def inserted(insert: Any, *, rows: bool = True) -> Iterator[tuple[Any, bool]]:
+def block_entities(insert: Any, *, rows: bool = True) -> Iterator[tuple[Any, bool]]:
     """Yield the entities of one insertion of a block; an array of copies copy by copy.
 
     Each entity comes with True if it was transformed: ezdxf cannot transform all kinds.
@@ -119,7 +119,7 @@ def _chain(entity: Any, chord: float) -> FloatArray:
     if kind == "ELLIPSE" and _is_full(entity):
         return _closed(_flat(_from_its_axis(entity).flattening(chord)))
     if kind == "SPLINE" and not len(entity.control_points) and not len(entity.fit_points):
-        return _NONE
+        return _EMPTY_CHAIN
     if kind in ("ELLIPSE", "SPLINE"):
         return _flat(entity.flattening(chord))
     if kind == "LWPOLYLINE":
@@ -212,11 +212,11 @@ def _old_polyline(entity: Any, chord: float) -> FloatArray:
         return np.concatenate([points, points[:1]]) if entity.is_closed else points
     if not entity.is_2d_polyline:
         # A mesh.
-        return _NONE
+        return _EMPTY_CHAIN
     rows = [
         (vertex.dxf.location.x, vertex.dxf.location.y, vertex.dxf.get("bulge", 0.0))
         for vertex in entity.vertices
-        if not vertex.dxf.flags & _FRAME
+        if not vertex.dxf.flags & _CONTROL_POINT_FLAG
     ]
     return _polyline(entity, np.array(rows), entity.is_closed, chord)
 

@@ -3,16 +3,18 @@
 from collections.abc import Callable
 from typing import Any
 
-from .left_out import LeftOut
+from .unread_content import UnreadContent
 
 #: The default layer of entities; entities of a block on it lie on the layer of the insertion.
 ANY_LAYER = "0"
 
 #: The kind of entities that are windows of a paper space on the model space.
-WINDOW = "VIEWPORT"
+VIEWPORT = "VIEWPORT"
 
 
-def drawn_layout(document: Any, is_wanted: Callable[[str], bool], lost: LeftOut) -> Any:
+def layout_with_content(
+    document: Any, is_wanted: Callable[[str], bool], lost: UnreadContent
+) -> Any:
     """Return the model space of a drawing or, if it is empty, the first nonempty paper space.
 
     Wanted entities of the other spaces are counted in `lost`.
@@ -30,4 +32,4 @@ def drawn_layout(document: Any, is_wanted: Callable[[str], bool], lost: LeftOut)
 
 
 def _counts(entity: Any) -> bool:
-    return bool(entity.dxftype() != WINDOW)
+    return bool(entity.dxftype() != VIEWPORT)

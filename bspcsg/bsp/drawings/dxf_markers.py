@@ -9,7 +9,7 @@ DXF reference, "Subclass Markers": group 100 before the values of each class of 
 from collections.abc import Iterator
 from typing import Any, TextIO
 
-from ...mesh.interop import optional
+from ...mesh.interop import import_optional
 
 #: The kinds of entities whose values ezdxf expects after a second marker of any name.
 _MARKED = frozenset(
@@ -34,7 +34,7 @@ _FIRST_OF_OTHERS = 1000
 
 def module_of_ezdxf(name: str = "ezdxf") -> Any:
     """Return a module of ezdxf, an optional dependency, or raise an error if it is missing."""
-    return optional(name, '"bspcsg[dxf]"')
+    return import_optional(name, '"bspcsg[dxf]"')
 
 
 def with_markers(stream: TextIO) -> Iterator[Any]:
@@ -49,16 +49,16 @@ def with_markers(stream: TextIO) -> Iterator[Any]:
         elif variable == "$ACADVER":
             version, variable = tag.value, ""
         if tag.code == _NAME:
-            yield from _marked(entity, types.DXFTag, version)
+            yield from _with_both_markers(entity, types.DXFTag, version)
             entity = []
         if entity or (tag.code == _NAME and tag.value in _MARKED):
             entity.append(tag)
         else:
             yield tag
-    yield from _marked(entity, types.DXFTag, version)
+    yield from _with_both_markers(entity, types.DXFTag, version)
 
 
-def _marked(entity: list[Any], tag: Any, version: str) -> list[Any]:
+def _with_both_markers(entity: list[Any], tag: Any, version: str) -> list[Any]:
     """Return an entity's tags with both subclass markers; the first tag names the entity's kind."""
     has_markers = any(one.code == _MARKER for one in entity)
     if not entity or (has_markers and version != _PLAIN):

@@ -12,17 +12,17 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from ..._types import FloatArray, Scalar, WindingRule
-from ...errors import FormatError, format_errors, invalid_parameter, words_of
+from ...errors import FormatError, format_errors, invalid_parameter, message_of
 from ...formats.atomic import write_file
 from ...formats.source import limited_content
-from ...mesh.interop import optional
-from ...parameters import file_path, not_negative, of_kind, positive, shown, winding_rule
+from ...mesh.interop import import_optional
+from ...parameters import file_path, instance_of, not_negative, positive, shown, winding_rule
 from ..sets.region import Region
 from ..trees.facets import chosen_pitch
-from .left_out import LeftOut
-from .svg_curves import Steps, outlines, within
+from .svg_curves import Steps, chord_counts_within, outlines
 from .svg_paths import Segments, path_segments, shape_segments
 from .svg_tree import NO_SHAPES, make_plain, name_of
+from .unread_content import UnreadContent
 
 
 def load_svg(
@@ -62,13 +62,13 @@ def load_svg(
     DrawingWarning
         Names the kinds of skipped content, and reports an empty region.
     """
-    lost = LeftOut()
+    lost = UnreadContent()
     chord = positive(tolerance, "tolerance")
     rule = None if winding is None else winding_rule(winding)
-    shapes = shown_shapes(path, make_plain, lost)
+    shapes = visible_shapes(path, make_plain, lost)
     filled = [shape for shape in shapes if _is_filled(shape.element)]
     with format_errors(os.fspath(path), "SVG"):
-        found_loops = iter(outlines_of(filled, within(_own_lengths(filled, chord))))
+        found_loops = iter(outlines_of(filled, chord_counts_within(_own_lengths(filled, chord))))
     found: list[tuple[list[FloatArray], WindingRule]] = []
     for shape in shapes:
         loops: list[FloatArray] = []
@@ -82,7 +82,7 @@ def load_svg(
     common = chosen_pitch(pitch, np.concatenate(points))
     regions = (Region(loops, winding=kind, pitch=common) for loops, kind in found)
     region = Region.compose([Region(pitch=common), *regions])
-    lost.tell(path, region)
+    lost.warn(path, region)
     return region
 
 
@@ -102,8 +102,10 @@ class Shape(NamedTuple):
     path: Segments | None
 
 
-def shown_shapes(
-    path: str | os.PathLike[str], prepare: Callable[[ElementTree.Element], None], lost: LeftOut
+def visible_shapes(
+    path: str | os.PathLike[str],
+    prepare: Callable[[ElementTree.Element], None],
+    lost: UnreadContent,
 ) -> list[Shape]:
     """Return the visible shapes of an SVG file, in drawing order.
 
@@ -113,7 +115,7 @@ def shown_shapes(
     prepare : callable
         A function that changes the outermost element before it is read, for example to remove its
         view box.
-    lost : LeftOut
+    lost : UnreadContent
         Counts visible content that is no shape.
 
     Raises
@@ -121,18 +123,18 @@ def shown_shapes(
     FormatError
         As `load_svg` does.
     """
-    data = _checked(path)
-    elements = optional("svgelements", "svgelements")
+    data = _checked_bytes(path)
+    elements = import_optional("svgelements", "svgelements")
     try:
         root = ElementTree.fromstring(data)
         if name_of(root) != "svg":
             raise ValueError("its root element is not <svg>")
         prepare(root)
-        paths = _set_aside(root)
+        paths = _segments_by_key(root)
         plain = io.BytesIO(ElementTree.tostring(root))
         drawing = elements.SVG.parse(plain, reify=False, ppi=96.0)
         # svgelements returns nothing for a drawing that is not displayed.
-        found = [] if drawing is None else [one for one in drawing.elements() if _is_shown(one)]
+        found = [] if drawing is None else [one for one in drawing.elements() if _is_visible(one)]
         shapes = [
             # svgelements also gives shapes inside a path the path's data.
             Shape(
@@ -145,12 +147,12 @@ def shown_shapes(
         for element in found:
             lost.add(*_no_shape(element))
     except Exception as error:  # svgelements raises errors of any type
-        message = f"{os.fspath(path)}: the file is not a valid SVG drawing: {words_of(error)}."
+        message = f"{os.fspath(path)}: the file is not a valid SVG drawing: {message_of(error)}."
         raise FormatError(message, "syntax") from error
     return shapes
 
 
-def _set_aside(root: ElementTree.Element) -> dict[str, Segments]:
+def _segments_by_key(root: ElementTree.Element) -> dict[str, Segments]:
     """Replace the data of valid paths by keys, and return the paths' segments by key.
 
     svgelements takes ten times as long to read path data.
@@ -203,7 +205,7 @@ def save_svg(
 
 def svg_data(region: Region, *, fill: str = "#9db8d9", margin: Scalar = 0.05) -> bytes:
     """Return the bytes of the SVG file that `save_svg` writes for a region."""
-    bounds = of_kind(Region, region, "region").bounds
+    bounds = instance_of(Region, region, "region").bounds
     low, high = (np.zeros(2), np.ones(2)) if bounds is None else bounds
     space = float((high - low).max()) * not_negative(margin, "margin")
     if not isinstance(fill, str):
@@ -232,7 +234,7 @@ def _path_of(points: FloatArray) -> str:
     return f"M{' L'.join(corners)} Z"
 
 
-def _checked(path: str | os.PathLike[str]) -> bytes:
+def _checked_bytes(path: str | os.PathLike[str]) -> bytes:
     """Return the bytes of a file, or raise an error if it is not XML or declares entities."""
     name = file_path(path)
     data = limited_content(name)
@@ -256,12 +258,12 @@ def _checked(path: str | os.PathLike[str]) -> bytes:
             [error.lineno],
         ) from None
     except (LookupError, ValueError) as error:
-        message = f"{name}:1: the XML cannot be decoded: {words_of(error)}."
+        message = f"{name}:1: the XML cannot be decoded: {message_of(error)}."
         raise FormatError(message, "syntax", [1]) from error
     return data
 
 
-def _is_shown(shape: Any) -> bool:
+def _is_visible(shape: Any) -> bool:
     is_visible = _keyword(shape, "visibility") not in ("hidden", "collapse")
     return is_visible and _keyword(shape, "display") != "none"
 

@@ -100,7 +100,7 @@ def outlines(
     with np.errstate(all="ignore"):  # what is not finite is refused with the outline
         families = [(curves, steps(curves)) for curves in _curves(shapes, before)]
         points, counts = _filled(ends, families)
-        corners = _placed(points, matrices[np.repeat(owner, counts)])
+        corners = _transformed(points, matrices[np.repeat(owner, counts)])
     firsts = np.concatenate(
         [
             np.array(shape.firsts, dtype=np.int64) + at
@@ -111,7 +111,7 @@ def outlines(
     return [[(next(parts), closed) for closed in shape.closed] for shape in shapes]
 
 
-def within(chords: FloatArray) -> Steps:
+def chord_counts_within(chords: FloatArray) -> Steps:
     """Return a function that chooses numbers of chords, so that each curve is close to its chords.
 
     `chords` has the largest distance for each shape; it is tested at points between the corners.
@@ -123,7 +123,7 @@ def within(chords: FloatArray) -> Steps:
         left, count = np.flatnonzero(np.isfinite(middle)), 2
         while len(left) and count < _MAX_CHORDS:
             far = [
-                _distance(curves.at(some, _shares(4 * count))) for some in _some(left, 4 * count)
+                _distance(curves.at(some, _shares(4 * count))) for some in _batches(left, 4 * count)
             ]
             left = left[~(np.concatenate(far) <= chords[curves.owner[left]])]
             count *= 2
@@ -137,7 +137,7 @@ def _shares(count: int) -> FloatArray:
     return np.arange(count + 1) / count
 
 
-def _some(which: IndexArray, points: int) -> Iterator[IndexArray]:
+def _batches(which: IndexArray, points: int) -> Iterator[IndexArray]:
     """Yield the curves `which` in batches that compute `points` points on each curve."""
     size = max(1, _POINTS_PER_BATCH // points)
     return (which[start : start + size] for start in range(0, len(which), size))
@@ -220,13 +220,13 @@ def _filled(
     for curves, steps in families:
         for count in np.unique(steps).tolist():
             inner = np.arange(1, count)
-            for some in _some(np.flatnonzero(steps == count), count):
+            for some in _batches(np.flatnonzero(steps == count), count):
                 places = (after[curves.segment[some]] - count)[:, None] + inner - 1
                 points[places] = curves.at(some, inner / count)
     return points, counts
 
 
-def _placed(points: _Points, matrices: FloatArray) -> FloatArray:
+def _transformed(points: _Points, matrices: FloatArray) -> FloatArray:
     """Return points transformed by one matrix each, (n, 2), y upwards."""
     a, b, c, d, e, f = matrices.T
     x, y = points.real, points.imag

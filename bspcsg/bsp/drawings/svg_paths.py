@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from ...mesh.interop import optional
+from ...mesh.interop import import_optional
 
 _BLANKS = " ,\t\n\r\f"
 _FLOAT = r"(?>[-+]?[0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)"
@@ -192,7 +192,7 @@ class _Pen:
 
 def shape_segments(shape: Any) -> Segments:
     """Return the segments of a shape object of svgelements."""
-    elements = optional("svgelements", "svgelements")
+    elements = import_optional("svgelements", "svgelements")
     if isinstance(shape, (elements.Circle, elements.Ellipse)):
         return _round_segments(shape)
     found = Segments()

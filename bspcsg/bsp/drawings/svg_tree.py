@@ -11,7 +11,7 @@ import math
 import re
 from xml.etree.ElementTree import Element
 
-from ...mesh.interop import optional
+from ...mesh.interop import import_optional
 
 #: Elements that are not drawn where they are declared, but whose content may be used elsewhere.
 _DECLARED = frozenset({"symbol", "mask", "marker", "pattern", "clipPath"})
@@ -22,10 +22,10 @@ NO_SHAPES = frozenset(
 )
 
 #: Elements that draw nothing, although their content may look like shapes.
-_FOREIGN = frozenset({"metadata", "glyph", "missing-glyph"})
+_UNDRAWN = frozenset({"metadata", "glyph", "missing-glyph"})
 
 #: Elements that a `switch` ignores.
-_SILENT = frozenset({"title", "desc", "defs", "style", "script"})
+_IGNORED_IN_SWITCH = frozenset({"title", "desc", "defs", "style", "script"})
 
 #: The language that is chosen if a drawing has several.
 _LANGUAGE = "en"
@@ -59,7 +59,7 @@ def make_plain(root: Element) -> None:
     ValueError
         If ``use`` elements contain themselves, or draw too many elements.
     """
-    _drop(root)
+    _remove_undrawn(root)
     size = _size_of_root(root)
     for parent in list(root.iter()):
         if name_of(parent) == "switch":
@@ -74,7 +74,7 @@ def make_plain(root: Element) -> None:
         root.attrib |= {"width": width, "height": height, "viewBox": f"0 0 {width} {height}"}
 
 
-def _drop(root: Element) -> None:
+def _remove_undrawn(root: Element) -> None:
     """Remove elements that draw nothing, and shapes without their necessary attributes."""
     for parent in list(root.iter()):
         foreign = name_of(parent) == "foreignObject"
@@ -84,7 +84,7 @@ def _drop(root: Element) -> None:
 def _is_drawn(element: Element) -> bool:
     name = name_of(element)
     sizes = [element.get(size, "") for size in _SIZES.get(name, ())]
-    if name in _FOREIGN or any(size.strip().startswith("-") for size in sizes):
+    if name in _UNDRAWN or any(size.strip().startswith("-") for size in sizes):
         return False
     if name == "text":
         return any(text.strip() for text in element.itertext())
@@ -93,14 +93,14 @@ def _is_drawn(element: Element) -> bool:
 
 def _switch(element: Element) -> None:
     """Make a ``switch`` element a group with its first child that fits, if any child does."""
-    shown = [child for child in element if name_of(child) not in _SILENT]
-    first = next(filter(_fits, shown), None)
+    shown = [child for child in element if name_of(child) not in _IGNORED_IN_SWITCH]
+    first = next(filter(_is_supported, shown), None)
     element[:] = [child for child in element if child is first or child not in shown]
     if first is not None or not shown:
         element.tag = _tag(element, "g")
 
 
-def _fits(element: Element) -> bool:
+def _is_supported(element: Element) -> bool:
     """Return true if a child of a ``switch`` needs no extension and has a suitable language."""
     if name_of(element) == "foreignObject" or element.get("requiredExtensions"):
         return False
@@ -200,7 +200,7 @@ def _group(element: Element, view: dict[str, str], outer: _Size) -> _Size:
         left, top, inner = box[0], box[1], (box[2], box[3])
         if width is not None and height is not None:
             scales = (width / box[2], height / box[3])
-            spare, scales = _fitted(view.get("preserveAspectRatio", ""), scales, (width, height))
+            spare, scales = _view_fit(view.get("preserveAspectRatio", ""), scales, (width, height))
             x, y = x + spare[0], y + spare[1]
     moved = (x - left * scales[0], y - top * scales[1])
     own = element.get("transform", "")
@@ -212,7 +212,7 @@ def _group(element: Element, view: dict[str, str], outer: _Size) -> _Size:
     return inner
 
 
-def _fitted(
+def _view_fit(
     rule: str, scales: tuple[float, float], size: tuple[float, float]
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the offset and the scales (x, y) by ``preserveAspectRatio``, as ``xMidYMid meet``."""
@@ -252,7 +252,7 @@ def _length(text: str, whole: float | None) -> float | None:
     """Return a length in user units; None if it is no length, or relative to an unknown `whole`."""
     if not text or ("%" in text and whole is None):
         return None
-    elements = optional("svgelements", "svgelements")
+    elements = import_optional("svgelements", "svgelements")
     try:
         value = elements.Length(text).value(ppi=96.0, relative_length=whole)
     except ValueError:

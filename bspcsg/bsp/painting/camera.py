@@ -9,7 +9,7 @@ import numpy as np
 from ..._types import FloatArray
 from ...errors import invalid_parameter
 from ...geometry.arrays import doubles
-from ...parameters import number, positive, shown, word
+from ...parameters import number, one_of, positive, shown
 from ..trees.facets import vector_rows
 
 #: Views by name; z is up. "front" looks along +y, with x to the right; "iso" looks from the right
@@ -146,7 +146,7 @@ class Camera:
         margin : float
             The fraction of the picture that stays empty on each side.
         """
-        camera = cls.orthographic(_DIRECTIONS[word(_DIRECTIONS, view, "view")])
+        camera = cls.orthographic(_DIRECTIONS[one_of(_DIRECTIONS, view, "view")])
         if field_of_view is not None:
             camera = replace(camera, is_perspective=True, half_height=_tangent(field_of_view))
         return camera.fitted(points, aspect, margin)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..._types import BoolArray, FloatArray, IndexArray
-from ..trees.fragments import ranges
+from ..trees.fragments import concatenated_ranges
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,12 +28,12 @@ class Polygons:
     def take(self, indices: IndexArray) -> "Polygons":
         """Return the polygons with these indices, in this order."""
         starts, ends = self.offsets[:-1][indices], self.offsets[1:][indices]
-        kept = ranges(starts, ends)
+        kept = concatenated_ranges(starts, ends)
         offsets = np.concatenate([[0], np.cumsum(ends - starts)])
         return Polygons(self.corners[kept], offsets, self.marked[kept])
 
 
-def following(offsets: IndexArray) -> IndexArray:
+def next_corners(offsets: IndexArray) -> IndexArray:
     """Return for each corner of polygons the index of the next corner around its polygon, (n,)."""
     after = np.arange(1, offsets[-1] + 1)
     filled = offsets[1:] > offsets[:-1]
@@ -41,7 +41,7 @@ def following(offsets: IndexArray) -> IndexArray:
     return after
 
 
-def owners(offsets: IndexArray) -> IndexArray:
+def polygon_of_corner(offsets: IndexArray) -> IndexArray:
     """Return for each corner of polygons the index of its polygon, (n,)."""
     return np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
 
@@ -56,7 +56,7 @@ def clip(polygons: Polygons, normal: FloatArray, least: float) -> tuple[Polygons
     inside = distance >= 0
     if inside.all():
         return polygons, np.arange(len(polygons.offsets) - 1)
-    after = following(polygons.offsets)
+    after = next_corners(polygons.offsets)
     crossing = inside != inside[after]
     counts = inside.astype(np.int64) + crossing
     firsts = np.cumsum(counts) - counts

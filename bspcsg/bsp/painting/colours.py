@@ -50,7 +50,7 @@ def _opaque(given: Any, name: str) -> ColourArray:
     return as_bytes(given[..., :3])
 
 
-def lit(base: ColourArray, normals: FloatArray, axes: FloatArray) -> ColourArray:
+def shaded_colours(base: ColourArray, normals: FloatArray, axes: FloatArray) -> ColourArray:
     """Return facet colours shaded by Lambert's law, with light from above the viewer's left.
 
     Parameters

@@ -6,8 +6,8 @@ from functools import cached_property
 import numpy as np
 
 from ..._types import BoolArray, FloatArray, IndexArray
-from ..trees.fragments import Fragments, ranges
-from .clip import following, owners
+from ..trees.fragments import Fragments, concatenated_ranges
+from .clip import next_corners, polygon_of_corner
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class Facets:
         """Return the facets with these indices, in this order."""
         starts, ends = self.offsets[:-1][indices], self.offsets[1:][indices]
         offsets = np.concatenate([[0], np.cumsum(ends - starts)])
-        return Facets(self.corners[ranges(starts, ends)], offsets)
+        return Facets(self.corners[concatenated_ranges(starts, ends)], offsets)
 
     @cached_property
     def firsts(self) -> FloatArray:
@@ -47,7 +47,7 @@ class Facets:
         """The unit normal of each facet towards its plus side, (k, 3); zero without area."""
         if not len(self):
             return np.zeros((0, 3))
-        after, owner = following(self.offsets), owners(self.offsets)
+        after, owner = next_corners(self.offsets), polygon_of_corner(self.offsets)
         # Coordinates relative to a corner keep precision far from the origin.
         arms = self.corners - self.firsts[owner]
         areas = np.add.reduceat(np.cross(arms, arms[after]), self.offsets[:-1])
@@ -59,7 +59,7 @@ class Facets:
     def _keys(self) -> tuple[IndexArray, IndexArray]:
         """A number for each directed edge, and the number of the edge in opposite direction."""
         names = _names(self.corners)
-        ends = names[following(self.offsets)]
+        ends = names[next_corners(self.offsets)]
         count = len(self.corners) + 1
         return names * count + ends, ends * count + names
 
@@ -74,7 +74,9 @@ class Facets:
         equals = np.searchsorted(ordered, forth, side="right") - np.searchsorted(ordered, forth)
         single = (opposites == 1) & (equals == 1)
         partner = order[np.where(single, found, 0)] if len(order) else found
-        return np.where(single, owners(self.offsets)[partner], -1) if len(order) else found
+        return (
+            np.where(single, polygon_of_corner(self.offsets)[partner], -1) if len(order) else found
+        )
 
     @cached_property
     def is_closed(self) -> bool:
@@ -85,7 +87,7 @@ class Facets:
         return self._volume() > 0
 
     def _volume(self) -> float:
-        after, owner = following(self.offsets), owners(self.offsets)
+        after, owner = next_corners(self.offsets), polygon_of_corner(self.offsets)
         arms = self.corners - self.corners[0]
         cones = np.cross(arms, arms[after])
         return float(np.einsum("ij,ij->", arms[self.offsets[:-1]][owner], cones))
@@ -96,7 +98,7 @@ class Facets:
         These are edges without exactly one neighbour, edges whose facets' normals differ by more
         than `crease` degrees, and contours, where only one of the two facets faces the viewer.
         """
-        owner, other = owners(self.offsets), self.neighbours
+        owner, other = polygon_of_corner(self.offsets), self.neighbours
         cosines = np.einsum("ij,ij->i", self.normals[owner], self.normals[other])
         bent = cosines < np.cos(np.radians(crease))
         contour = facing[owner] != facing[other]
@@ -118,9 +120,9 @@ class Facets:
         if drawn.all():
             return fragments.original
         some = np.logical_or.reduceat(drawn, self.offsets[:-1]) if len(self) else drawn
-        owner = fragments.source[owners(fragments.offsets)]
+        owner = fragments.source[polygon_of_corner(fragments.offsets)]
         asked = np.flatnonzero(fragments.original & some[owner])
-        ends = fragments.vertices[following(fragments.offsets)[asked]]
+        ends = fragments.vertices[next_corners(fragments.offsets)[asked]]
         middles = (fragments.vertices[asked] + ends) / 2
         result = np.zeros(len(fragments.vertices), dtype=bool)
         result[asked] = drawn[self._nearest_edges(middles, owner[asked])]
@@ -128,7 +130,7 @@ class Facets:
 
     def _nearest_edges(self, points: FloatArray, facets: IndexArray) -> IndexArray:
         """Return for each point the nearest edge of its given facet, as the edge's first corner."""
-        after = following(self.offsets)
+        after = next_corners(self.offsets)
         starts, counts = self.offsets[:-1][facets], np.diff(self.offsets)[facets]
         best, least = starts.copy(), np.full(len(points), np.inf)
         for step in range(int(counts.max()) if len(counts) else 0):

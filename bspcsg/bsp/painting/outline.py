@@ -4,13 +4,13 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable
 
 #: A point on a grid, as two integers.
-Spot = tuple[int, int]
+GridPoint = tuple[int, int]
 
 #: A directed edge: its start and its end point.
-Step = tuple[Spot, Spot]
+DirectedEdge = tuple[GridPoint, GridPoint]
 
 
-def outlines(polygons: Iterable[list[Spot]]) -> list[list[Spot]]:
+def outlines(polygons: Iterable[list[GridPoint]]) -> list[list[GridPoint]]:
     """Return closed loops; their winding number at a point is the sum of the polygons'.
 
     Parameters
@@ -21,8 +21,8 @@ def outlines(polygons: Iterable[list[Spot]]) -> list[list[Spot]]:
     return _chained(_uncancelled(polygons))
 
 
-def _uncancelled(polygons: Iterable[list[Spot]]) -> "Counter[Step]":
-    counts: Counter[Step] = Counter()
+def _uncancelled(polygons: Iterable[list[GridPoint]]) -> "Counter[DirectedEdge]":
+    counts: Counter[DirectedEdge] = Counter()
     for polygon in polygons:
         for start, end in zip(polygon, polygon[1:] + polygon[:1], strict=True):
             if start == end:
@@ -34,12 +34,12 @@ def _uncancelled(polygons: Iterable[list[Spot]]) -> "Counter[Step]":
     return counts
 
 
-def _chained(counts: "Counter[Step]") -> list[list[Spot]]:
+def _chained(counts: "Counter[DirectedEdge]") -> list[list[GridPoint]]:
     """Return closed loops that use each directed edge as often as `counts` says.
 
     Any choice of loops gives the same winding numbers.
     """
-    onwards: defaultdict[Spot, list[Spot]] = defaultdict(list)
+    onwards: defaultdict[GridPoint, list[GridPoint]] = defaultdict(list)
     for start, end in counts.elements():
         onwards[start].append(end)
     loops = []
@@ -49,7 +49,7 @@ def _chained(counts: "Counter[Step]") -> list[list[Spot]]:
     return [loop for loop in loops if len(loop) > 2]
 
 
-def _loop(onwards: "defaultdict[Spot, list[Spot]]", start: Spot) -> list[Spot]:
+def _loop(onwards: "defaultdict[GridPoint, list[GridPoint]]", start: GridPoint) -> list[GridPoint]:
     loop, spot = [start], onwards[start].pop()
     while spot != start:
         loop.append(spot)
@@ -57,7 +57,7 @@ def _loop(onwards: "defaultdict[Spot, list[Spot]]", start: Spot) -> list[Spot]:
     return loop
 
 
-def straightened(loop: list[Spot]) -> list[Spot]:
+def straightened(loop: list[GridPoint]) -> list[GridPoint]:
     """Return a loop without the corners at which it goes straight on."""
     corners = []
     before = loop[-1]
@@ -69,9 +69,9 @@ def straightened(loop: list[Spot]) -> list[Spot]:
     return corners
 
 
-def polylines(steps: Iterable[Step]) -> list[list[Spot]]:
+def polylines(steps: Iterable[DirectedEdge]) -> list[list[GridPoint]]:
     """Return open or closed polylines that cover each edge once, in either direction."""
-    links: defaultdict[Spot, set[Spot]] = defaultdict(set)
+    links: defaultdict[GridPoint, set[GridPoint]] = defaultdict(set)
     for start, end in steps:
         if start != end:
             links[start].add(end)
@@ -85,7 +85,7 @@ def polylines(steps: Iterable[Step]) -> list[list[Spot]]:
     return lines
 
 
-def _line(links: "defaultdict[Spot, set[Spot]]", start: Spot) -> list[Spot]:
+def _line(links: "defaultdict[GridPoint, set[GridPoint]]", start: GridPoint) -> list[GridPoint]:
     line = [start]
     while links[line[-1]]:
         spot = line[-1]

@@ -9,10 +9,10 @@ from ..._types import BoolArray, FloatArray, IndexArray
 from ..trees.fragments import Fragments
 from ..trees.tree import PartitionTree
 from .camera import Camera
-from .clip import Polygons, clip, following, owners
-from .colours import ColourArray, lit
+from .clip import Polygons, clip, next_corners, polygon_of_corner
+from .colours import ColourArray, shaded_colours
 from .creases import Facets
-from .hidden import visible
+from .hidden_lines import visible_parts
 
 #: "shaded": lit facets with edges; "hidden": white facets with black edges that hide edges behind
 #: them; "edges": edges alone, hidden ones too.
@@ -22,7 +22,7 @@ Style: TypeAlias = Literal["shaded", "hidden", "edges"]
 Edges: TypeAlias = Literal["feature", "all", "none"]
 
 #: The least distance from the eye that is painted, as a fraction of the scene's largest distance.
-_NEAR = 1e-6
+_MIN_DEPTH = 1e-6
 
 #: A facet is seen edge-on if the cosine between its normal and the view is at most this.
 EDGE_ON = 1e-9
@@ -87,7 +87,7 @@ def facing(facets: Facets, camera: Camera) -> BoolArray:
     return camera.facing(facets.firsts, facets.normals) > EDGE_ON
 
 
-def painted(
+def painting_of(
     tree: PartitionTree,
     scene: Scene,
     camera: Camera,
@@ -110,7 +110,7 @@ def painted(
     source, node = fragments.source[kept], fragments.node[kept]
     fills = None if style == "edges" else _fills(scene, camera, style)[source]
     polygons, lines = _lined(polygons, style)
-    return Painting(size, polygons, lines, fills, source, _runs(node, fills))
+    return Painting(size, polygons, lines, fills, source, _run_numbers(node, fills))
 
 
 def _lined(polygons: Polygons, style: Style) -> tuple[Polygons, FloatArray]:
@@ -119,8 +119,12 @@ def _lined(polygons: Polygons, style: Style) -> tuple[Polygons, FloatArray]:
     If there are too many edges, return the marked polygons and no lines.
     """
     marked = np.flatnonzero(polygons.marked)
-    ends = polygons.corners[np.stack([marked, following(polygons.offsets)[marked]], axis=1)]
-    lines = ends if style == "edges" else visible(polygons, ends, owners(polygons.offsets)[marked])
+    ends = polygons.corners[np.stack([marked, next_corners(polygons.offsets)[marked]], axis=1)]
+    lines = (
+        ends
+        if style == "edges"
+        else visible_parts(polygons, ends, polygon_of_corner(polygons.offsets)[marked])
+    )
     if lines is None:
         return polygons, ends[:0]
     plain = Polygons(polygons.corners, polygons.offsets, np.zeros_like(polygons.marked))
@@ -133,14 +137,14 @@ def _in_pixels(
     marked = scene.facets.drawn_edges(fragments, scene.drawn)
     placed = camera.place(fragments.vertices)
     polygons = Polygons(placed, fragments.offsets, marked)
-    polygons, kept = _framed(polygons, camera, size)
+    polygons, kept = _clipped_to_frame(polygons, camera, size)
     width, height = size
     image = camera.flatten(polygons.corners) * (height / 2)
     pixels = np.column_stack([width / 2 + image[:, 0], height / 2 - image[:, 1]])
     return Polygons(pixels, polygons.offsets, polygons.marked), kept
 
 
-def _framed(
+def _clipped_to_frame(
     polygons: Polygons, camera: Camera, size: tuple[int, int]
 ) -> tuple[Polygons, IndexArray]:
     """Return the parts of polygons in front of the eye and in the picture, and their indices."""
@@ -161,7 +165,7 @@ def _frame(
     if not camera.is_perspective:
         return [(sign * np.eye(3)[axis], -reach) for axis, sign, reach in sides]
     farthest = float(np.abs(placed).max()) if len(placed) else 1.0
-    near = (np.eye(3)[2], _NEAR * farthest)
+    near = (np.eye(3)[2], _MIN_DEPTH * farthest)
     return [near] + [(sign * np.eye(3)[a] + reach * np.eye(3)[2], 0.0) for a, sign, reach in sides]
 
 
@@ -170,10 +174,10 @@ def _fills(scene: Scene, camera: Camera, style: Style) -> ColourArray:
         return np.full((len(scene.facets), 3), 255, dtype=np.uint8)
     normals = scene.facets.normals
     turned = np.where(facing(scene.facets, camera)[:, None], normals, -normals)
-    return lit(scene.colours, turned, camera.axes)
+    return shaded_colours(scene.colours, turned, camera.axes)
 
 
-def _runs(node: IndexArray, fills: ColourArray | None) -> IndexArray:
+def _run_numbers(node: IndexArray, fills: ColourArray | None) -> IndexArray:
     """Return an integer for each polygon that increases when the node or the colour changes."""
     keys = node[:, None] if fills is None else np.column_stack([node, fills])
     changes = (keys[1:] != keys[:-1]).any(axis=1)

@@ -18,13 +18,13 @@ _PALETTE = ["#d1495b", "#edae49", "#00798c", "#7a9e4b", "#30638e", "#9c6b98", "#
 _INK = np.array([26, 28, 32], dtype=np.uint8)
 
 #: The width of the empty margin around the map and around the strip, in pixels.
-_SPACE = 12.0
+_MARGIN = 12.0
 
 #: The fraction of the picture's height that the strip takes.
 _STRIP = 0.16
 
 #: Half of the line width of segments on the map, in pixels.
-_HALF = 2.0
+_HALF_LINE_WIDTH = 2.0
 
 
 def panorama(
@@ -120,27 +120,31 @@ def _strip(
     fragments: Fragments, viewpoint: FloatArray, parallel: bool, frame: tuple[int, int]
 ) -> tuple[Polygons, IndexArray]:
     ends = fragments.vertices.reshape(-1, 2, 2)
-    spans, of = _across(ends, viewpoint) if parallel else _around(ends, viewpoint)
+    spans, of = (
+        _parallel_intervals(ends, viewpoint)
+        if parallel
+        else _perspective_intervals(ends, viewpoint)
+    )
     width, height = frame
-    left, right = (_SPACE + spans * (width - 2 * _SPACE)).T
-    top, bottom = height * (1 - _STRIP), height - _SPACE
+    left, right = (_MARGIN + spans * (width - 2 * _MARGIN)).T
+    top, bottom = height * (1 - _STRIP), height - _MARGIN
     corners = [(left, top), (right, top), (right, bottom), (left, bottom)]
     quads = _quads(np.stack([np.stack(np.broadcast_arrays(*c), axis=1) for c in corners], axis=1))
     right_side = np.array([-1.0, 0.0])
-    quads, inner = clip(quads, -right_side, _SPACE)
-    quads, left_over = clip(quads, right_side, _SPACE - width)
+    quads, inner = clip(quads, -right_side, _MARGIN)
+    quads, left_over = clip(quads, right_side, _MARGIN - width)
     return quads, fragments.source[of[inner[left_over]]]
 
 
 def _border(frame: tuple[int, int]) -> FloatArray:
     """Return the four sides of the strip as segments in pixels, (4, 2, 2)."""
-    left, right = _SPACE, frame[0] - _SPACE
-    top, bottom = frame[1] * (1 - _STRIP), frame[1] - _SPACE
+    left, right = _MARGIN, frame[0] - _MARGIN
+    top, bottom = frame[1] * (1 - _STRIP), frame[1] - _MARGIN
     around = np.array([(left, top), (right, top), (right, bottom), (left, bottom)])
     return np.stack([around, np.roll(around, -1, axis=0)], axis=1)
 
 
-def _across(ends: FloatArray, direction: FloatArray) -> tuple[FloatArray, IndexArray]:
+def _parallel_intervals(ends: FloatArray, direction: FloatArray) -> tuple[FloatArray, IndexArray]:
     """Return the interval of the strip's width, from 0 to 1, of each segment in a parallel view.
 
     The second array has the index of the segment of each interval.
@@ -152,7 +156,7 @@ def _across(ends: FloatArray, direction: FloatArray) -> tuple[FloatArray, IndexA
     return shares, np.arange(len(ends))
 
 
-def _around(ends: FloatArray, eye: FloatArray) -> tuple[FloatArray, IndexArray]:
+def _perspective_intervals(ends: FloatArray, eye: FloatArray) -> tuple[FloatArray, IndexArray]:
     """Return intervals of the strip's width, from 0 to 1, of segments seen from an eye.
 
     The second array has the segment of each interval. Each interval is repeated one strip width to
@@ -177,7 +181,7 @@ def _map(
     points = ends.reshape(-1, 2) if parallel else np.vstack([ends.reshape(-1, 2), viewpoint])
     points = points if len(points) else np.zeros((1, 2))
     low, high = points.min(axis=0), points.max(axis=0)
-    width, height = frame[0] - 4 * _SPACE, frame[1] * (1 - _STRIP) - 4 * _SPACE
+    width, height = frame[0] - 4 * _MARGIN, frame[1] * (1 - _STRIP) - 4 * _MARGIN
     extent = high - low
     # A flat scene fills the width of the picture; a single point may have any scale.
     extent = np.maximum(extent, 1e-9 * float(extent.max())) if extent.any() else np.ones(2)
@@ -198,7 +202,11 @@ def _map(
 def _bands(ends: FloatArray) -> Polygons:
     along = ends[:, 1] - ends[:, 0]
     lengths = np.hypot(along[:, 0], along[:, 1])[:, None]
-    side = _HALF * np.column_stack([-along[:, 1], along[:, 0]]) / np.where(lengths > 0, lengths, 1)
+    side = (
+        _HALF_LINE_WIDTH
+        * np.column_stack([-along[:, 1], along[:, 0]])
+        / np.where(lengths > 0, lengths, 1)
+    )
     a, b = ends[:, 0], ends[:, 1]
     return _quads(np.stack([a + side, b + side, b - side, a - side], axis=1))
 
@@ -213,7 +221,7 @@ def _arrow(direction: FloatArray) -> FloatArray:
     x, y = scaled / np.hypot(*scaled)
     # Pixel coordinates grow downwards.
     along, side = np.array([x, -y]), np.array([y, x])
-    tip = np.array([2.5 * _SPACE, 2.5 * _SPACE]) + 14 * along
+    tip = np.array([2.5 * _MARGIN, 2.5 * _MARGIN]) + 14 * along
     back = tip - 28 * along
     neck = tip - 10 * along
     outline = [tip, neck + 6 * side, neck + 1.5 * side, back + 1.5 * side]

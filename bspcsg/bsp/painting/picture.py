@@ -13,13 +13,13 @@ from ...errors import FormatError, InvalidMeshError, LimitError, invalid_paramet
 from ...formats.atomic import write_file
 from ...formats.raw import compacted
 from ...mesh.weld import welded
-from ...parameters import at_least, file_path, number, positive, shown, truth_value, word
+from ...parameters import at_least, file_path, number, one_of, positive, shown, truth_value
 from ..trees.facets import mesh_of
 from ..trees.tree import PartitionTree
 from .camera import Camera, View
 from .colours import DEFAULT, ColourArray, colour, colours
 from .creases import Facets
-from .painting import Edges, Painting, Scene, Style, facing, painted
+from .painting import Edges, Painting, Scene, Style, facing, painting_of
 from .png import canvas_size, line_samples, png, png_of_samples
 from .raster import Triangles, in_front, raster
 from .svg import svg
@@ -149,7 +149,7 @@ class _LargePicture(Picture):
         settings = self._settings
         size = canvas_size(settings.frame, self.samples)
         line = line_samples(self.line_width, self.samples)
-        seen = raster(self._scene, settings.camera, size, line=line, **settings.ways)
+        seen = raster(self._scene, settings.camera, size, line=line, **settings.raster_arguments)
         return png_of_samples(*seen, self.background, self.samples)
 
     @property
@@ -178,7 +178,7 @@ class _PictureSettings:
     samples: int
 
     @property
-    def ways(self) -> dict[str, Any]:
+    def raster_arguments(self) -> dict[str, Any]:
         """The parameters that select visible triangles and edges, as arguments for `raster`."""
         return {name: getattr(self, name) for name in ("style", "edges", "crease", "cull")}
 
@@ -258,8 +258,8 @@ def picture(
     Fuchs, Kedem, Naylor 1980, "On visible surface generation by a priori tree structures".
     """
     frame = checked_size(size)
-    word(get_args(Style), style, "style")
-    word(get_args(Edges), edges, "edges")
+    one_of(get_args(Style), style, "style")
+    one_of(get_args(Edges), edges, "edges")
     facets, mesh = _shapes_of(scene)
     points, count = (facets.corners, len(facets)) if mesh is None else (mesh[0], len(mesh[1]))
     base = colours(DEFAULT if colors is None else colors, count, "colors")
@@ -294,7 +294,7 @@ def _ordered(
         scene, hidden = scene.take(np.flatnonzero(front)), None
     if tree is None:
         tree = _tree(scene.facets)
-    return painted(tree, scene, camera, settings.frame, style, hidden)
+    return painting_of(tree, scene, camera, settings.frame, style, hidden)
 
 
 def _camera(

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..._types import BoolArray, FloatArray, IndexArray
 from ...errors import BspcsgError, LimitError
-from .clip import following, owners
+from .clip import next_corners, polygon_of_corner
 from .colours import ColourArray
 from .painting import Painting
 
@@ -149,8 +149,8 @@ def _tuples(painting: Painting) -> list[tuple[int, ...]] | None:
 def _lines(painting: Painting, places: FloatArray) -> dict[int, list[list[float]]]:
     polygons = painting.polygons
     marked = np.flatnonzero(polygons.marked)
-    ends = np.hstack([places[marked], places[following(polygons.offsets)[marked]]]).tolist()
+    ends = np.hstack([places[marked], places[next_corners(polygons.offsets)[marked]]]).tolist()
     found: dict[int, list[list[float]]] = {}
-    for owner, pair in zip(owners(polygons.offsets)[marked].tolist(), ends, strict=True):
+    for owner, pair in zip(polygon_of_corner(polygons.offsets)[marked].tolist(), ends, strict=True):
         found.setdefault(owner, []).append(pair)
     return found

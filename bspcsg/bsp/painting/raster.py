@@ -17,7 +17,7 @@ import numpy as np
 
 from ..._types import BoolArray, FloatArray, IndexArray
 from .camera import Camera
-from .colours import ColourArray, lit
+from .colours import ColourArray, shaded_colours
 from .painting import EDGE_ON, Edges, Style
 
 #: The largest number of samples, or of rows of triangles, in one array, which then takes about ten
@@ -111,7 +111,7 @@ class Triangles:
         return np.stack([self.faces.ravel()[chosen], self.faces[:, [1, 2, 0]].ravel()[chosen]], 1)
 
 
-class Buffer:
+class ZBuffer:
     """A z-buffer: the depth and the index of the nearest triangle in each sample.
 
     Parameters
@@ -141,7 +141,7 @@ class Buffer:
 
     def fill(self, placed: FloatArray, faces: IndexArray, chosen: IndexArray) -> None:
         """Draw the chosen triangles in the samples in which no nearer triangle is drawn."""
-        for some in _shares(self._rows(placed, faces[chosen]), _MAX_SAMPLES_PER_BATCH):
+        for some in _row_slices(self._rows(placed, faces[chosen]), _MAX_SAMPLES_PER_BATCH):
             self._fill(placed, faces, chosen[some])
 
     def _rows(self, placed: FloatArray, faces: IndexArray) -> IndexArray:
@@ -181,7 +181,7 @@ class Buffer:
         low, high = np.minimum(np.minimum(z0, z1), z2), np.maximum(np.maximum(z0, z1), z2)
         owner, row, left, right = owner[seen], row[seen], left[seen], right[seen]
         at_left = z0[owner] + down[owner] * (row - y0[owner]) - across[owner] * x0[owner]
-        for some in _shares(right - left, _MAX_SAMPLES_PER_BATCH):
+        for some in _row_slices(right - left, _MAX_SAMPLES_PER_BATCH):
             span, column = _expanded((right - left)[some])
             span += some.start
             mine = owner[span]
@@ -209,7 +209,7 @@ class Buffer:
         ends = self._framed(ends)
         counts = np.ceil(np.abs(ends[:, 1, :2] - ends[:, 0, :2]).max(axis=1, initial=0)) + 1
         counts = counts.astype(np.int64)
-        for some in _shares(counts, _MAX_SAMPLES_PER_BATCH):
+        for some in _row_slices(counts, _MAX_SAMPLES_PER_BATCH):
             owner, step = _expanded(counts[some])
             owner += some.start
             share = (step / np.maximum(counts[owner] - 1, 1))[:, None]
@@ -277,7 +277,7 @@ def raster(
     ink : (height, width) bool
         True for samples on drawn edges.
     """
-    buffer = Buffer(camera, size)
+    buffer = ZBuffer(camera, size)
     placed = buffer.placed(scene.vertices)
     front = scene.facing(camera)
     is_culled = _hides_its_back(scene, camera) if cull is None else cull
@@ -289,7 +289,7 @@ def raster(
         fills = np.full((len(scene.faces), 3), 255, dtype=np.uint8)
     else:
         normals = np.where(front[:, None], scene.normals, -scene.normals)
-        fills = lit(scene.colours, normals, camera.axes)
+        fills = shaded_colours(scene.colours, normals, camera.axes)
     return buffer.nearest.reshape(shape), fills, _thickened(ink, line)
 
 
@@ -342,7 +342,7 @@ def _expanded(counts: IndexArray) -> tuple[IndexArray, IndexArray]:
     return owner, np.arange(len(owner)) - starts[owner]
 
 
-def _shares(counts: IndexArray, most: int) -> Iterator[slice]:
+def _row_slices(counts: IndexArray, most: int) -> Iterator[slice]:
     """Yield consecutive slices of rows whose counts add up to at most `most`, or single rows."""
     ends = np.cumsum(counts)
     start = 0

@@ -6,9 +6,9 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...attributes.colours import hexadecimal
-from .clip import following
+from .clip import next_corners
 from .colours import ColourArray
-from .outline import Spot, Step, outlines, polylines, straightened
+from .outline import DirectedEdge, GridPoint, outlines, polylines, straightened
 from .painting import Painting
 
 #: The number of grid points in a pixel: coordinates in the file are integers of this grid.
@@ -52,8 +52,8 @@ def _hex(value: ColourArray) -> str:
 
 def _paths(painting: Painting) -> list[str]:
     polygons = painting.polygons
-    spots = _spots(polygons.corners)
-    after = following(polygons.offsets).tolist()
+    spots = _grid_points(polygons.corners)
+    after = next_corners(polygons.offsets).tolist()
     marked, starts = polygons.marked.tolist(), polygons.offsets.tolist()
     paths = []
     for _, members in groupby(range(len(painting.group)), key=painting.group.tolist().__getitem__):
@@ -63,33 +63,33 @@ def _paths(painting: Painting) -> list[str]:
             paths += _filled(pieces, _hex(painting.fills[group[0]]))
         corners = (corner for i in group for corner in range(starts[i], starts[i + 1]))
         paths += _drawn([(spots[c], spots[after[c]]) for c in corners if marked[c]])
-    ends = _spots(painting.lines.reshape(-1, 2))
+    ends = _grid_points(painting.lines.reshape(-1, 2))
     return paths + _drawn(list(zip(ends[::2], ends[1::2], strict=True)))
 
 
-def _spots(points: FloatArray) -> list[Spot]:
+def _grid_points(points: FloatArray) -> list[GridPoint]:
     return [(x, y) for x, y in np.rint(points * _GRID).astype(np.int64).tolist()]
 
 
-def _turned(polygon: list[Spot]) -> list[Spot]:
+def _turned(polygon: list[GridPoint]) -> list[GridPoint]:
     """Return the polygon with positive area: itself or reversed."""
     pairs = zip(polygon, polygon[1:] + polygon[:1], strict=True)
     area = sum(ax * by - ay * bx for (ax, ay), (bx, by) in pairs)
     return polygon if area >= 0 else polygon[::-1]
 
 
-def _filled(pieces: list[list[Spot]], fill: str) -> list[str]:
+def _filled(pieces: list[list[GridPoint]], fill: str) -> list[str]:
     loops = [straightened(loop) for loop in outlines(pieces)]
     path = "".join(_relative(loop) + "z" for loop in loops if len(loop) > 2)
     return [f'<path fill="{fill}" stroke="{fill}" d="{path}"/>'] if path else []
 
 
-def _drawn(steps: list[Step]) -> list[str]:
+def _drawn(steps: list[DirectedEdge]) -> list[str]:
     path = "".join(map(_relative, polylines(steps)))
     return [f'<path class="e" d="{path}"/>'] if path else []
 
 
-def _relative(spots: list[Spot]) -> str:
+def _relative(spots: list[GridPoint]) -> str:
     """Return the path commands that go to the first point and then relatively to each next."""
     (x, y), *_ = spots
     steps = [(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(spots)]

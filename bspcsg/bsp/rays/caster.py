@@ -490,16 +490,16 @@ def hits_of(facets: RayTargets, columns: Any, normals: FloatArray | None = None)
     if normals is None:
         normal = facets.normals(facet) if len(facets.corners) else np.zeros((len(facet), d))
     else:
-        normal = _taken(normals, facet)
+        normal = _rows_at(normals, facet)
     normal[missed] = np.nan
     source = facets.source
     if source is not None:
-        source = _taken(source, facet)
+        source = _rows_at(source, facet)
         source[missed] = -1
     return Hits(facet, t, kind, weights.reshape(-1, d), point.reshape(-1, d), normal, source)
 
 
-def _taken(rows: Any, index: IndexArray) -> Any:
+def _rows_at(rows: Any, index: IndexArray) -> Any:
     """Return the rows at the indices; index -1 gives an arbitrary row."""
     return rows[index] if len(rows) else np.zeros((len(index), *rows.shape[1:]), rows.dtype)
 

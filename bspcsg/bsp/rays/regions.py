@@ -29,7 +29,7 @@ def region_of(
     low = np.floor((points.min(axis=0) - margin) / step).astype(np.int64) - 1
     high = np.ceil((points.max(axis=0) + margin) / step).astype(np.int64) + 1
     region: Polytope | None = Polytope.box(low.tolist(), high.tolist())
-    for above, side in _way(nodes, node):
+    for above, side in _path_from_root(nodes, node):
         region = region and region.clipped(nodes.coefficients[above], side)
     dimension = corners.shape[-1]
     if region is None:
@@ -37,7 +37,7 @@ def region_of(
     return region.shape(step)
 
 
-def _way(nodes: StabNodes, node: int) -> list[tuple[int, int]]:
+def _path_from_root(nodes: StabNodes, node: int) -> list[tuple[int, int]]:
     """Return a node's ancestors, root first, each with the side (-1, 1) that leads to the node."""
     if at_least(0, node, "node") >= len(nodes):
         raise invalid_parameter(

@@ -9,7 +9,7 @@ from ..._types import FloatArray, IndexArray
 from ...errors import InvalidMeshError
 from ...geometry.arrays import doubles
 from ...mesh import interop
-from ...solid.counting import uncounted
+from ...solid.ledger import uncounted
 from ...solid.solid import Solid
 
 

@@ -12,14 +12,14 @@ from ...errors import InvalidMeshError, LimitError, core_errors, invalid_paramet
 from ...geometry.arrays import doubles
 from ...geometry.hyperplane import Hyperplane
 from ...geometry.transform import whole_steps
-from ...owned import owning
+from ...method_ownership import with_own_methods
 from ...parameters import number
 from ..trees.facets import chosen_pitch
 from .boundary import interval_rows
 from .flat_set import FlatSet
 
 
-@owning
+@with_own_methods
 class Intervals(FlatSet):
     """A union of intervals on the line.
 

@@ -14,18 +14,18 @@ from ..._core import ObjectTree as CoreTree
 from ..._types import FloatArray, Scalar, SetOp, WindingRule
 from ...errors import LimitError, core_errors, invalid_parameter
 from ...mesh import interop
-from ...owned import owning
+from ...method_ownership import with_own_methods
 from ...parameters import (
     SET_OPS,
     dimension_number,
-    of_kind,
+    instance_of,
+    one_of,
     pitch_exponent,
     seed_number,
     truth_value,
     winding_rule,
-    word,
 )
-from ..trees.asking import pairs_of
+from ..trees.chosen_cuts import pairs_of
 from ..trees.facets import chosen_pitch
 from .boundary import boundary_arrays
 from .nearest import nearest_on_boundary
@@ -37,7 +37,7 @@ from .tree_set import TreeSet, set_of
 Set = TypeVar("Set", bound=TreeSet)
 
 
-@owning
+@with_own_methods
 class ObjectTree(TreeSet):
     """A set of points on the line, in the plane or in space as a partition tree; immutable.
 
@@ -93,7 +93,7 @@ class ObjectTree(TreeSet):
     ) -> None:
         dimension, rows, faces = boundary_arrays(facets)
         rule, order = winding_rule(winding), seed_number(seed)
-        order_of_facets = word(get_args(BuildPolicy), policy, "policy")
+        order_of_facets = one_of(get_args(BuildPolicy), policy, "policy")
         chosen = chosen_pitch(pitch, rows[:, :dimension])
         with core_errors():
             self._tree = CoreTree.build(
@@ -208,7 +208,7 @@ class ObjectTree(TreeSet):
         one lattice. ``trace.result`` is the merged tree itself; the operators of `Region` may
         return another tree of the same set.
         """
-        word(SET_OPS, op, "op")
+        one_of(SET_OPS, op, "op")
         a, b = self._aligned(set_of(other))
         with core_errors():
             result, rows = a.merge_steps(b, op)
@@ -378,14 +378,14 @@ def merge(a: Set, b: TreeSet, op: SetOp) -> Set:
     `b`. For regions this calls their operators, which may sweep over boundaries instead;
     ``merge(a.tree, b.tree, op)`` always merges trees.
     """
-    word(SET_OPS, op, "op")
+    one_of(SET_OPS, op, "op")
     set_of(a, "a")
     return a._merged(set_of(b, "b"), op)
 
 
 def partition_tree(tree: ObjectTree, hyperplane: NormalAndOffset) -> ObjectTree:
     """Return the same set as a tree with `hyperplane` as root cut (`ObjectTree.partitioned`)."""
-    return of_kind(ObjectTree, tree, "tree").partitioned(*pairs_of([hyperplane])[0])
+    return instance_of(ObjectTree, tree, "tree").partitioned(*pairs_of([hyperplane])[0])
 
 
 def split_tree(tree: Set, hyperplane: NormalAndOffset) -> tuple[Set, Set]:

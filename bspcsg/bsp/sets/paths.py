@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 
 from ..._types import FloatArray
-from ...parameters import of_kind
+from ...parameters import instance_of
 from .region import Region
 
 #: A corner in exact coordinates.
@@ -78,7 +78,7 @@ def boundary_paths(region: Region) -> tuple[BoundaryPath, ...]:
     >>> path.points.tolist(), path.start.tolist(), path.end.tolist()
     ([[0.0, 0.0]], [0.0, -1.0], [1.0, 0.0])
     """
-    if of_kind(Region, region, "region").is_bounded:
+    if instance_of(Region, region, "region").is_bounded:
         return tuple(BoundaryPath(outline.points) for outline in region.outlines)
     side = float(_HALF_SIDE_STEPS * Fraction(10) ** region.pitch)
     corners = [(-side, -side), (side, -side), (side, side), (-side, side)]
@@ -90,7 +90,7 @@ def boundary_paths(region: Region) -> tuple[BoundaryPath, ...]:
 
 def _without_border(loop: list[_Point], border: Fraction) -> list[BoundaryPath]:
     """Return the paths that are left of a loop after removing its edges along a square's border."""
-    ends = [_along(a, b, border) for a, b in zip(loop, [*loop[1:], loop[0]], strict=True)]
+    ends = [_is_on_border(a, b, border) for a, b in zip(loop, [*loop[1:], loop[0]], strict=True)]
     if not any(ends):
         return [BoundaryPath(_rounded(loop))]
     first = ends.index(True) + 1
@@ -101,20 +101,20 @@ def _without_border(loop: list[_Point], border: Fraction) -> list[BoundaryPath]:
             open_path.append(corner)
             continue
         if len(open_path) > 1:
-            paths.append(_endless(open_path))
+            paths.append(_infinite_path(open_path))
         open_path = [corner]
     return paths
 
 
-def _along(a: _Point, b: _Point, border: Fraction) -> bool:
+def _is_on_border(a: _Point, b: _Point, border: Fraction) -> bool:
     """Return true if an edge lies on the border of the square with half side `border`."""
     return any(abs(p) == border and p == q for p, q in zip(a, b, strict=True))
 
 
-def _endless(corners: list[_Point]) -> BoundaryPath:
+def _infinite_path(corners: list[_Point]) -> BoundaryPath:
     """Return the path from infinity to infinity along corners; the two ends stand for infinity."""
     start, end = _direction(*corners[:2]), _direction(*corners[-2:])
-    inner = corners[1:-1] or [_foot(*corners)]
+    inner = corners[1:-1] or [_nearest_to_origin(*corners)]
     return BoundaryPath(_rounded(inner), start, end)
 
 
@@ -127,7 +127,7 @@ def _direction(a: _Point, b: _Point) -> FloatArray:
     return np.asarray(direction)
 
 
-def _foot(a: _Point, b: _Point) -> _Point:
+def _nearest_to_origin(a: _Point, b: _Point) -> _Point:
     """Return the point nearest to the origin on the line through two points."""
     (x, y), (u, v) = a, (b[0] - a[0], b[1] - a[1])
     t = (x * u + y * v) / (u * u + v * v)

@@ -17,21 +17,21 @@ from ...geometry.arrays import doubles
 from ...geometry.per_axis import per_axis
 from ...geometry.transform import Factor
 from ...mesh import interop
-from ...owned import owning
+from ...method_ownership import with_own_methods
 from ...parameters import (
     SEGMENTS,
     file_path,
     function_of,
+    instance_of,
     number,
-    of_kind,
-    pair,
+    one_of,
     positive,
-    radius,
+    radius_or_half_diameter,
     shown,
     sides_around,
     truth_value,
+    two_values,
     winding_rule,
-    word,
 )
 from ...shapes.primitives import extrude, revolve
 from ...shapes.sweep import unit_circle
@@ -59,7 +59,7 @@ FillRule: TypeAlias = WindingRule | Literal["negative"]
 _AXES = {"x": (1.0, 0.0), "y": (0.0, 1.0)}
 
 
-@owning
+@with_own_methods
 class Region(FlatSet):
     """A set of points of the plane with polygonal boundary.
 
@@ -157,7 +157,7 @@ class Region(FlatSet):
 
         Give its sides as two numbers or one pair; a single number makes a square.
         """
-        sides = pair(width, "size") if height is None else (width, height)
+        sides = two_values(width, "size") if height is None else (width, height)
         w, h = positive(sides[0], "width"), positive(sides[1], "height")
         corners = np.array([(0, 0), (w, 0), (w, h), (0, h)], dtype=np.float64)
         return cls(corners - (w / 2, h / 2) if truth_value(center, "center") else corners)
@@ -175,7 +175,7 @@ class Region(FlatSet):
         segments : int
             The number of sides of the polygon, at least 3.
         """
-        size = positive(radius(r, d, "A circle"), "r")
+        size = positive(radius_or_half_diameter(r, d, "A circle"), "r")
         return cls(unit_circle(sides_around(3, segments, "segments")) * size)
 
     @classmethod
@@ -208,7 +208,10 @@ class Region(FlatSet):
         """
         around = sides_around(3, sides, "sides")
         if flats is None:
-            return cls(unit_circle(around) * positive(radius(r, d, "A regular polygon"), "r"))
+            return cls(
+                unit_circle(around)
+                * positive(radius_or_half_diameter(r, d, "A regular polygon"), "r")
+            )
         if r is not None or d is not None:
             raise invalid_parameter("A regular polygon needs exactly one of r, d and flats.")
         # Every second corner of a polygon with twice as many makes axis-parallel sides exact.
@@ -241,7 +244,10 @@ class Region(FlatSet):
         >>> Region.slot(10, d=4).bounds.tolist()
         [[-5.0, -2.0], [5.0, 2.0]]
         """
-        size, whole = positive(radius(r, d, "A slot"), "r"), positive(length, "length")
+        size, whole = (
+            positive(radius_or_half_diameter(r, d, "A slot"), "r"),
+            positive(length, "length"),
+        )
         if whole < 2 * size:
             raise invalid_parameter(
                 f"The length of a slot must be at least its width {2 * size:g}, not {whole:g}."
@@ -291,7 +297,7 @@ class Region(FlatSet):
             raise invalid_parameter(
                 f"regions must be a list of Region objects, not {shown(regions)}."
             )
-        parts = [of_kind(Region, part, "Each part") for part in regions]
+        parts = [instance_of(Region, part, "Each part") for part in regions]
         if not parts:
             return cls()
         trees = on_one_lattice([part.tree for part in parts])
@@ -492,7 +498,7 @@ class Region(FlatSet):
         """
         given = () if factor is None else (factor, *others)
         factors = per_axis(given, "scale factor", missing=1.0, x=x, y=y)
-        along = vector2(pair(factors, "factor"), "factor")
+        along = vector2(two_values(factors, "factor"), "factor")
         return self._placed_about(about, transform.scaling([*along, 1.0]))
 
     def mirror(
@@ -510,7 +516,7 @@ class Region(FlatSet):
         given = () if normal is None else (normal, *others)
         across = per_axis(given, "normal", x=x, y=y)
         if isinstance(across, str):
-            across = _AXES[word(_AXES, across.lower(), "normal")]
+            across = _AXES[one_of(_AXES, across.lower(), "normal")]
         factor = transform.mirroring([*vector2(across, "normal"), 0.0])
         return self._placed_about(about, factor)
 
@@ -843,7 +849,7 @@ class Region(FlatSet):
 
     def to_shapely(self) -> Any:
         """Return the region as a ``shapely.MultiPolygon``; shapely must be installed."""
-        shapely = interop.optional("shapely", "shapely")
+        shapely = interop.import_optional("shapely", "shapely")
         return shapely.MultiPolygon([(shell, holes) for shell, *holes in self._parts()])
 
     def _repr_svg_(self) -> str | None:

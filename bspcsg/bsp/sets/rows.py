@@ -9,7 +9,7 @@ from ..._types import FloatArray, Scalar
 from ...errors import invalid_parameter
 from ...geometry import hyperplane as exact
 from ...geometry.arrays import doubles
-from ..trees.asking import pairs_of
+from ..trees.chosen_cuts import pairs_of
 from .pieces import NormalAndOffset
 
 

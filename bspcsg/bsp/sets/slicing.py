@@ -9,8 +9,8 @@ from ..._types import FloatArray, Scalar, Vector
 from ...errors import core_errors
 from ...geometry.arrays import axes_of
 from ...geometry.hyperplane import Hyperplane, exact_number
-from ...geometry.transform import along, vector3
-from ...parameters import number, of_kind
+from ...geometry.transform import named_axis, vector3
+from ...parameters import instance_of, number
 from ...solid.solid import Solid
 from .region import Region
 
@@ -46,7 +46,7 @@ def slice_solid(
 
     Sections are in coordinates of the plane; parameters are those of `Solid.slice`.
     """
-    of_kind(Solid, solid, "solid")
+    instance_of(Solid, solid, "solid")
     if axes_of(offset) == 1:
         return _sections(solid, list(offset), normal, None)
     return _sections(solid, [offset], normal, origin)[0]
@@ -55,7 +55,7 @@ def slice_solid(
 def _sections(
     solid: Solid, offsets: list[Scalar], normal: str | Vector, origin: Vector | None
 ) -> list[Region]:
-    direction = vector3(along(normal), "normal")
+    direction = vector3(named_axis(normal), "normal")
     products = [_product(direction, offset, origin) for offset in offsets]
     planes = [Hyperplane.from_numbers(direction.tolist(), product) for product in products]
     tree = solid.normalized().tree

@@ -19,12 +19,12 @@ from ...errors import invalid_parameter
 from ...geometry.arrays import doubles
 from ...geometry.hyperplane import exact_number, exact_point
 from ...geometry.polytope import Corner, Polytope, cut_polygon, height
-from ...parameters import of_kind, shown
+from ...parameters import instance_of, shown
 from .objects import ObjectTree
 from .operators import SetOperators
 
 #: The pitch of the lattice of cones, whose steps are 1: directions are integer vectors.
-_WHOLE = 0
+_CONE_PITCH = 0
 
 #: The largest coordinate of a direction. Normals between such directions have 106 bits, which the
 #: core takes unrounded.
@@ -52,7 +52,7 @@ class SphericalRegion(SetOperators):
     __slots__ = ("_cone",)
 
     def __init__(self, cone: ObjectTree) -> None:
-        rows = of_kind(ObjectTree, cone, "cone").nodes.coefficients
+        rows = instance_of(ObjectTree, cone, "cone").nodes.coefficients
         if cone.dimension not in (2, 3) or any(row[-1] for row in rows):
             raise invalid_parameter(
                 "cone must be a set of 2 or 3 dimensions whose hyperplanes all pass through the"
@@ -65,18 +65,18 @@ class SphericalRegion(SetOperators):
     @classmethod
     def empty(cls, dimension: int = 3) -> Self:
         """Return the empty set of directions of the plane (dimension 2) or of space (3)."""
-        return cls(ObjectTree.uniform(dimension, full=False, pitch=_WHOLE))
+        return cls(ObjectTree.uniform(dimension, full=False, pitch=_CONE_PITCH))
 
     @classmethod
     def full(cls, dimension: int = 3) -> Self:
         """Return the set of all directions of the plane (dimension 2) or of space (3)."""
-        return cls(ObjectTree.uniform(dimension, full=True, pitch=_WHOLE))
+        return cls(ObjectTree.uniform(dimension, full=True, pitch=_CONE_PITCH))
 
     @classmethod
     def hemisphere(cls, axis: Any) -> Self:
         """Return all directions within a quarter turn of an axis, a vector (2,) or (3,)."""
-        whole = _whole(axis)
-        return cls(ObjectTree.half_space([-x for x in whole], 0, pitch=_WHOLE))
+        whole = _primitive_direction(axis)
+        return cls(ObjectTree.half_space([-x for x in whole], 0, pitch=_CONE_PITCH))
 
     @classmethod
     def polygon(cls, corners: Any) -> Self:
@@ -320,7 +320,7 @@ def _listed(directions: Any) -> list[Any]:
         raise invalid_parameter(message) from error
 
 
-def _whole(direction: Any) -> list[int]:
+def _primitive_direction(direction: Any) -> list[int]:
     """Return the integers without a common divisor that have the same direction."""
     entries = direction if isinstance(direction, list) else np.asarray(direction, object).tolist()
     try:
@@ -337,12 +337,12 @@ def _whole(direction: Any) -> list[int]:
 
 def _snapped(direction: Any) -> list[int]:
     """Return integers up to 2**52 in nearly the same direction, equal for equal directions."""
-    whole = _whole(direction)
+    whole = _primitive_direction(direction)
     largest = max(map(abs, whole))
     if largest <= _MAX_DIRECTION:
         return whole
     grain = 1 << ((largest - 1).bit_length() - (_MAX_DIRECTION - 1).bit_length())
-    return _whole([round(Fraction(entry, grain)) for entry in whole])
+    return _primitive_direction([round(Fraction(entry, grain)) for entry in whole])
 
 
 def _cross(a: Sequence[int], b: Sequence[int]) -> list[int]:

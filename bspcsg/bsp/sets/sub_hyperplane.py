@@ -25,7 +25,7 @@ InnerSet: TypeAlias = Intervals | Region
 
 #: Two hyperplanes count as equal if their normals and, relatively, their offsets differ by at most
 #: this.
-_SAME = 1e-12
+_TOLERANCE = 1e-12
 
 #: A corner more than this many lattice steps from the origin, rounding included, is at the border
 #: of the lattice and stands for infinity.
@@ -139,7 +139,7 @@ class SubHyperplane(SetOperators):
             return _lattice_part(tree, row, None)
         below, above = (
             _lattice_part(tree, row, [piece for other, piece in _pieces(half) if other == seen])
-            for half, seen in ((minus, _lowest(row)), (plus, _lowest([-x for x in row])))
+            for half, seen in ((minus, _reduced_row(row)), (plus, _reduced_row([-x for x in row])))
         )
         return below & above
 
@@ -287,7 +287,7 @@ class SubHyperplane(SetOperators):
             )
         same = float(self._normal @ other._normal)
         gap = self._offset - np.sign(same) * other._offset
-        if abs(abs(same) - 1) > _SAME or abs(gap) > _SAME * max(1.0, abs(self._offset)):
+        if abs(abs(same) - 1) > _TOLERANCE or abs(gap) > _TOLERANCE * max(1.0, abs(self._offset)):
             raise invalid_parameter(
                 "The sub-hyperplanes lie in different hyperplanes; they must lie in the same."
             )
@@ -304,8 +304,8 @@ class SubHyperplane(SetOperators):
         inner = _frame(self._normal) @ other._normal
         height = other._offset - float(other._normal @ self._normal) * self._offset
         nothing = self._with(type(self._part).empty())
-        if np.abs(inner).max() <= _SAME:
-            gap = _SAME * max(1.0, abs(self._offset))
+        if np.abs(inner).max() <= _TOLERANCE:
+            gap = _TOLERANCE * max(1.0, abs(self._offset))
             sides = (height > gap, height < -gap)
             return (self if sides[0] else nothing, self if sides[1] else nothing)
         minus, plus = self._part.split(inner if self.dimension == 3 else inner[0], height)
@@ -388,7 +388,7 @@ def _tree(points: TreeSet) -> ObjectTree:
     return points.tree
 
 
-def _lowest(row: Iterable[int]) -> tuple[int, ...]:
+def _reduced_row(row: Iterable[int]) -> tuple[int, ...]:
     """Return the integers of a hyperplane divided by their greatest common divisor."""
     numbers = list(row)
     factor = int(np.gcd.reduce(np.array(numbers, dtype=object)))
@@ -399,11 +399,11 @@ def _pieces(tree: ObjectTree) -> Iterator[tuple[tuple[int, ...], FloatArray]]:
     """Yield each piece of a tree's boundary with its hyperplane, whose minus side has the set."""
     pieces, rows = tree.boundary(), tree.nodes.coefficients
     for number, owner in enumerate(pieces.owner.tolist()):
-        corners, row = pieces[number], _lowest(rows[owner])
+        corners, row = pieces[number], _reduced_row(rows[owner])
         outward = _outward(corners)
         if outward.any():
             facing = float(outward @ np.array([float(x) for x in row[:-1]]))
-            yield (row if facing > 0 else _lowest([-x for x in row])), corners
+            yield (row if facing > 0 else _reduced_row([-x for x in row])), corners
 
 
 def _outward(corners: FloatArray) -> FloatArray:

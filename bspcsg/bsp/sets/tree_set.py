@@ -8,8 +8,8 @@ from ..._core import ObjectTree as CoreTree
 from ..._types import FloatArray, Scalar, SetOp, SideArray
 from ...errors import core_errors, deprecated, invalid_parameter
 from ...parameters import shown
+from ...solid.point_classification import sides_of
 from ...solid.point_set import PointSet
-from ...solid.sides import sides_of
 from .rows import point_rows
 
 if TYPE_CHECKING:

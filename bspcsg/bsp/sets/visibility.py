@@ -63,7 +63,7 @@ def visibility_polygon(
     for a, b in walls:
         turn = _turn(place, a, b)
         if not turn:
-            if _between(place, a, b):
+            if _is_between(place, a, b):
                 raise invalid_parameter(
                     "The eye lies on a segment, so what it sees is not defined; move the eye off"
                     " the segment."
@@ -141,7 +141,7 @@ def _turn(a: _Point, b: _Point, c: _Point) -> Fraction:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-def _between(place: _Point, a: _Point, b: _Point) -> bool:
+def _is_between(place: _Point, a: _Point, b: _Point) -> bool:
     """Return true if `place`, a point of the line through a and b, lies on their segment."""
     return all(min(p, q) <= x <= max(p, q) for x, p, q in zip(place, a, b, strict=True))
 

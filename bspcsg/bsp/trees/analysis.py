@@ -212,7 +212,7 @@ def disjoint_segments(n: int, seed: int = 0) -> FloatArray:
     while found < count:
         start = random.integers(0, _SQUARE, 2)
         end = start + random.integers(-reach, reach + 1, 2)
-        if (start != end).any() and not _meet(kept[:found], np.stack([start, end])).any():
+        if (start != end).any() and not _do_meet(kept[:found], np.stack([start, end])).any():
             kept[found] = start, end
             found += 1
     return kept.astype(np.float64)
@@ -374,7 +374,7 @@ def _whole(segments: Any) -> IndexArray:
     return whole
 
 
-def _meet(segments: IndexArray, other: IndexArray) -> Any:
+def _do_meet(segments: IndexArray, other: IndexArray) -> Any:
     """Return for each segment whether it has a point in common with `other`, as (n,) bool.
 
     Exact for coordinates below 2^25.

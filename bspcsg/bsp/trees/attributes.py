@@ -20,7 +20,7 @@ from ...geometry.arrays import doubles
 from ...geometry.hyperplane import exact_number, exact_point
 from ...geometry.polytope import Corner, Polytope, cut_polygon, height
 from ...parameters import dimension_number, function_of, pitch_exponent, shown
-from .asking import lattice_rows
+from .chosen_cuts import lattice_rows
 from .facets import box_corners, corners_of
 from .node import RegionShape
 

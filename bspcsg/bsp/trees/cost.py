@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 
 from ...errors import core_errors
-from ...parameters import not_negative, word
+from ...parameters import not_negative, one_of
 
 if TYPE_CHECKING:
     from .tree import PartitionTree
@@ -53,7 +53,7 @@ def cost(tree: "PartitionTree", query: Query = "point", margin: float | None = N
     Naylor 1993, "Constructing good partitioning trees". That a line meets a convex body inside
     another with the ratio of their surfaces is Crofton's formula.
     """
-    wanted = word(("point", "ray"), query, "query")
+    wanted = one_of(("point", "ray"), query, "query")
     reach = tree.margin if margin is None else not_negative(margin, "margin")
     with core_errors():
         volume, surface, volumes, surfaces = tree.core.measures(reach)

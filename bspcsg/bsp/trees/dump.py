@@ -16,15 +16,15 @@ if TYPE_CHECKING:
 
 #: The arguments of `PartitionTree.from_core` for a stored tree: core object, whether non-planar
 #: facets are triangulated and degenerate ones dropped, and margin in model units.
-Parts: TypeAlias = tuple[FragmentTree, tuple[bool, bool], float]
+TreeParts: TypeAlias = tuple[FragmentTree, tuple[bool, bool], float]
 
 _FORMAT = "bspcsg partition tree"
 _VERSION = 3
 #: The version without hyperplanes given by the caller; trees that have none are still written in
 #: it.
-_SECOND = 2
+_VERSION_WITHOUT_HYPERPLANES = 2
 #: The version without a checksum.
-_FIRST = 1
+_VERSION_WITHOUT_CHECKSUM = 1
 
 
 def to_json(tree: "PartitionTree") -> str:
@@ -32,7 +32,7 @@ def to_json(tree: "PartitionTree") -> str:
     corners, offsets = tree.core.lattice()
     content = {
         "format": _FORMAT,
-        "version": _VERSION if tree.own_hyperplanes else _SECOND,
+        "version": _VERSION if tree.own_hyperplanes else _VERSION_WITHOUT_HYPERPLANES,
         "dimension": tree.dimension,
         "pitch": tree.pitch,
         "non_planar": "triangulate" if tree.lenience[0] else "error",
@@ -48,11 +48,15 @@ def to_json(tree: "PartitionTree") -> str:
     return _text(content | {"checksum": _checksum(content)})
 
 
-def parsed(text: str) -> Parts:
+def parsed(text: str) -> TreeParts:
     """Return the arguments of `PartitionTree.from_core` from the text that `to_json` wrote."""
     try:
         content = json.loads(text)
-        known = content["format"] == _FORMAT and content["version"] in (_FIRST, _SECOND, _VERSION)
+        known = content["format"] == _FORMAT and content["version"] in (
+            _VERSION_WITHOUT_CHECKSUM,
+            _VERSION_WITHOUT_HYPERPLANES,
+            _VERSION,
+        )
     except (ValueError, TypeError, KeyError) as error:
         raise FormatError(
             "The text is not a stored partition tree: it is no JSON, or lacks format and version.",
@@ -65,7 +69,7 @@ def parsed(text: str) -> Parts:
         )
         raise FormatError(message, "bad_snapshot")
     checksum = content.pop("checksum", None)
-    if content["version"] != _FIRST and checksum != _checksum(content):
+    if content["version"] != _VERSION_WITHOUT_CHECKSUM and checksum != _checksum(content):
         message = (
             "The stored tree was changed or damaged after it was written: its checksum does not"
             " match."
@@ -89,7 +93,7 @@ def _checksum(content: dict[str, Any]) -> int:
     return zlib.crc32(json.dumps(content, separators=(",", ":"), sort_keys=True).encode())
 
 
-def _rebuilt(content: dict[str, Any]) -> Parts:
+def _rebuilt(content: dict[str, Any]) -> TreeParts:
     lenience = content["non_planar"] == "triangulate", content["degenerate"] == "drop"
     own = content["own"] if content["version"] == _VERSION else ()
     with core_errors():

@@ -59,7 +59,7 @@ class Fragments:
     def take(self, indices: IndexArray) -> "Fragments":
         """Return the fragments with these indices, in this order."""
         starts, ends = self.offsets[:-1][indices], self.offsets[1:][indices]
-        corners = ranges(starts, ends)
+        corners = concatenated_ranges(starts, ends)
         return Fragments(
             self.vertices[corners],
             np.concatenate([[0], np.cumsum(ends - starts)]),
@@ -70,7 +70,7 @@ class Fragments:
         )
 
 
-def ranges(starts: IndexArray, ends: IndexArray) -> IndexArray:
+def concatenated_ranges(starts: IndexArray, ends: IndexArray) -> IndexArray:
     """Return ``starts[0], starts[0] + 1, …, ends[0] - 1, starts[1], …`` as one int64 array."""
     counts = ends - starts
     firsts = np.cumsum(counts) - counts

@@ -8,8 +8,8 @@ import numpy as np
 from ..._types import FloatArray, IndexArray, SideArray
 from ...errors import core_errors, invalid_parameter
 from ...geometry.arrays import doubles
-from ...parameters import shown, word
-from .fragments import Fragments, ranges
+from ...parameters import one_of, shown
+from .fragments import Fragments, concatenated_ranges
 from .node import Leaf, Node, Visitor
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def _painted(tree: "PartitionTree", eye: Any, direction: Any) -> IndexArray:
     with core_errors():
         order = tree.core.order(place, at_infinity)
     arrays = tree.arrays
-    return ranges(arrays["start"][order], arrays["end"][order])
+    return concatenated_ranges(arrays["start"][order], arrays["end"][order])
 
 
 def _viewpoint(tree: "PartitionTree", eye: Any, direction: Any) -> tuple[list[float], bool]:
@@ -81,7 +81,7 @@ def _by_distance(
 def walk(tree: "PartitionTree", order: Literal["pre", "in", "post"]) -> Iterator[Node | Leaf]:
     """Yield all nodes and leaves, minus child first; "in": a node between its two children."""
     orders = ("pre", "in", "post")
-    place = orders.index(word(orders, order, "order"))
+    place = orders.index(one_of(orders, order, "order"))
 
     def arranged(node: Node) -> Sequence[Node | Leaf]:
         steps: list[Node | Leaf] = list(node.children)

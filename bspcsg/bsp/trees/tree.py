@@ -15,18 +15,18 @@ from ...formats.atomic import write_file
 from ...formats.source import whole_content
 from ...geometry.arrays import doubles
 from ...geometry.polygon import convex_corners
-from ...parameters import at_least, not_negative, shown, word
-from .asking import Chooser, asked_tree, lattice_rows
+from ...parameters import at_least, not_negative, one_of, shown
+from .chosen_cuts import Chooser, lattice_rows, tree_with_chosen_cuts
 from .cost import Query, Stats, cost, stats
 from .dump import parsed, to_dot, to_json, to_svg
 from .facets import chosen_pitch, corners_of, mesh_triangles, vector_rows
 from .fragments import Fragments
 from .leaf_form import LeafForm, leaf_form
-from .moving import moved_core
 from .node import Leaf, Node, RegionShape, Side, Visitor
 from .order import back_to_front, far_to_near, front_to_back, near_to_far, visit, walk
 from .policy import Policy, checked_policy, core_options
 from .trace import Construction, PointTrace, RayCosts, RayTrace, division, point_trace, ray_trace
+from .tree_motion import moved_core
 
 if TYPE_CHECKING:
     from ..._core import NodeArrays
@@ -119,8 +119,8 @@ class PartitionTree:
     ) -> None:
         options = core_options(seed, sample, alpha, top, pitch)
         lenience = (
-            word(("error", "triangulate"), non_planar, "non_planar") == "triangulate",
-            word(("error", "drop"), degenerate, "degenerate") == "drop",
+            one_of(("error", "triangulate"), non_planar, "non_planar") == "triangulate",
+            one_of(("error", "drop"), degenerate, "degenerate") == "drop",
         )
         corners, offsets = corners_of(facets)
         step = chosen_pitch(pitch, corners)
@@ -128,7 +128,7 @@ class PartitionTree:
         with core_errors():
             if callable(policy):
                 count = options["sample"]
-                core = asked_tree((corners, offsets), policy, count, step, lenience, own)
+                core = tree_with_chosen_cuts((corners, offsets), policy, count, step, lenience, own)
             else:
                 options["pitch"] = step if own else options["pitch"]
                 name = checked_policy(policy)
@@ -241,7 +241,7 @@ class PartitionTree:
         (-2, index in `own_hyperplanes`).
         """
         nodes = self.core.nodes()
-        _seal(nodes)
+        _make_read_only(nodes)
         return nodes
 
     @cached_property
@@ -249,7 +249,7 @@ class PartitionTree:
         """The fragments of the coplanar sets of all nodes, in preorder of the nodes; read-only."""
         with core_errors():
             fragments = Fragments(*self.core.fragments())
-        _seal(vars(fragments))
+        _make_read_only(vars(fragments))
         return fragments
 
     @cached_property
@@ -391,7 +391,7 @@ class PartitionTree:
                 f"point must be one point of finite numbers, not {shown(point)}."
             )
         with core_errors():
-            return point_trace(self, self.core.path(_filled(place[0])))
+            return point_trace(self, self.core.path(_padded(place[0])))
 
     def locate(self, point: Any) -> Node | Leaf:
         """Return the leaf in which a point lies, or the inner node in whose hyperplane it lies."""
@@ -428,7 +428,7 @@ class PartitionTree:
                 " origin and one direction."
             )
         with core_errors():
-            hit, rows = self.core.ray_events(_filled(first[0]), _filled(second[0]))
+            hit, rows = self.core.ray_events(_padded(first[0]), _padded(second[0]))
         if hit is None:
             return ray_trace(None, math.inf, rows)
         return ray_trace(int(self.core.piece_sources()[hit[0]]), hit[1], rows)
@@ -634,7 +634,7 @@ def _cut_rows(cuts: Any) -> IndexArray:
     return np.ascontiguousarray(rows.reshape(-1, 2), dtype=np.int64)
 
 
-def _seal(arrays: Mapping[str, Any]) -> None:
+def _make_read_only(arrays: Mapping[str, Any]) -> None:
     """Make all arrays of a mapping read-only."""
     for array in arrays.values():
         array.flags.writeable = False
@@ -653,6 +653,6 @@ def _place(of: Node | Leaf | None) -> tuple[int | None, int]:
     return (None, 0) if of.parent is None else (of.parent.index, sides[of.side])
 
 
-def _filled(values: FloatArray) -> list[float]:
+def _padded(values: FloatArray) -> list[float]:
     """Return a vector of one to three coordinates as three, with zeros at the end."""
     return [*values.tolist(), 0.0, 0.0][:3]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..._types import FloatArray, MeshArrays
-from ...errors import InvalidMeshError, held
+from ...errors import InvalidMeshError, not_none
 from ...formats.files import read
 from ...solid.solid import Solid
 from .case import Case, Operand
@@ -31,7 +31,7 @@ def operands_of(case: Case) -> tuple[list[Solid], list[FloatArray | None]]:
     meshes = [_mesh_of(operand) for operand in case.operands]
     rows = [_given_pose(operand) for operand in case.operands]
     if case.pose is not None:
-        meshes[1], rows[1] = _drawn(case, meshes)
+        meshes[1], rows[1] = _in_pose(case, meshes)
     elif any(pose is not None for pose in rows):
         meshes = [
             mesh if pose is None else placed(mesh, pose)
@@ -41,18 +41,18 @@ def operands_of(case: Case) -> tuple[list[Solid], list[FloatArray | None]]:
     return solids, rows
 
 
-def _drawn(case: Case, meshes: Sequence[MeshArrays]) -> tuple[MeshArrays, FloatArray]:
+def _in_pose(case: Case, meshes: Sequence[MeshArrays]) -> tuple[MeshArrays, FloatArray]:
     """Return the second mesh of a case in its pose, and the rows of the pose."""
-    pose = held(case.pose, "the pose")
-    seed, number = held(case.seed, "the seed"), held(case.number, "the number")
+    pose = not_none(case.pose, "the pose")
+    seed, number = not_none(case.seed, "the seed"), not_none(case.number, "the number")
     first, second = meshes
     second = first if pose in OF_THE_FIRST else second
-    rows = pose_matrix(pose, _used(first), _used(second), seed, number)
+    rows = pose_matrix(pose, _used_vertices(first), _used_vertices(second), seed, number)
     moved = placed(second, rows)
     return shuffled(moved, seed, number) if pose == "same" else moved, rows
 
 
-def _used(mesh: MeshArrays) -> FloatArray:
+def _used_vertices(mesh: MeshArrays) -> FloatArray:
     """Return the vertices that belong to a face, (n, 3)."""
     used: FloatArray = mesh[0][np.unique(mesh[1])]
     if len(used) == 0:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..._types import FloatArray, MeshArrays
 
-Placing: TypeAlias = Callable[[FloatArray, FloatArray, np.random.Generator], FloatArray]
+PoseFunction: TypeAlias = Callable[[FloatArray, FloatArray, np.random.Generator], FloatArray]
 
 _QUARTER_TURN = np.array([(0.0, -1, 0), (1, 0, 0), (0, 0, 1)])
 
@@ -51,7 +51,7 @@ def _rows(linear: FloatArray, shift: FloatArray) -> FloatArray:
     return np.concatenate([linear, shift[:, None]], axis=1)
 
 
-def _middle(points: FloatArray) -> FloatArray:
+def _box_centre(points: FloatArray) -> FloatArray:
     middle: FloatArray = (points.min(axis=0) + points.max(axis=0)) / 2
     return middle
 
@@ -65,7 +65,7 @@ def _random(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> 
     scale = _size(first) / _size(second) * rng.uniform(0.5, 1.5)
     linear = _rotation(rng) * scale
     shift = rng.uniform(-0.4, 0.4, 3) * np.ptp(first, axis=0)
-    return _rows(linear, _middle(first) + shift - linear @ _middle(second))
+    return _rows(linear, _box_centre(first) + shift - linear @ _box_centre(second))
 
 
 def _rotation(rng: np.random.Generator) -> FloatArray:
@@ -116,7 +116,7 @@ def _mirror(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> 
 
 def _turned(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
     """Rotate a copy of the first mesh by 90 degrees about the centre of its bounding box."""
-    return _rows(_QUARTER_TURN, _middle(first) - _QUARTER_TURN @ _middle(first))
+    return _rows(_QUARTER_TURN, _box_centre(first) - _QUARTER_TURN @ _box_centre(first))
 
 
 def _same(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
@@ -124,7 +124,7 @@ def _same(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> Fl
     return _rows(np.eye(3), np.zeros(3))
 
 
-POSES: dict[str, Placing] = {
+POSES: dict[str, PoseFunction] = {
     "random": _random,
     "corner": _corner,
     "beside": _beside,

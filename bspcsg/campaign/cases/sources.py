@@ -37,7 +37,7 @@ class CaseInputs:
 
 
 @dataclass(frozen=True)
-class Draw:
+class PairSelection:
     """How pairs of meshes are chosen and placed.
 
     Parameters
@@ -89,7 +89,7 @@ def _kind_of(path: Path, meshes: list[Path], scripts: list[Path], cases: list[Pa
     )
 
 
-def cases_of(inputs: CaseInputs, operations: Sequence[str], *draws: Draw) -> list[Case]:
+def cases_of(inputs: CaseInputs, operations: Sequence[str], *draws: PairSelection) -> list[Case]:
     """Return the cases of the inputs, in the order in which they are run.
 
     Parameters
@@ -97,7 +97,7 @@ def cases_of(inputs: CaseInputs, operations: Sequence[str], *draws: Draw) -> lis
     inputs : CaseInputs
     operations : sequence of str
         The operations for pairs of meshes; files of cases have their own.
-    *draws : Draw
+    *draws : PairSelection
         Ways to choose and place pairs, each of which gives cases.
 
     Raises
@@ -107,11 +107,11 @@ def cases_of(inputs: CaseInputs, operations: Sequence[str], *draws: Draw) -> lis
     """
     cases = [case for draw in draws for case in _pairs(inputs.meshes, operations, draw)]
     cases += [_script(path) for path in inputs.scripts]
-    cases += [case for path in inputs.cases for case in _listed(path)]
+    cases += [case for path in inputs.cases for case in _listed_cases(path)]
     return cases
 
 
-def _pairs(paths: Sequence[Path], operations: Sequence[str], draw: Draw) -> Iterator[Case]:
+def _pairs(paths: Sequence[Path], operations: Sequence[str], draw: PairSelection) -> Iterator[Case]:
     if not paths:
         return
     operand = _Operands()
@@ -130,7 +130,7 @@ def _pairs(paths: Sequence[Path], operations: Sequence[str], draw: Draw) -> Iter
 
 
 def _posed(
-    paths: Sequence[Path], operations: Sequence[str], draw: Draw, operand: "_Operands"
+    paths: Sequence[Path], operations: Sequence[str], draw: PairSelection, operand: "_Operands"
 ) -> Iterator[Case]:
     """Yield the cases of all pairs of files in the pose of `draw`."""
     for number, (first, second) in enumerate(combinations(paths, 2)):
@@ -138,7 +138,7 @@ def _posed(
 
 
 def _drawn_pairs(
-    paths: Sequence[Path], operations: Sequence[str], draw: Draw, operand: "_Operands"
+    paths: Sequence[Path], operations: Sequence[str], draw: PairSelection, operand: "_Operands"
 ) -> Iterator[Case]:
     if draw.number is not None:
         first, second = paths[0], paths[min(1, len(paths) - 1)]
@@ -199,7 +199,7 @@ def _readable(reader: Callable[[Path], Any], path: Path) -> Any:
         raise unreadable(path, error) from error
 
 
-def _listed(path: Path) -> Iterator[Case]:
+def _listed_cases(path: Path) -> Iterator[Case]:
     """Yield the cases that a JSON file of cases lists."""
     try:
         document = json.loads(_readable(Path.read_bytes, path))

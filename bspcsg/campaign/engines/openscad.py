@@ -12,7 +12,7 @@ from ...errors import BspcsgError
 from ...formats.files import read
 from ...mesh.mesh import Mesh
 from ...processes import run_program
-from .questions import EngineAnswer, NoOpinionError, Question, mesh_of
+from .engine_request import EngineAnswer, EngineRequest, NoOpinionError, mesh_of
 
 #: The number of significant digits of coordinates that OpenSCAD writes.
 _DIGITS = 6
@@ -27,7 +27,7 @@ _MAX_TRIANGLES = 3000
 _VERSION_TIMEOUT = 30
 
 
-def ask_openscad(question: Question) -> EngineAnswer:
+def ask_openscad(question: EngineRequest) -> EngineAnswer:
     """Return OpenSCAD's result for the operands, passed as polyhedra with all digits.
 
     Raises
@@ -47,7 +47,7 @@ def ask_openscad(question: Question) -> EngineAnswer:
         return run_script(script, question.timeout)
 
 
-def _as_script(question: Question) -> str:
+def _as_script(question: EngineRequest) -> str:
     """Return the operation as a script in OpenSCAD's language, with all digits."""
     bodies = [_polyhedron(mesh) for mesh in question.operands]
     if question.operation != "xor":

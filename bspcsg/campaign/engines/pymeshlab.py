@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 
 from ...processes import run_program
-from .questions import EngineAnswer, NoOpinionError, Question, mesh_of
+from .engine_request import EngineAnswer, EngineRequest, NoOpinionError, mesh_of
 
 _CHILD = Path(__file__).with_name("pymeshlab_child.py")
 _MISSING = 6
 
 
-def ask_pymeshlab(question: Question) -> EngineAnswer:
+def ask_pymeshlab(question: EngineRequest) -> EngineAnswer:
     """Return pymeshlab's result for the operands.
 
     Raises
@@ -29,14 +29,14 @@ def ask_pymeshlab(question: Question) -> EngineAnswer:
     with tempfile.TemporaryDirectory(prefix="bspcsg-") as name:
         folder = Path(name)
         _put_operands(folder, question)
-        said = _asked_child(folder, question.timeout)
+        said = _run_child(folder, question.timeout)
         if "failed" in said:
             raise NoOpinionError(f"pymeshlab failed: {said['failed']}")
         with np.load(folder / "result.npz", allow_pickle=False) as found:
             return EngineAnswer(said["version"], mesh_of(found["vertices"], found["faces"]))
 
 
-def _put_operands(folder: Path, question: Question) -> None:
+def _put_operands(folder: Path, question: EngineRequest) -> None:
     arrays: dict[str, np.ndarray] = {
         "operation": np.array(question.operation),
         "count": np.array(len(question.operands)),
@@ -47,7 +47,7 @@ def _put_operands(folder: Path, question: Question) -> None:
     np.savez(folder / "operands.npz", **arrays)  # type: ignore[arg-type]
 
 
-def _asked_child(folder: Path, timeout: float) -> dict[str, str]:
+def _run_child(folder: Path, timeout: float) -> dict[str, str]:
     # Without -P, modules in the child's folder would hide packages of the same name.
     command = [sys.executable, "-P", os.fspath(_CHILD), os.fspath(folder)]
     try:

@@ -36,7 +36,7 @@ def main(folder: Path) -> int:
     except ImportError as error:
         (folder / "said.json").write_text(json.dumps({"missing": str(error)}))
         return MISSING
-    said = {"version": version("pymeshlab")}
+    report = {"version": version("pymeshlab")}
     with np.load(folder / "operands.npz", allow_pickle=False) as arrays:
         for number in range(int(arrays["count"])):
             corners = arrays[f"vertices{number}"], arrays[f"faces{number}"]
@@ -51,17 +51,17 @@ def main(folder: Path) -> int:
         found = meshes.current_mesh()
         np.savez(folder / "result.npz", vertices=found.vertex_matrix(), faces=found.face_matrix())
     except pymeshlab.PyMeshLabException as error:
-        _note_failure(folder, str(error), said)
-    (folder / "said.json").write_text(json.dumps(said))
+        _note_failure(folder, str(error), report)
+    (folder / "said.json").write_text(json.dumps(report))
     return 0
 
 
-def _note_failure(folder: Path, message: str, said: dict[str, str]) -> None:
+def _note_failure(folder: Path, message: str, report: dict[str, str]) -> None:
     """Record pymeshlab's error message, or an empty mesh if the message means an empty result."""
     if _EMPTY in message:
         np.savez(folder / "result.npz", vertices=np.zeros((0, 3)), faces=np.zeros((0, 3), int))
     else:
-        said["failed"] = message.strip().splitlines()[-1]
+        report["failed"] = message.strip().splitlines()[-1]
 
 
 if __name__ == "__main__":

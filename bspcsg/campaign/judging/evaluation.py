@@ -11,19 +11,19 @@ from ... import csg
 from ..._types import FloatArray, SetOp
 from ...errors import BspcsgError, InternalError, MissingPartError
 from ...formats.atomic import write_file
-from ...machine import forget_peak, peak_mb
+from ...machine import peak_mb, reset_peak
 from ...mesh.mesh import Mesh
 from ...operations.setops import OPERATIONS
 from ...solid.solid import Solid
 from ...verify import oracle
-from ...verify.check import Examination, examine
+from ...verify.check import ReportWithMeshes, report_with_meshes
 from ...verify.comparison import hausdorff
 from ...verify.verdict import CheckReport, Facts, Verdict
 from ..cases.case import SCRIPT, Case
 from ..cases.identities import identity_of
 from ..cases.meshes import packed
 from ..cases.operands import operands_of
-from ..engines.questions import Question
+from ..engines.engine_request import EngineRequest
 from ..record import (
     SCHEMA,
     CaseRecord,
@@ -32,15 +32,15 @@ from ..record import (
     HausdorffRecord,
     OracleRecord,
 )
-from .facts import facts_of
+from .mesh_facts import facts_of
 from .opinions import crossings_opinion, is_installed, opinion, script_opinion
-from .ruling import ruled
+from .verdict import verdict_of
 
 #: The verdicts of the comparison with manifold3d after which further engines are asked.
 _DOUBTFUL = frozenset({Verdict.DISAGREE, Verdict.ORACLE_REFUSED, Verdict.ORACLE_FAILED})
 
 #: The verdicts of cases that are not interesting, so that their meshes are not written.
-_DULL = frozenset({str(Verdict.AGREE), str(Verdict.OTHER_TOPOLOGY)})
+_UNINTERESTING = frozenset({str(Verdict.AGREE), str(Verdict.OTHER_TOPOLOGY)})
 
 #: The largest fraction of a case's time limit that one additional engine may take.
 _MAX_ENGINE_SHARE = 0.4
@@ -73,7 +73,7 @@ class EvaluationSettings:
 
 
 @dataclass
-class _Clock:
+class _Stopwatch:
     """A stopwatch that records the seconds of each part of a case."""
 
     began: float = field(default_factory=time.perf_counter)
@@ -133,8 +133,8 @@ def evaluate(case: Case, settings: EvaluationSettings, keep: bool = False) -> Ca
     keep : bool
         True to write the meshes even if the case is not interesting.
     """
-    forget_peak()
-    clock = _Clock()
+    reset_peak()
+    clock = _Stopwatch()
     try:
         record = _Evaluation(case, settings, clock).run(keep)
     except InternalError as error:
@@ -153,7 +153,7 @@ def evaluate(case: Case, settings: EvaluationSettings, keep: bool = False) -> Ca
 class _Evaluation:
     """The evaluation of one case: computes our result, compares it and makes the record."""
 
-    def __init__(self, case: Case, settings: EvaluationSettings, clock: _Clock) -> None:
+    def __init__(self, case: Case, settings: EvaluationSettings, clock: _Stopwatch) -> None:
         self._case, self._settings, self._clock = case, settings, clock
         self._is_script = case.operation == SCRIPT
 
@@ -168,7 +168,7 @@ class _Evaluation:
         asked = time.perf_counter() - began
         identity = None if self._is_script else identity_of(self._case.operation, solids, result)
         others = self._further(found, solids, result)
-        verdict, reason = ruled(found.report, others, identity, self._is_script)
+        verdict, reason = verdict_of(found.report, others, identity, self._is_script)
         record = blank_record(self._case, verdict, reason)
         self._describe_operands(record, solids, rows)
         record["ours"] = facts_of(found.ours, found.report.ours, crossings=True)
@@ -180,8 +180,8 @@ class _Evaluation:
             bounds = found.report.same_set_bound, found.report.rounding_bound
             record["bounds"] = {"same_set": bounds[0], "rounding": bounds[1]}
         self._clock.lap("check")
-        if self._settings.meshes and (keep or verdict not in _DULL):
-            record["meshes"] = self._kept(found)
+        if self._settings.meshes and (keep or verdict not in _UNINTERESTING):
+            record["meshes"] = self._stored_path(found)
         return record
 
     def _loaded(self) -> tuple[list[Solid], Sequence[FloatArray | None]]:
@@ -192,16 +192,16 @@ class _Evaluation:
             path = str(self._case.operands[0].file)
             return [csg.load(path, on_invalid="warn")], [None]
 
-    def _examined(self, result: Solid, solids: list[Solid]) -> Examination:
+    def _examined(self, result: Solid, solids: list[Solid]) -> ReportWithMeshes:
         if not self._is_script:
-            return examine(result, cast(SetOp, self._case.operation), solids)
+            return report_with_meshes(result, cast(SetOp, self._case.operation), solids)
         if result.last_operation is None:
             # A script without operations: manifold3d gets its mesh as the union of one operand.
-            return examine(result, "union", [result])
-        return examine(result)
+            return report_with_meshes(result, "union", [result])
+        return report_with_meshes(result)
 
     def _further(
-        self, found: Examination, solids: list[Solid], result: Solid
+        self, found: ReportWithMeshes, solids: list[Solid], result: Solid
     ) -> list[OracleRecord]:
         """Return the records of all engines that are asked besides manifold3d."""
         wanted = [name for name in self._settings.against if name != "manifold3d"]
@@ -217,7 +217,7 @@ class _Evaluation:
             return []
         operands = [solid.normalized().to_mesh() for solid in solids]
         asked = (self._case.operation, found.program, operands, found.ours)
-        question = Question(*asked, result.pitch, limit, result.tree.snapped_by)
+        question = EngineRequest(*asked, result.pitch, limit, result.tree.snapped_by)
         said = [opinion(name, question) for name in wanted]
         if doubtful or any(record["agrees"] is False for record in said):
             said.append(crossings_opinion(question))
@@ -233,7 +233,7 @@ class _Evaluation:
             operand["volume"] = solid.volume
             operand["pose"] = None if pose is None else pose.tolist()
 
-    def _distances(self, found: Examination) -> HausdorffRecord | None:
+    def _distances(self, found: ReportWithMeshes) -> HausdorffRecord | None:
         theirs, difference = found.theirs, found.difference
         if theirs is None or not self._settings.samples or found.report.set_difference is None:
             return None
@@ -242,7 +242,7 @@ class _Evaluation:
         forth, back, count = hausdorff(found.ours, theirs, difference, self._settings.samples)
         return {"forward": forth, "backward": back, "samples": count}
 
-    def _kept(self, found: Examination) -> str:
+    def _stored_path(self, found: ReportWithMeshes) -> str:
         """Write the meshes of a case to a file, and return its path as in the record."""
         folder = Path(str(self._settings.meshes))
         folder.mkdir(parents=True, exist_ok=True)
@@ -251,9 +251,9 @@ class _Evaluation:
         return f"{self._settings.relative}/{name}"
 
 
-def _manifold_record(found: Examination, seconds: float) -> OracleRecord:
+def _manifold_record(found: ReportWithMeshes, seconds: float) -> OracleRecord:
     report = found.report
-    name, _, version = oracle.name().partition(" ")
+    name, _, version = oracle.versioned_name().partition(" ")
     return {
         "name": name,
         "version": version,

@@ -18,11 +18,11 @@ from ...solid.solid import Solid
 from ...verify.check import TOLERANCES, same_set_bound
 from ...verify.discrepancy import SetDifference, difference_of
 from ...verify.referee import count_agreeing
+from ..engines.engine_request import EngineAnswer, EngineRequest, NoOpinionError
 from ..engines.openscad import ask_openscad, run_script
 from ..engines.pymeshlab import ask_pymeshlab
-from ..engines.questions import EngineAnswer, NoOpinionError, Question
 from ..record import OracleRecord
-from .facts import facts_of
+from .mesh_facts import facts_of
 
 #: The engines by name, with the command that installs an optional one.
 ENGINES = {
@@ -36,7 +36,7 @@ _POINTS_COUNTED = 24
 
 #: The typical distance of points near the surfaces, as a fraction of the diagonal of the bounding
 #: box.
-_BESIDE = 1e-4
+_NEAR_DISTANCE = 1e-4
 
 
 def is_installed(engine: str) -> bool:
@@ -56,38 +56,40 @@ def require(engines: Sequence[str]) -> None:
             raise missing_part(engine, "for comparisons", ENGINES[engine])
 
 
-def opinion(engine: str, question: Question) -> OracleRecord:
+def opinion(engine: str, question: EngineRequest) -> OracleRecord:
     """Return the record of an engine's result, compared with ours as sets."""
-    return _recorded(engine, question, lambda: _ASKED[engine](question))
+    return _recorded(engine, question, lambda: _ENGINE_FUNCTIONS[engine](question))
 
 
 def script_opinion(path: Path, ours: Solid, timeout: float) -> OracleRecord:
     """Return the record of OpenSCAD's result for a script, compared with our solid."""
     mesh = ours.normalized().to_mesh()
-    question = Question("csg", [], [], mesh, ours.pitch, timeout, ours.tree.snapped_by)
+    question = EngineRequest("csg", [], [], mesh, ours.pitch, timeout, ours.tree.snapped_by)
     return _recorded("openscad", question, lambda: run_script(path, timeout))
 
 
-def _recorded(engine: str, question: Question, asked: Callable[[], EngineAnswer]) -> OracleRecord:
+def _recorded(
+    engine: str, question: EngineRequest, ask: Callable[[], EngineAnswer]
+) -> OracleRecord:
     began = time.perf_counter()
     version = ""
     try:
-        answer = asked()
+        answer = ask()
         version, record = answer.version, _compared(question, answer)
     except NoOpinionError as error:
-        record = _silent(str(error))
+        record = _no_opinion(str(error))
     seconds = round(time.perf_counter() - began, 4)
     return {**record, "name": engine, "version": version, "seconds": seconds}
 
 
-def crossings_opinion(question: Question, seed: int = 0) -> OracleRecord:
+def crossings_opinion(question: EngineRequest, seed: int = 0) -> OracleRecord:
     """Return the record of whether exact counts of crossings at points confirm our result."""
     began = time.perf_counter()
     points = _points(question, np.random.default_rng(seed))
     agreeing, settled = count_agreeing(
         question.program, question.operands, question.ours, points.tolist()
     )
-    record = _silent(
+    record = _no_opinion(
         f"{agreeing} of {settled} test points are correctly classified as inside or outside"
     )
     record["name"], record["version"] = "crossing counts", __version__
@@ -96,11 +98,11 @@ def crossings_opinion(question: Question, seed: int = 0) -> OracleRecord:
     return record
 
 
-def _silent(says: str) -> OracleRecord:
+def _no_opinion(says: str) -> OracleRecord:
     return {"name": "", "version": "", "agrees": None, "says": says, "facts": None, "seconds": 0.0}
 
 
-def _compared(question: Question, answer: EngineAnswer) -> OracleRecord:
+def _compared(question: EngineRequest, answer: EngineAnswer) -> OracleRecord:
     mesh = answer.mesh
     meshes = (question.ours, mesh)
     film = same_set_bound(question.pitch, *meshes, snapped_by=question.snapped_by)
@@ -108,30 +110,30 @@ def _compared(question: Question, answer: EngineAnswer) -> OracleRecord:
     try:
         found, _ = difference_of(question.ours, mesh, question.pitch, bound)
     except BspcsgError as error:
-        record = _silent(f"its mesh cannot be compared: {error.message}")
+        record = _no_opinion(f"its mesh cannot be compared: {error.message}")
         return {**record, "facts": facts_of(mesh)}
     agrees = found.thickness <= bound
-    record = _silent(_words(found, bound))
+    record = _no_opinion(_difference_text(found, bound))
     if not agrees and answer.complaint:
-        record = _silent(f"{record['says']}; but it said: {answer.complaint}")
+        record = _no_opinion(f"{record['says']}; but it said: {answer.complaint}")
         return {**record, "facts": facts_of(mesh)}
     return {**record, "agrees": agrees, "facts": facts_of(mesh)}
 
 
-def _words(found: SetDifference, bound: float) -> str:
+def _difference_text(found: SetDifference, bound: float) -> str:
     if found.volume == 0:
         return "exactly the same set"
     words = f"differs by volume {found.volume:.6g}, {found.thickness:.3g} thick"
     return f"{words}; rounding explains {bound:.2g}"
 
 
-_ASKED: dict[str, Callable[[Question], EngineAnswer]] = {
+_ENGINE_FUNCTIONS: dict[str, Callable[[EngineRequest], EngineAnswer]] = {
     "pymeshlab": ask_pymeshlab,
     "openscad": ask_openscad,
 }
 
 
-def _points(question: Question, rng: np.random.Generator) -> np.ndarray:
+def _points(question: EngineRequest, rng: np.random.Generator) -> np.ndarray:
     """Return sample points throughout the box of all meshes and near their surfaces, (n, 3)."""
     meshes = [mesh for mesh in (*question.operands, question.ours) if len(mesh.faces)]
     if not meshes:
@@ -144,5 +146,5 @@ def _points(question: Question, rng: np.random.Generator) -> np.ndarray:
         mesh = meshes[int(rng.integers(len(meshes)))]
         corners = mesh.vertices[mesh.faces[int(rng.integers(len(mesh.faces)))]]
         on_face = rng.dirichlet((1, 1, 1)) @ corners
-        beside.append(on_face + rng.normal(size=3) * _BESIDE * np.linalg.norm(high - low))
+        beside.append(on_face + rng.normal(size=3) * _NEAR_DISTANCE * np.linalg.norm(high - low))
     return np.concatenate([anywhere, np.array(beside)])

@@ -12,7 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Self
 
-from ...errors import held
+from ...errors import not_none
 
 #: The time limit for a worker to start, in seconds. Importing the package takes a quarter of a
 #: second on an idle machine and a hundred times as long on an overloaded one.
@@ -22,7 +22,7 @@ _START_TIMEOUT = 300.0
 _EXIT_TIMEOUT = 5.0
 
 
-_BOOT = Path(__file__).with_name("boot.py")
+_BOOT = Path(__file__).with_name("start_worker.py")
 
 
 class TimedOutError(Exception):
@@ -71,7 +71,7 @@ class Child:
         """
         try:
             process = self._running()
-            requests = held(process.stdin, "the process's input")
+            requests = not_none(process.stdin, "the process's input")
             requests.write(json.dumps(request) + "\n")
             requests.flush()
             line = self._lines.get(timeout=seconds)
@@ -122,7 +122,7 @@ class Child:
         )
         listener = threading.Thread(target=_listen, args=(process, self._lines), daemon=True)
         listener.start()
-        requests = held(process.stdin, "the process's input")
+        requests = not_none(process.stdin, "the process's input")
         requests.write(json.dumps(self._greeting) + "\n")
         requests.flush()
         return process
@@ -151,7 +151,7 @@ class Child:
             self._said.seek(0)
             said = self._said.read().decode("utf-8", "replace")
         last = [line.strip() for line in said.splitlines() if line.strip()][-1:]
-        return ": ".join([_how(code), *last])
+        return ": ".join([_exit_description(code), *last])
 
     def _kill(self) -> None:
         with self._lock:
@@ -167,10 +167,10 @@ class Child:
         process.wait()
         # Closing fails if buffered requests cannot be sent.
         with suppress(OSError):
-            held(process.stdin, "the process's input").close()
+            not_none(process.stdin, "the process's input").close()
 
 
-def _how(code: int | None) -> str:
+def _exit_description(code: int | None) -> str:
     if code is not None and code < 0:
         return f"the process was ended by the signal {signal.Signals(-code).name}"
     return f"the process ended with exit code {code}"
@@ -178,7 +178,7 @@ def _how(code: int | None) -> str:
 
 def _listen(process: "subprocess.Popen[str]", lines: "queue.SimpleQueue[str]") -> None:
     """Put the lines of a process's output into a queue, and an empty one at its end."""
-    with held(process.stdout, "the process's output") as answers:
+    with not_none(process.stdout, "the process's output") as answers:
         for line in answers:
             lines.put(line)
     lines.put("")

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 from .child import Child, CrashedError, TimedOutError
 
 
-class Answering(Protocol):
+class RequestHandler(Protocol):
     """A protocol: an object that answers requests, in any order."""
 
     def answers(

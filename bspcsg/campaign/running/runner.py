@@ -15,7 +15,7 @@ from ...machine import machine
 from ..cases.case import Case
 from ..judging.evaluation import EvaluationSettings, blank_record
 from ..record import SCHEMA, CaseRecord, Journal, RunRecord, is_failure
-from .pool import Answering
+from .pool import RequestHandler
 
 _VERSIONED = ("manifold3d", "pymeshlab", "trimesh", "numpy")
 
@@ -58,7 +58,7 @@ def greeting(settings: EvaluationSettings, memory: int | None, threads: int) -> 
 
 def run_cases(
     plan: CampaignPlan,
-    answering: Answering,
+    answering: RequestHandler,
     journal: Journal | None,
     notice: Callable[[CaseRecord], None],
 ) -> list[CaseRecord]:
@@ -67,7 +67,7 @@ def run_cases(
     Parameters
     ----------
     plan : CampaignPlan
-    answering : Answering
+    answering : RequestHandler
     journal : Journal or None
         The results file to which each record is appended as it arrives.
     notice : callable
@@ -85,7 +85,7 @@ def run_cases(
     return [found[case.key] for case in plan.cases if case.key in found]
 
 
-def _records(plan: CampaignPlan, answering: Answering) -> Generator[CaseRecord, None, None]:
+def _records(plan: CampaignPlan, answering: RequestHandler) -> Generator[CaseRecord, None, None]:
     cases = plan.open_cases
     chosen = _chosen(len(cases), plan.keep)
     requests = [{"case": case.to_dict(), "keep": n in chosen} for n, case in enumerate(cases)]
@@ -110,7 +110,7 @@ def _chosen(count: int, keep: str) -> set[int]:
 
 
 def survey(
-    files: Sequence[Path], answering: Answering, seconds: float
+    files: Sequence[Path], answering: RequestHandler, seconds: float
 ) -> dict[Path, dict[str, Any]]:
     """Return for each file its number of ``triangles``, and why it is ``refused``, or None.
 

@@ -1,7 +1,7 @@
 """The worker process that evaluates cases: it reads requests and writes answers as JSON lines.
 
-The module `boot` starts it. When its input ends, because the runner has finished or was killed, it
-kills its whole process group.
+The module `start_worker` starts it. When its input ends, because the runner has finished or was
+killed, it kills its whole process group.
 """
 
 import json

@@ -13,9 +13,9 @@ from ...errors import (
     FormatError,
     InternalError,
     MissingPartError,
-    harmless,
+    without_control_characters,
 )
-from . import status, terminal
+from . import status_line, terminal
 
 #: Version of the JSON documents.
 SCHEMA = 1
@@ -76,17 +76,17 @@ class Output:
     def result(self, line: str, document: dict[str, Any]) -> None:
         """Print a result: `document` as JSON if ``--json`` is given, else `line`."""
         if self.as_json:
-            with status.hidden():
+            with status_line.hidden():
                 click.echo(json.dumps({"schema": SCHEMA, **document}, allow_nan=False))
         elif line and not (self.taken and self.verbosity < 0):
-            with status.hidden():
-                click.echo(harmless(line), err=self.taken)
+            with status_line.hidden():
+                click.echo(without_control_characters(line), err=self.taken)
 
     def detail(self, line: str) -> None:
         """Print a line on standard error, but only with ``--verbose``."""
         if self.verbosity > 0:
-            with status.hidden():
-                click.echo(harmless(line), err=True)
+            with status_line.hidden():
+                click.echo(without_control_characters(line), err=True)
 
     @property
     def advises(self) -> bool:
@@ -96,22 +96,22 @@ class Output:
     def note(self, line: str) -> None:
         """Print a note on standard error, unless ``--quiet`` is given."""
         if self.verbosity >= 0:
-            terminal.say("note", line)
+            terminal.print_line("note", line)
 
     def warning(self, line: str) -> None:
         """Print a warning on standard error, unless ``--quiet`` is given."""
         if self.verbosity >= 0:
-            terminal.say("warning", line)
+            terminal.print_line("warning", line)
 
     def finding(self, name: str, finding: Finding) -> None:
         """Print a finding about the file `name` on standard error, with ``--quiet`` errors only."""
         least = -1 if finding.severity == "error" else 0
         if self.verbosity >= least:
-            said = f"{finding.message}{_places(finding)}"
-            terminal.say(finding.severity, f"{name}: {said}")
+            said = f"{finding.message}{_element_numbers(finding)}"
+            terminal.print_line(finding.severity, f"{name}: {said}")
 
 
-def _places(finding: Finding) -> str:
+def _element_numbers(finding: Finding) -> str:
     """Return text with the numbers of the first faces or vertices of a finding, after a colon.
 
     Return an empty string if the message does not refer to them by “these”.
@@ -135,10 +135,10 @@ def exit_code_of(error: BspcsgError) -> int:
     return REFUSED
 
 
-def tell_error(error: BspcsgError, as_json: bool) -> int:
+def report_error(error: BspcsgError, as_json: bool) -> int:
     """Print an error on standard error, and as JSON if `as_json`; return the exit code."""
     code = exit_code_of(error)
-    terminal.say_error(error.message)
+    terminal.print_error(error.message)
     if as_json:
         print_error(error_values(error), code)
     return code
@@ -161,7 +161,7 @@ def finding_values(findings: tuple[Finding, ...]) -> list[dict[str, Any]]:
 
 def grouped(number: int) -> str:
     """Return an integer as text, on a terminal with separated thousands."""
-    return f"{number:,}".replace(",", terminal.thousands())
+    return f"{number:,}".replace(",", terminal.thousands_separator())
 
 
 def counted(number: int, one: str) -> str:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from ...errors import harmless
+from ...errors import without_control_characters
 from . import terminal
 
 #: The character of a table's horizontal lines on a terminal, and in a pipe or a file.
@@ -29,9 +29,11 @@ def table_text(
     """
     from rich.cells import cell_len
 
-    columns, *listed = [[harmless(entry) for entry in row] for row in (columns, *rows)]
+    columns, *listed = [
+        [without_control_characters(entry) for entry in row] for row in (columns, *rows)
+    ]
     entries = list(zip(columns, *listed, strict=True))
-    width = terminal.width()
+    width = terminal.output_width()
     # In a pipe or a file, no text of the table may be cut off.
     widths = [max(map(cell_len, column)) for column in entries]
     if width is None:

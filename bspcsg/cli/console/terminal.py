@@ -7,8 +7,8 @@ from typing import TextIO
 
 import click
 
-from ...errors import harmless
-from . import status
+from ...errors import without_control_characters
+from . import status_line
 
 #: The colour of each label with which a line on standard error may begin.
 _COLOURS = {"error": "red", "warning": "yellow", "note": "cyan"}
@@ -41,25 +41,25 @@ def labelled(label: str, line: str) -> str:
     return f"{label}: {line}"
 
 
-def say(label: str, line: str, before: str = "") -> None:
+def print_line(label: str, line: str, before: str = "") -> None:
     """Print a line on standard error, after `before` and a label such as "note"."""
-    with status.hidden():
-        told = before + labelled(label, harmless(line))
+    with status_line.hidden():
+        told = before + labelled(label, without_control_characters(line))
         click.echo(told, err=True, color=wants_colour(sys.stderr))
 
 
-def say_error(message: str) -> None:
+def print_error(message: str) -> None:
     """Print an error message on standard error."""
-    say("error", message, "bspcsg: ")
+    print_line("error", message, "bspcsg: ")
 
 
-def width() -> int | None:
+def output_width() -> int | None:
     """Return the number of columns of standard output, or None if it is not a terminal."""
     if not sys.stdout.isatty():
         return None
     return max(_MIN_TABLE_WIDTH, shutil.get_terminal_size().columns)
 
 
-def thousands() -> str:
+def thousands_separator() -> str:
     """Return the separator of thousands: a no-break space on a terminal, nothing in a pipe."""
     return "\N{NO-BREAK SPACE}" if sys.stdout.isatty() else ""

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 import click
 
 from ...errors import Finding, FormatError, InvalidMeshError, unreadable
-from ..console import standard
+from ..console import standard_streams
 from ..console.output import Output, counted
 from .lengths import MILLIMETRES
 from .objects import ObjectNames
-from .scripts import STREAMED, SUFFIXES, made_by
+from .scripts import STREAMED, SUFFIXES, solid_of_script
 
 if TYPE_CHECKING:
     from ...formats.files import Encoded
@@ -30,7 +30,7 @@ _Kind = TypeVar("_Kind", bound="Mesh | RawMesh")
 STREAM = "-"
 
 #: The format of an output to the null device if none is given: one that stores doubles.
-_ANY = ".ply"
+_DEFAULT_SUFFIX = ".ply"
 
 #: Advice in the error about a mesh that is not closed.
 ON_INVALID = "  --on-invalid repair closes the mesh; --on-invalid warn leaves it out."
@@ -52,7 +52,7 @@ class Inputs:
     pitch : int or None
     on_invalid : {"error", "warn", "repair"} or None
         The treatment of a file that is not closed; None if the verb has no such option.
-    noticed : list of Finding
+    noticed_findings : list of Finding
         The findings about solids that have been read; results repeat them.
     objects : ObjectNames
         The named objects to which the triangles of the read solids belong.
@@ -64,7 +64,7 @@ class Inputs:
     winding: Any = "positive"
     pitch: int | None = None
     on_invalid: str | None = None
-    noticed: list[Finding] = field(default_factory=list)
+    noticed_findings: list[Finding] = field(default_factory=list)
     objects: ObjectNames = field(default_factory=ObjectNames)
 
     @classmethod
@@ -104,12 +104,13 @@ class Inputs:
         """Raise a usage error if ``--from`` names a language whose scripts need a file suffix."""
         if self.suffix not in STREAMED:
             message = (
-                f"{shown(path)}: {self.suffix} scripts cannot be read from standard input or a"
+                f"{display_name(path)}: {self.suffix} scripts cannot be read from standard input"
+                " or a"
                 f" file without suffix; save the script as a {self.suffix} file."
             )
             raise click.UsageError(message)
 
-    def tell_units(self, pairs: Iterable[tuple[Path, "Target"]]) -> None:
+    def note_missing_units(self, pairs: Iterable[tuple[Path, "Target"]]) -> None:
         """Print a note if inputs have no unit and their output formats state one."""
         from ...formats.registry import FORMATS
 
@@ -123,7 +124,8 @@ class Inputs:
         if unknown and self.unit is None:
             more = f" and {len(unknown) - 1} more have" if len(unknown) > 1 else " has"
             self.out.note(
-                f"{shown(unknown[0])}{more} no length unit, so mm is assumed; --unit in changes it"
+                f"{display_name(unknown[0])}{more} no length unit, so mm is assumed; --unit in"
+                " changes it"
             )
 
     def suffix_of(self, path: Path) -> str:
@@ -137,7 +139,7 @@ class Inputs:
         """Say whether a file is read as a script, by its own suffix or that of ``--from``."""
         return self.suffix_of(path) in SUFFIXES
 
-    def up_of(self, path: Path) -> str:
+    def up_axis_of(self, path: Path) -> str:
         """Return the axis, "y" or "z", that points upwards in files of a file's format."""
         from ...formats.registry import FORMATS
 
@@ -149,7 +151,7 @@ class Inputs:
         The result is in millimetres if the format states a unit or ``--unit`` was given.
         """
         from ...formats.files import decoded, read_as
-        from ...formats.placing import rescaled
+        from ...formats.mesh_placement import rescaled
 
         if self.is_script(path):
             raw = self._mesh_of_script(path)
@@ -161,30 +163,30 @@ class Inputs:
             return raw
         return replace(rescaled(raw, MILLIMETRES[self.unit]), unit="mm")
 
-    def _made_by(self, path: Path) -> "Solid":
+    def _solid_of_script(self, path: Path) -> "Solid":
         """Return the solid that a script makes, in the language of its suffix or of ``--from``."""
         if path.suffix.lower() in SUFFIXES:
-            return made_by(path, self.out)
-        return made_by(path, self.out, _text_of(path), self.suffix)
+            return solid_of_script(path, self.out)
+        return solid_of_script(path, self.out, _text_of(path), self.suffix)
 
     def _mesh_of_script(self, path: Path) -> "RawMesh":
-        from ...formats.said import said_of, saying
+        from ...formats.storable_attributes import attributes_or_none, with_attributes
 
-        mesh = self._made_by(path).normalized().to_mesh()
-        raw = saying(mesh, said_of(mesh))
+        mesh = self._solid_of_script(path).normalized().to_mesh()
+        raw = with_attributes(mesh, attributes_or_none(mesh))
         return replace(raw, name=path.stem, is_empty_set=not len(mesh.faces))
 
     def solid(self, path: Path) -> "Solid":
         """Read a mesh as a solid, or evaluate a script, and print the findings about the file."""
         if self.is_script(path):
-            made = self._made_by(path)
+            made = self._solid_of_script(path)
             return made if self.unit is None else made.scale(MILLIMETRES[self.unit])
         raw = self.raw(path)
         solid = self.as_solid(raw, path)
         noticed = [Finding.from_core(found) for found in solid.tree.findings]
-        self.noticed.extend(noticed)
-        self.tell(path, (*raw.findings, *noticed))
-        self.out.detail(f"{shown(path)}: {counted(len(raw.faces), 'triangle')}")
+        self.noticed_findings.extend(noticed)
+        self.print_findings(path, (*raw.findings, *noticed))
+        self.out.detail(f"{display_name(path)}: {counted(len(raw.faces), 'triangle')}")
         return solid
 
     def as_solid(self, raw: "RawMesh", path: Path) -> "Solid":
@@ -205,7 +207,7 @@ class Inputs:
     def _solid_of(self, raw: "RawMesh", path: Path) -> "Solid":
         from ...formats.solids import solid_of
 
-        solid = solid_of(raw, shown(path), winding=self.winding, pitch=self.pitch)
+        solid = solid_of(raw, display_name(path), winding=self.winding, pitch=self.pitch)
         self.objects.note(solid, raw, path.stem)
         return solid
 
@@ -216,9 +218,9 @@ class Inputs:
         return Solid.empty()
 
     def _repaired(self, raw: "RawMesh", path: Path) -> "Solid":
-        from ...assembly.mending import mended
+        from ...assembly.object_repair import repaired
 
-        made = mended(raw)
+        made = repaired(raw)
         try:
             solid = self._solid_of(made.mesh, path)
         except InvalidMeshError as error:
@@ -231,15 +233,15 @@ class Inputs:
         turned = f", {made.turned} of them with reversed orientation" if made.turned else ""
         strays = f"; {counted(made.dropped, 'stray triangle')} removed" if made.dropped else ""
         self.out.warning(
-            f"{shown(path)} was not closed and was repaired: {counts}{turned}{strays}."
+            f"{display_name(path)} was not closed and was repaired: {counts}{turned}{strays}."
         )
-        self.tell(path, made.lost)
+        self.print_findings(path, made.lost)
         return solid
 
-    def tell(self, path: Path, findings: Sequence[Finding]) -> None:
+    def print_findings(self, path: Path, findings: Sequence[Finding]) -> None:
         """Print findings about a file on standard error."""
         for finding in findings:
-            self.out.finding(shown(path), finding)
+            self.out.finding(display_name(path), finding)
 
 
 def repair_command(path: Path) -> str:
@@ -275,7 +277,11 @@ class Target:
     @classmethod
     def of(cls, path: Path, settings: dict[str, Any]) -> "Target":
         """Return the target for an output path and the options of a verb, given by name."""
-        suffix = settings.get("to_format") or path.suffix or (_ANY if is_dropped(path) else "")
+        suffix = (
+            settings.get("to_format")
+            or path.suffix
+            or (_DEFAULT_SUFFIX if is_dropped(path) else "")
+        )
         return cls(path, suffix, settings["text"], settings["overwrite"], settings["digits"])
 
     @property
@@ -313,7 +319,7 @@ class Target:
         """True if the output's format can store named objects."""
         from ...formats.files import form_of
 
-        return form_of(f"mesh{self.suffix}", self.text).called is not None
+        return form_of(f"mesh{self.suffix}", self.text).name_in_file is not None
 
     @property
     def is_single(self) -> bool:
@@ -333,7 +339,7 @@ class Target:
         from ...formats.files import encoded
 
         shortened, moved = self.rounded(mesh)
-        made = encoded(shortened, shown(self.path), self.suffix, self.text)
+        made = encoded(shortened, display_name(self.path), self.suffix, self.text)
         self.put(made, made.prove)
         return moved + made.findings
 
@@ -342,20 +348,20 @@ class Target:
 
         Companion files are not written for a stream or the null device.
         """
-        from ...formats.files import places_beside, write_beside
+        from ...formats.files import companion_paths, write_companions
 
         files = {} if self.is_stream or is_dropped(self.path) else made.files
-        for place in places_beside(self.path, files):
+        for place in companion_paths(self.path, files):
             refuse_unwritable(place, self.overwrite)
 
         def prove_and_write(file: BinaryIO) -> None:
             prove(file)
-            write_beside(self.path, files)
+            write_companions(self.path, files)
 
-        put(self.path, made.chunks, self.overwrite, prove_and_write)
+        write_output(self.path, made.chunks, self.overwrite, prove_and_write)
 
 
-def put(
+def write_output(
     path: Path,
     chunks: Iterable[bytes],
     overwrite: bool = True,
@@ -378,7 +384,7 @@ def put(
     if prove is not None:
         chunks = [b"".join(chunks)]
         prove(io.BytesIO(chunks[0]))
-    standard.put(chunks)
+    standard_streams.write_bytes(chunks)
 
 
 def stream_text() -> str:
@@ -389,9 +395,9 @@ def stream_text() -> str:
     FormatError
         If the input is not UTF-8, or a pointer of Git LFS.
     """
-    from ...formats.source import present
+    from ...formats.source import refuse_pointer_file
 
-    return _decoded(present(STREAM, sys.stdin.buffer.read()), STREAM)
+    return _decoded(refuse_pointer_file(STREAM, sys.stdin.buffer.read()), STREAM)
 
 
 def _text_of(path: Path) -> str:
@@ -451,20 +457,22 @@ def is_dropped(path: Path) -> bool:
     return str(path) == os.devnull
 
 
-def is_among(path: Path, others: Iterable[Path]) -> bool:
-    """Say whether a path and one of `others` are the same existing file, under any name."""
-    return any(path.exists() and other.exists() and path.samefile(other) for other in others)
+def is_among(path: Path, paths: Iterable[Path]) -> bool:
+    """Say whether a path and one of `paths` are the same existing file, under any name."""
+    return any(path.exists() and other.exists() and path.samefile(other) for other in paths)
 
 
 def refuse_inputs(file: Path, targets: Iterable[Path], inputs: Sequence[Path]) -> None:
     """Raise a usage error if one of the outputs `targets` of a file would replace an input."""
     for number, where in enumerate(targets, 1):
         if not is_dropped(where) and is_among(where, inputs):
-            message = f"part {number} of {shown(file)} would overwrite {where}, which is also an"
+            message = (
+                f"part {number} of {display_name(file)} would overwrite {where}, which is also an"
+            )
             raise click.UsageError(f"{message} input; choose another output.")
 
 
-def shown(path: Path) -> str:
+def display_name(path: Path) -> str:
     """Return the name of a file for messages; “-” for standard input or output."""
     return "-" if str(path) == STREAM else str(path)
 

@@ -92,9 +92,9 @@ def _raw(part: "Mesh", name: str) -> "RawMesh":
 
 
 def _settled(part: "Mesh") -> "tuple[Mesh, tuple[Finding, ...]]":
-    from ...formats.single import settled
+    from ...formats.single_precision import in_single_precision
 
     try:
-        return settled(part)
+        return in_single_precision(part)
     except OverflowError:  # the writer raises an error that names the file
         return part, ()

@@ -4,7 +4,7 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from ..console import status
+from ..console import status_line
 from ..console.output import Output
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ SUFFIXES = (".csg", ".json", ".scad", ".py")
 STREAMED = (".csg", ".json")
 
 
-def made_by(
+def solid_of_script(
     path: Path, out: Output, text: str | None = None, suffix: str | None = None, **options: Any
 ) -> "Solid":
     """Return the solid that a script makes; print warnings about parts of it that are ignored.
@@ -37,7 +37,7 @@ def made_by(
         from ...script.run import run_script
 
         # End the status line, since the script may print to the terminal.
-        status.end()
+        status_line.end()
         return run_script(path, **options)
     from ... import csg
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from ...errors import BspcsgError
-from .shared import FiniteRange, finite_numbers, further, numbers
+from .shared import FiniteRange, finite_numbers, numbers, rare_option
 
 if TYPE_CHECKING:
     from ..._types import FloatArray
@@ -37,7 +37,7 @@ def _as_point(
     return found
 
 
-_SEEING = [
+_VIEW_OPTIONS = [
     click.option(
         "--view",
         type=click.Choice(_VIEWS),
@@ -45,33 +45,33 @@ _SEEING = [
         show_default=True,
         help="From where; z is up, front looks along +y.",
     ),
-    further(
+    rare_option(
         "--azimuth",
         metavar="DEGREES",
         type=FiniteRange(-360, 360),
         help="From where around z: 0 from the front, 90 from the right.",
     ),
-    further(
+    rare_option(
         "--elevation",
         metavar="DEGREES",
         type=FiniteRange(-90, 90),
         help="From how high: 0 from the side, 90 from the top.",
     ),
-    further("--eye", metavar="X,Y,Z", callback=_as_point, help="Where the viewer is."),
-    further(
+    rare_option("--eye", metavar="X,Y,Z", callback=_as_point, help="Where the viewer is."),
+    rare_option(
         "--target",
         "aim",
         metavar="X,Y,Z",
         callback=_as_point,
         help="The point in the middle of the picture; by default the middle of what is seen.",
     ),
-    further(
+    rare_option(
         "--up",
         metavar="X,Y,Z",
         callback=numbers("direction", "x,y,z", "0,0,1"),
         help="Direction that is upwards in the picture; by default z.",
     ),
-    further(
+    rare_option(
         "--perspective",
         "field_of_view",
         metavar="[=DEGREES]",
@@ -84,9 +84,9 @@ _SEEING = [
 ]
 
 
-def seeing(command: _Command) -> _Command:
+def view_options(command: _Command) -> _Command:
     """Add the options for the point of view to a command."""
-    for option in reversed(_SEEING):
+    for option in reversed(_VIEW_OPTIONS):
         command = option(command)
     return command
 
@@ -117,7 +117,7 @@ def camera_of(
     Parameters
     ----------
     settings : dict
-        The values of the options of `seeing`.
+        The values of the options of `view_options`.
     points : (n, 3) float64
     aspect : float
         Width of the picture divided by its height.

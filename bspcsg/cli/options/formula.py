@@ -188,11 +188,11 @@ class _Parser:
             found = NamedOperation(name, (found, self.level(number + 1, depth)))
         return found
 
-    def expect(self, kind: str, wanted: str) -> _Token:
-        """Consume a token of a kind; raise an error that says `wanted` for any other token."""
+    def expect(self, kind: str, expected: str) -> _Token:
+        """Consume a token of a kind; raise an error that says `expected` for any other token."""
         token = self._peek()
         if token.kind != kind:
-            raise FormulaError(f"expected {wanted}, found {_called(token)}.", token.column)
+            raise FormulaError(f"expected {expected}, found {_called(token)}.", token.column)
         return self._take()
 
     def _operand(self, depth: int) -> Formula:

@@ -17,7 +17,7 @@ from ..console import terminal
 from .shared import PATH
 
 #: Suffixes of files that accompany meshes: materials, pictures, data of glTF, texts about them.
-_BESIDE = frozenset(
+_COMPANION_SUFFIXES = frozenset(
     [".mtl", ".bin", ".txt", ".md", ".html", ".pdf", ".xml", ".csv", ".svg"]
     + [".png", ".jpg", ".jpeg", ".webp", ".gif", ".bmp", ".tga", ".tif", ".tiff", ".dds", ".ktx2"]
 )
@@ -49,7 +49,7 @@ def files_argument(
         files = tuple(files_of(values, skipped, also, opens=opens))
         context.meta[_SKIPPED] = skipped
         if skipped and not terminal.QUIET.intersection(context.find_root().obj or ()):
-            terminal.say("note", f"skipped {_counted(skipped)}.")
+            terminal.print_line("note", f"skipped {_counted(skipped)}.")
         return files
 
     return click.argument(name, nargs=-1, required=True, type=PATH, metavar=metavar, callback=found)
@@ -86,9 +86,9 @@ def files_of(
     files: list[Path] = []
     for value in values:
         found = matches(value)
-        inside = (file for path in found for file in _inside(path)) if opens else found
+        inside = (file for path in found for file in _files_in(path)) if opens else found
         for path in dict.fromkeys(inside):
-            if _is_meant(path, value, also, alone=len(values) == 1):
+            if _is_selected(path, value, also, alone=len(values) == 1):
                 files.append(path)
             else:
                 skipped[path.suffix.lower()] += 1
@@ -98,7 +98,7 @@ def files_of(
     return files
 
 
-def _is_meant(path: Path, value: Path, also: Collection[str], *, alone: bool) -> bool:
+def _is_selected(path: Path, value: Path, also: Collection[str], *, alone: bool) -> bool:
     """Say whether a file that an argument `value` matches is to be processed, not skipped.
 
     True for meshes and suffixes in `also`; for a named file unless it accompanies meshes and is not
@@ -110,11 +110,11 @@ def _is_meant(path: Path, value: Path, also: Collection[str], *, alone: bool) ->
     if suffix in FORMATS or suffix in also:
         return True
     if path == value:
-        return alone or suffix not in _BESIDE
+        return alone or suffix not in _COMPANION_SUFFIXES
     return suffix != "" and suffix == value.suffix.lower() and not value.is_dir()
 
 
-def _inside(path: Path) -> Iterator[Path]:
+def _files_in(path: Path) -> Iterator[Path]:
     """Yield the files in a folder and its subfolders, sorted; for a file, the file itself."""
     if not path.is_dir():
         yield path

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 from click.core import ParameterSource
 
-from ...meant import question
 from ...parameters import MAX_PITCH, MAX_SECONDS, MAX_THREADS
+from ...suggestions import suggestion_text
 from ..inputs.lengths import MILLIMETRES, as_length
 from ..inputs.scripts import STREAMED, SUFFIXES
 
@@ -23,7 +23,7 @@ else:
     _Choice = click.Choice
 
 
-class Further(click.Option):
+class RareOption(click.Option):
     """A rarely used option, which the help lists under “More options”."""
 
 
@@ -34,7 +34,7 @@ class Verb(click.Command):
         """Write the help of the common options, then of the rarely used ones."""
         options = [one for one in self.get_params(ctx) if isinstance(one, click.Option)]
         for title, is_further in (("Options", False), ("More options", True)):
-            chosen = [one for one in options if isinstance(one, Further) == is_further]
+            chosen = [one for one in options if isinstance(one, RareOption) == is_further]
             records = [record for one in chosen if (record := one.get_help_record(ctx))]
             if records:
                 with formatter.section(title):
@@ -47,7 +47,7 @@ def verb(name: str, **settings: Any) -> Callable[[Callable[..., Any]], Verb]:
 
 
 #: Makes an option that the help lists under “More options”.
-further = partial(click.option, cls=Further)
+rare_option = partial(click.option, cls=RareOption)
 
 
 class FilePath(click.Path):
@@ -113,7 +113,7 @@ class Words(_Choice):
         try:
             return super().convert(value, param, ctx)
         except click.BadParameter as error:
-            asks = question(value, map(str, self.choices))
+            asks = suggestion_text(value, map(str, self.choices))
             raise click.BadParameter(error.message + asks, ctx, param) from error
 
 
@@ -122,7 +122,7 @@ SECONDS = FiniteRange(0, MAX_SECONDS, min_open=True)
 #: The type of options that are counts of sample points; ten million take seconds and a gigabyte.
 SAMPLES = click.IntRange(0, 10_000_000)
 
-_THREADS = further(
+_THREADS = rare_option(
     "-j",
     "--jobs",
     "--threads",
@@ -136,9 +136,9 @@ _THREADS = further(
 _COMMON = [
     click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead."),
     _THREADS,
-    further("-q", "--quiet", is_flag=True, help="Say nothing but results and errors."),
-    further("-v", "--verbose", is_flag=True, help="Say more about what is done."),
-    further("--debug", is_flag=True, help="Show where an error comes from."),
+    rare_option("-q", "--quiet", is_flag=True, help="Say nothing but results and errors."),
+    rare_option("-v", "--verbose", is_flag=True, help="Say more about what is done."),
+    rare_option("--debug", is_flag=True, help="Show where an error comes from."),
 ]
 
 
@@ -173,7 +173,7 @@ def _as_suffix(context: click.Context, option: click.Parameter, value: str | Non
 
 
 _READING = [
-    further(
+    rare_option(
         "--from",
         "from_format",
         metavar="FORMAT",
@@ -189,13 +189,13 @@ _READING = [
 ]
 
 _SETS = [
-    further(
+    rare_option(
         "--winding",
         type=click.Choice(["positive", "nonzero", "even-odd"]),
         default="positive",
         help="Which winding numbers are inside a file that overlaps itself.",
     ),
-    further(
+    rare_option(
         "--pitch",
         metavar="PITCH",
         type=click.IntRange(-MAX_PITCH, MAX_PITCH),
@@ -219,14 +219,14 @@ _WRITING = [
         shell_complete=_formats,
         help="Format of the output, e.g. ply.",
     ),
-    further("--ascii", "text", is_flag=True, help="Write STL and PLY as text."),
-    further(
+    rare_option("--ascii", "text", is_flag=True, help="Write STL and PLY as text."),
+    rare_option(
         "--digits",
         metavar="N",
         type=click.IntRange(1, 17),
         help="Significant digits of coordinates; by default as many as give the same doubles.",
     ),
-    further(
+    rare_option(
         "--overwrite/--no-overwrite",
         default=True,
         help="Whether to replace a file that is there (default).",
@@ -278,7 +278,9 @@ _ONE_BY_ONE = [
 
 OVERWRITE = _WRITING[-1]
 
-ALLOW_EMPTY = further("--allow-empty", is_flag=True, help="Write a file even if nothing is left.")
+ALLOW_EMPTY = rare_option(
+    "--allow-empty", is_flag=True, help="Write a file even if nothing is left."
+)
 
 #: The values of ``--validate``: how thoroughly a result is compared with manifold3d's.
 _CHECKS = ("quick", "full", "off")
@@ -286,7 +288,7 @@ _CHECKS = ("quick", "full", "off")
 
 def check_depth(command: _Command) -> _Command:
     """Add the options for the comparison with manifold3d to a command."""
-    leave_out = further(
+    leave_out = rare_option(
         "--no-validate", "--no-check", "check", flag_value="off", help="The same as --check=off."
     )
     compare = click.option(
@@ -319,7 +321,7 @@ TIMEOUT = click.option(
     help="Seconds to give it.",
 )
 
-PORT = further(
+PORT = rare_option(
     "--port",
     metavar="N",
     type=click.IntRange(0, 65535),
@@ -381,54 +383,54 @@ def numbers(what: str, names: str, example: str) -> Callable[..., tuple[float, .
     return as_numbers
 
 
-def common(command: _Command) -> _Command:
+def common_options(command: _Command) -> _Command:
     """Add the options that every verb has to a command."""
     return _with(_COMMON, command)
 
 
-def telling(command: _Command) -> _Command:
+def basic_options(command: _Command) -> _Command:
     """Add the options that every verb has, except ``-j``, to a command."""
     return _with([option for option in _COMMON if option is not _THREADS], command)
 
 
-def reading(command: _Command) -> _Command:
+def reading_options(command: _Command) -> _Command:
     """Add the options for reading meshes to a command."""
     return _with(_READING, command)
 
 
-def sets(command: _Command) -> _Command:
+def set_options(command: _Command) -> _Command:
     """Add the options for turning meshes into sets of points to a command."""
     return _with(_SETS, command)
 
 
-def writing(command: _Command) -> _Command:
+def writing_options(command: _Command) -> _Command:
     """Add the options for writing meshes to a command."""
     return _with(_WRITING, command)
 
 
-def one_by_one(command: _Command) -> _Command:
+def per_file_options(command: _Command) -> _Command:
     """Add the options for writing one file for each input to a command."""
     return _with(_ONE_BY_ONE, command)
 
 
-def drawing(command: _Command) -> _Command:
+def drawing_options(command: _Command) -> _Command:
     """Add the options for writing a drawing to a command."""
     return _with(_DRAWING, command)
 
 
-def making(command: _Command) -> _Command:
+def solid_options(command: _Command) -> _Command:
     """Add the options for making one solid and writing it to a command; ``-o`` is required."""
-    return _with([OUTPUT, writing, SIMPLIFY, ALLOW_EMPTY, check_depth], command)
+    return _with([OUTPUT, writing_options, SIMPLIFY, ALLOW_EMPTY, check_depth], command)
 
 
-def making_or_showing(command: _Command) -> _Command:
+def solid_or_view_options(command: _Command) -> _Command:
     """Add the options for making one solid and writing or only showing it; ``-o`` is optional."""
-    return _with([_MAYBE_OUTPUT, writing, SIMPLIFY, ALLOW_EMPTY, check_depth], command)
+    return _with([_MAYBE_OUTPUT, writing_options, SIMPLIFY, ALLOW_EMPTY, check_depth], command)
 
 
 def from_files(command: _Command) -> _Command:
     """Add the options for making one solid from mesh files to a command."""
-    return _with([making, reading, sets, common], command)
+    return _with([solid_options, reading_options, set_options, common_options], command)
 
 
 def _with(options: list[Callable[[Any], Any]], command: _Command) -> _Command:

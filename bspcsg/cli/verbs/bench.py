@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import FormatError
-from ..console import output, status
+from ..console import output, status_line
 from ..console.tables import table_text
 from ..inputs.files import STREAM, refuse_folder
-from ..options.shared import SECONDS, FilePath, FiniteRange, further, verb
+from ..options.shared import SECONDS, FilePath, FiniteRange, rare_option, verb
 
 if TYPE_CHECKING:
     from ...bench.runner import Settings
@@ -84,7 +84,7 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
 )
 @click.option("--list", "listed", is_flag=True, help="Name the cases and what each is to reach.")
 @click.option("--all", "everything", is_flag=True, help="All cases: an hour or more.")
-@further("--cliffs", is_flag=True, help="Only dense places, each at two sizes.")
+@rare_option("--cliffs", is_flag=True, help="Only dense places, each at two sizes.")
 @click.option(
     "--against",
     "engines",
@@ -101,13 +101,13 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     help="Timed runs of each engine, after one that warms up.",
 )
 @click.option("--quick", is_flag=True, help="Small forms of the cases, in seconds.")
-@further(
+@rare_option(
     "--limit",
     metavar="SECONDS",
     type=SECONDS,
     help="Seconds after which a call is stopped; by default 120 to 900.",
 )
-@further(
+@rare_option(
     "--budget",
     metavar="SECONDS",
     type=SECONDS,
@@ -115,13 +115,13 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     show_default=True,
     help="Seconds for all runs of an engine; slow ones are timed fewer times.",
 )
-@further(
+@rare_option(
     "--steps",
     metavar="N",
     type=click.IntRange(1),
     help="Steps of the dome that are carved; by default all.",
 )
-@further(
+@rare_option(
     "--memory",
     "memory_gb",
     metavar="GIB",
@@ -130,7 +130,7 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     show_default=True,
     help="GiB of addresses beyond which an engine gets none; 0 for no bound.",
 )
-@further(
+@rare_option(
     "--data",
     "shared",
     metavar="FOLDER",
@@ -139,7 +139,7 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     show_default=True,
     help="Folder with meshes/ and chains/; cases that need them are left out without.",
 )
-@further("--core", type=_PATH, help="Measure with another build of the compiled core.")
+@rare_option("--core", type=_PATH, help="Measure with another build of the compiled core.")
 @click.option(
     "-o",
     "--output",
@@ -148,14 +148,14 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     type=_PATH,
     help="Write the record there.",
 )
-@further(
+@rare_option(
     "--continue",
     "continued",
     is_flag=True,
     help="Keep what the record of -o has, and measure what it lacks and what is named.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the record instead of a table.")
-@further("--plot", "plot_path", type=_PATH, help="Draw time against size, as SVG.")
+@rare_option("--plot", "plot_path", type=_PATH, help="Draw time against size, as SVG.")
 @click.option("--from", "source", type=_PATH, help="Measure nothing; show this record.")
 @click.option(
     "--format",
@@ -165,12 +165,12 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     show_default=True,
     help="How the table is printed.",
 )
-@further(
+@rare_option(
     "--details", is_flag=True, help="Print first and later times, page faults and memory, too."
 )
-@further("--counters", is_flag=True, help="Print what our core counted, too.")
-@further("-q", "--quiet", is_flag=True, help="Do not say what is under way.")
-@further("--debug", is_flag=True, help="Show where an error comes from.")
+@rare_option("--counters", is_flag=True, help="Print what our core counted, too.")
+@rare_option("-q", "--quiet", is_flag=True, help="Do not say what is under way.")
+@rare_option("--debug", is_flag=True, help="Show where an error comes from.")
 def bench(
     cases: list[str], listed: bool, everything: bool, cliffs: bool, continued: bool, **given: Any
 ) -> int:
@@ -194,7 +194,7 @@ def bench(
     if source:
         record = records.read(source)
     else:
-        kept = _kept(given["record_path"]) if continued else []
+        kept = _recorded_rows(given["record_path"]) if continued else []
         record = _measured(_missing(wanted, cases, kept), kept, given)
     with _whole_record(source):
         text = json.dumps(record) + "\n" if given["as_json"] else _table(record, given["style"])
@@ -216,7 +216,7 @@ def _wanted(cases: list[str], everything: bool, cliffs: bool) -> list[str]:
     return cases or list(CASES if everything else SHORT)
 
 
-def _kept(path: Path | None) -> list[dict[str, Any]]:
+def _recorded_rows(path: Path | None) -> list[dict[str, Any]]:
     """Return the rows of the record that ``--continue`` names; none if the file does not exist."""
     from ...bench import record as records
     from ...bench.cases import CASES
@@ -246,9 +246,9 @@ def _missing(wanted: list[str], named: list[str], kept: list[dict[str, Any]]) ->
 
 def _dense(cases: list[str]) -> list[str]:
     """Return the cases that have a bound on the growth of cost where faces are close together."""
-    from ...bench.cliffs import CLIFFS
+    from ...bench.dense_cases import DENSE_CASES
 
-    found = [name for name in cases if name in CLIFFS]
+    found = [name for name in cases if name in DENSE_CASES]
     if not found:
         raise click.UsageError(
             "none of these cases belongs to --cliffs; --cliffs --list shows its cases."
@@ -302,7 +302,7 @@ def _measured(
     from ...bench.runner import run_case
 
     settings = _settings(given)
-    status.end()
+    status_line.end()
     told = _silence if given["quiet"] else _tell
     rows = {row["case"]: row for row in kept}
     for name in cases:

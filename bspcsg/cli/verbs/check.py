@@ -12,16 +12,16 @@ from ...errors import BspcsgError
 from ..console import output, terminal
 from ..console.output import SCHEMA, Output, counted, grouped
 from ..console.tables import table_text
-from ..inputs.files import STREAM, Inputs, is_among, is_dropped, repair_command, shown
+from ..inputs.files import STREAM, Inputs, display_name, is_among, is_dropped, repair_command
 from ..inputs.lengths import as_length
 from ..options.patterns import files_argument, skipped_files
-from ..options.shared import FilePath, common, reading, verb
-from ..pages.written import refuse_page, write_page
+from ..options.shared import FilePath, common_options, reading_options, verb
+from ..pages.page_output import refuse_page, write_page
 
 if TYPE_CHECKING:
     from ...errors import Finding
     from ...repair.diagnosis import Diagnosis
-    from ...report.examined import CheckPage
+    from ...report.check_page import CheckPage
     from ...report.junit import JUnitCase
 
 #: The relative difference up to which volume and signed volume are printed as one.
@@ -58,8 +58,8 @@ Examples:
     callback=as_length,
     help="Mark walls of closed meshes that are thinner, as 0.8mm, in the page.",
 )
-@reading
-@common
+@reading_options
+@common_options
 def check(
     files: tuple[Path, ...],
     targets: tuple[Path, ...],
@@ -130,7 +130,7 @@ class _Checking:
         self._out.result("" if self._out.as_json else _text(results, self._out), document)
         for one in results:
             if isinstance(one.found, BspcsgError):
-                terminal.say_error(_named(one.path, one.found))
+                terminal.print_error(_named(one.path, one.found))
         return max(self._exit_code(one) for one in results)
 
     def _refuse_early(self) -> None:
@@ -148,23 +148,23 @@ class _Checking:
     def _page(self) -> "CheckPage | None":
         if not self._is_page:
             return None
-        from ...report.examined import CheckPage
+        from ...report.check_page import CheckPage
 
         return CheckPage(len(self._files), self._thin)
 
     def _checked(self, path: Path, page: "CheckPage | None") -> _Checked:
-        from ...assembly.examining import examine
+        from ...assembly.object_diagnosis import examine
 
         try:
             self._inputs.refuse_early([path])
             found = examine(self._inputs.raw(path))
         except BspcsgError as error:
             if page is not None:
-                page.add_unreadable(shown(path), _named(path, error))
+                page.add_unreadable(display_name(path), _named(path, error))
             return _Checked(path, error)
         if page is not None:
-            page.add(shown(path), found)
-        return _Checked(path, found.found, [(one.name, one.found) for one in found.objects])
+            page.add(display_name(path), found)
+        return _Checked(path, found.diagnosis, [(one.name, one.diagnosis) for one in found.objects])
 
     def _exit_code(self, one: _Checked) -> int:
         if isinstance(one.found, BspcsgError):
@@ -250,7 +250,7 @@ def _conclusion(bad: int, count: int) -> str:
 
 
 def _details(one: _Checked, found: "Diagnosis", out: Output) -> str:
-    lines = [f"{shown(one.path)}: {_measures(found, len(one.objects))}"]
+    lines = [f"{display_name(one.path)}: {_measures(found, len(one.objects))}"]
     lines += [
         f"  {name}: {_measures(own)}"
         for name, own in one.objects

@@ -8,10 +8,10 @@ import click
 from ..console import output
 from ..console.output import Output, counted
 from ..console.tables import table_text
-from ..inputs.files import STREAM, Inputs, shown
+from ..inputs.files import STREAM, Inputs, display_name
 from ..inputs.lengths import MILLIMETRES, as_length
 from ..options.patterns import files_argument
-from ..options.shared import common, reading, sets, verb
+from ..options.shared import common_options, reading_options, set_options, verb
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,9 +39,9 @@ Examples:
     callback=as_length,
     help="Also name pairs that are nearer than this, as 0.2mm.",
 )
-@reading
-@sets
-@common
+@reading_options
+@set_options
+@common_options
 def clash(files: tuple[Path, ...], clearance: float | None, **given: Any) -> int:
     """Say which pairs of files have volume in common, how much and where.
 
@@ -68,7 +68,7 @@ def _files(inputs: Inputs, files: "Sequence[Path]") -> "Assembly":
     """Return an assembly in which each file is a part."""
     from ...assembly.tree import Assembly
 
-    return Assembly("", [Assembly(shown(path), inputs.solid(path)) for path in files])
+    return Assembly("", [Assembly(display_name(path), inputs.solid(path)) for path in files])
 
 
 def _objects(inputs: Inputs, path: Path) -> "Assembly":
@@ -83,14 +83,15 @@ def _objects(inputs: Inputs, path: Path) -> "Assembly":
     suffix = inputs.suffix_of(path)
     if suffix == ".json" and path.suffix.lower() != suffix:
         message = (
-            f"{shown(path)}: clash reads a script in JSON only from a file whose name ends in"
+            f"{display_name(path)}: clash reads a script in JSON only from a file whose name ends"
+            " in"
             " .json; save it there."
         )
         raise click.UsageError(message)
     whole = load_as(path, suffix, **options)
     if len(whole) < 2:
         raise click.UsageError(
-            f"{shown(path)} contains one object only; clash needs two files{_ONE}"
+            f"{display_name(path)} contains one object only; clash needs two files{_ONE}"
         )
     says_unit = not is_script and FORMATS[suffix].unit
     return whole if inputs.unit is None or says_unit else whole.scale(MILLIMETRES[inputs.unit])
@@ -107,12 +108,17 @@ def _text(found: "list[Clash]", count: int, kind: str) -> str:
     if not found:
         return f"{pairs} of {kind}, none clashes."
     rows = [
-        (f"{one.first}, {one.second}", f"{one.volume:.6g}", f"{one.gap:.6g}", _spoken(one.place))
+        (
+            f"{one.first}, {one.second}",
+            f"{one.volume:.6g}",
+            f"{one.gap:.6g}",
+            _point_text(one.place),
+        )
         for one in found
     ]
     table = table_text((kind, "common volume", "gap", "near"), rows, ("common volume", "gap"))
     return f"{table}\n{pairs} of {kind}, {len(found)} in each other's way."
 
 
-def _spoken(place: "FloatArray") -> str:
+def _point_text(place: "FloatArray") -> str:
     return "({:.6g}, {:.6g}, {:.6g})".format(*place.tolist())

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..job import Job
 from ..options.patterns import files_argument
 from ..options.shared import from_files, verb
+from ..solid_verb import SolidVerb
 
 if TYPE_CHECKING:
     from ...solid.solid import Solid
@@ -41,7 +41,7 @@ def _verb(op: str) -> click.Command:
     return verb(op, help=_HELP[op], epilog=epilog)(run)
 
 
-class _Named(Job):
+class _Named(SolidVerb):
     """A named set operation on two or more files."""
 
     def __init__(self, op: str, files: tuple[Path, ...], **settings: Any) -> None:

@@ -8,11 +8,11 @@ import click
 from ..console import output
 from ..console.output import Output, grouped
 from ..console.tables import table_text
-from ..inputs.files import Inputs, shown
+from ..inputs.files import Inputs, display_name
 from ..inputs.lengths import as_length
 from ..options.patterns import file_argument
-from ..options.shared import SAMPLES, Renamed, common, reading, sets, verb
-from ..pages.written import PAGE, refuse_page, write_page
+from ..options.shared import SAMPLES, Renamed, common_options, reading_options, set_options, verb
+from ..pages.page_output import PAGE, refuse_page, write_page
 
 if TYPE_CHECKING:
     from ...solid.solid import Solid
@@ -47,9 +47,9 @@ Examples:
     "--seed", metavar="N", type=click.IntRange(min=0), default=0, help="Seed of the random points."
 )
 @PAGE
-@reading
-@sets
-@common
+@reading_options
+@set_options
+@common_options
 def compare(
     a: Path,
     b: Path,
@@ -86,7 +86,7 @@ def compare(
     document = {**names, **found.to_dict()} if out.as_json else {}
     if page is not None:
         _write_page(page, solids, (a, b), found, same)
-    out.result(_text(found, shown(a), shown(b), same), document)
+    out.result(_text(found, display_name(a), display_name(b), same), document)
     return output.DONE if same else output.FOUND
 
 
@@ -97,7 +97,7 @@ def _write_page(
     found: "SetComparison",
     same: bool,
 ) -> None:
-    from ...report.viewer.compared import compared_page
+    from ...report.viewer.comparison_page import compared_page
 
     first, second = (path.name for path in files)
     names = (first, second if first != second else f"{second} (2)")

@@ -8,13 +8,20 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import click
 
 from ...errors import Finding
-from ..batch import each, targets_of
+from ..batch import process_each, targets_of
 from ..console import output
 from ..console.output import Output, counted
-from ..inputs.files import Inputs, Target, make_folder, shown
+from ..inputs.files import Inputs, Target, display_name, make_folder
 from ..inputs.lengths import MILLIMETRES
 from ..options.patterns import files_argument
-from ..options.shared import SIMPLIFY, common, one_by_one, reading, verb, writing
+from ..options.shared import (
+    SIMPLIFY,
+    common_options,
+    per_file_options,
+    reading_options,
+    verb,
+    writing_options,
+)
 
 if TYPE_CHECKING:
     from ...formats.raw import RawMesh
@@ -30,8 +37,8 @@ Examples:
 
 @verb("convert", epilog=_EPILOG)
 @files_argument("FILE|FOLDER [...]")
-@one_by_one
-@writing
+@per_file_options
+@writing_options
 @SIMPLIFY
 @click.option(
     "--to-unit",
@@ -49,8 +56,8 @@ Examples:
     help="Which axis is up in the inputs; y in GLB by default, z in all others.",
 )
 @click.option("--fail-on-loss", is_flag=True, help="Exit with 1 if anything was lost.")
-@reading
-@common
+@reading_options
+@common_options
 def convert(files: tuple[Path, ...], **given: Any) -> int:
     """Write meshes in other formats, and say what was lost.
 
@@ -80,7 +87,7 @@ class _Conversion:
 
     def run(self) -> int:
         self._refuse_early()
-        documents, code = each(self._pairs, self._out, self._converted, "converting")
+        documents, code = process_each(self._pairs, self._out, self._converted, "converting")
         if self._out.as_json:
             self._out.result("", {"files": documents})
         return code
@@ -92,7 +99,7 @@ class _Conversion:
         for _, target in self._pairs:
             self._refuse_unit(target)
             target.refuse_early(self._out.as_json)
-        self._inputs.tell_units(self._pairs)
+        self._inputs.note_missing_units(self._pairs)
 
     def _refuse_unit(self, target: Target) -> None:
         """Raise a usage error if ``--to-unit`` is given for a format that states its unit."""
@@ -112,19 +119,19 @@ class _Conversion:
 
         began = time.perf_counter()
         raw = meant = self._turned(path, target)
-        self._inputs.tell(path, raw.findings)
+        self._inputs.print_findings(path, raw.findings)
         if self._settings["tolerance"]:
             raw = self._simplified(raw, path)
             # Simplifying loses everything but the shape: names, attributes and so on.
             meant = replace(meant, vertices=raw.vertices, faces=raw.faces)
         shortened, _ = target.rounded(raw)
-        made = encoded(shortened, shown(target.path), target.suffix, target.text)
+        made = encoded(shortened, display_name(target.path), target.suffix, target.text)
         found: list[Losses] = []
 
         def compare(file: BinaryIO) -> None:
             made.prove(file)
             file.seek(0)
-            again = decoded(shown(target.path), file.read(), target.suffix, made.files)
+            again = decoded(display_name(target.path), file.read(), target.suffix, made.files)
             found.append(losses_between(meant, again))
 
         target.put(made, compare)
@@ -154,33 +161,34 @@ class _Conversion:
         simple = solid.simplify(self._settings["tolerance"])
         if simple is solid:
             self._out.note(
-                f"{shown(path)}: no edge or triangle is small enough to be simplified within the"
+                f"{display_name(path)}: no edge or triangle is small enough to be simplified"
+                " within the"
                 " tolerance"
             )
             return raw
         mesh = simple.normalized().to_mesh()
-        self._inputs.tell(path, simple.normalized().findings)
+        self._inputs.print_findings(path, simple.normalized().findings)
         bare = replace(raw, findings=(), objects=(), attributes=None)
         return replace(bare, vertices=mesh.vertices, faces=mesh.faces)
 
     def _turned(self, path: Path, target: Target) -> "RawMesh":
         """Read a file, and rotate it so that the requested axis is up in the output."""
         from ...formats.registry import FORMATS
-        from ...formats.turning import turned
+        from ...formats.up_axis import rotated_about_x
 
         raw = self._inputs.raw(path)
-        usual_in = self._inputs.up_of(path)
+        usual_in = self._inputs.up_axis_of(path)
         usual_out = FORMATS[target.suffix.lower()].up
         # Reading and writing already rotate by the convention of each format, so only the
         # differences between the options and these conventions count.
         told_in = self._settings["from_up"] or usual_in
         told_out = self._settings["up"] or usual_out
         quarters = (told_in == "y") - (usual_in == "y") - (told_out == "y") + (usual_out == "y")
-        return turned(self._in_unit(raw), quarters)
+        return rotated_about_x(self._in_unit(raw), quarters)
 
     def _in_unit(self, raw: "RawMesh") -> "RawMesh":
         """Convert a mesh from millimetres to the unit of ``--to-unit``."""
-        from ...formats.placing import rescaled
+        from ...formats.mesh_placement import rescaled
 
         return rescaled(raw, 1, MILLIMETRES[self._settings["to_unit"] or "mm"])
 
@@ -191,12 +199,12 @@ class _Conversion:
         if finding.code == "unit" and finding.message in self._told:
             return
         self._told.add(finding.message)
-        self._out.finding(shown(target.path), finding)
+        self._out.finding(display_name(target.path), finding)
 
 
 def _line(raw: "RawMesh", target: Target, lost: "Losses", seconds: float) -> str:
     words = "; ".join(lost.sentences())
     return (
-        f"{shown(target.path)}  {counted(len(raw.faces), 'triangle')}"
+        f"{display_name(target.path)}  {counted(len(raw.faces), 'triangle')}"
         f"  {'lost: ' + words if words else 'nothing lost'}  {seconds:.2f} s"
     )

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ...errors import harmless
+from ...errors import without_control_characters
 from ...parameters import SET_OPS
-from ..console import output, status
+from ..console import output, status_line
 from ..console.output import Output, counted
 from ..console.tables import table_text
-from ..inputs.files import STREAM, is_among, is_dropped, refuse_folder, shown
+from ..inputs.files import STREAM, display_name, is_among, is_dropped, refuse_folder
 from ..options.campaign import (
     POSES,
     as_bytes,
@@ -26,13 +26,13 @@ from ..options.campaign import (
     as_shard,
 )
 from ..options.patterns import files_argument
-from ..options.shared import SAMPLES, SECONDS, FilePath, Words, further, telling, verb
+from ..options.shared import SAMPLES, SECONDS, FilePath, Words, basic_options, rare_option, verb
 
 if TYPE_CHECKING:
     from ...campaign.cases.case import Case
     from ...campaign.cases.sources import CaseInputs
     from ...campaign.record import CaseRecord, RunRecord
-    from ...campaign.running.pool import Answering
+    from ...campaign.running.pool import RequestHandler
 
 _EPILOG = """\b
 Examples:
@@ -65,7 +65,7 @@ _FILE = FilePath()
     type=click.IntRange(min=1),
     help="Draw this number of pairs, half in random and half in coincident poses.",
 )
-@further(
+@rare_option(
     "--pose",
     "pose",
     multiple=True,
@@ -74,20 +74,20 @@ _FILE = FilePath()
     help=f"Pose of the second of each pair ({', '.join(POSES)}); a number for one draw; may be"
     " repeated.",
 )
-@further(
+@rare_option(
     "--seed",
     metavar="N",
     type=click.IntRange(min=0),
     default=0,
     help="Seed of the random draws.",
 )
-@further(
+@rare_option(
     "--max-triangles",
     metavar="N",
     type=click.IntRange(min=1),
     help="Leave larger files out; files that are no solids are left out of --poses too.",
 )
-@further("--only", metavar="PATTERN", help="Only cases whose names match, as in '*-union'.")
+@rare_option("--only", metavar="PATTERN", help="Only cases whose names match, as in '*-union'.")
 @click.option(
     "--against",
     metavar="ENGINES",
@@ -99,7 +99,7 @@ _FILE = FilePath()
     "--results", metavar="FILE", type=_FILE, help="JSON lines to append each finished case to."
 )
 @click.option("--junit", metavar="FILE", type=_FILE, help="JUnit XML to write at the end.")
-@further("--markdown", metavar="FILE", type=_FILE, help="Markdown summary to write at the end.")
+@rare_option("--markdown", metavar="FILE", type=_FILE, help="Markdown summary to write at the end.")
 @click.option(
     "-j",
     "--jobs",
@@ -116,7 +116,7 @@ _FILE = FilePath()
     show_default=True,
     help="Seconds for a case, after which its process is killed.",
 )
-@further(
+@rare_option(
     "--memory",
     metavar="SIZE",
     default="4G",
@@ -124,18 +124,18 @@ _FILE = FilePath()
     callback=as_bytes,
     help="Memory for a case; 0 for no limit.",
 )
-@further("--shard", metavar="I/N", callback=as_shard, help="Only the I-th of N parts.")
+@rare_option("--shard", metavar="I/N", callback=as_shard, help="Only the I-th of N parts.")
 @click.option("--resume", is_flag=True, help="Leave out what the results file has already.")
-@further(
+@rare_option(
     "--retry-crashed",
     "retry",
     is_flag=True,
     help="With --resume, run again what crashed, as where a worker was lost for want of memory.",
 )
-@further(
+@rare_option(
     "--fail-fast/--keep-going", default=False, help="Stop at the first failure, or go on (default)."
 )
-@further(
+@rare_option(
     "--keep-meshes",
     "keep",
     metavar="WHICH",
@@ -144,7 +144,7 @@ _FILE = FilePath()
     help="Cases whose meshes are stored beside the results: interesting (default), all, none, or a"
     " number of further ones.",
 )
-@further(
+@rare_option(
     "--samples",
     metavar="N",
     type=SAMPLES,
@@ -152,12 +152,12 @@ _FILE = FilePath()
     show_default=True,
     help="Points to measure distances from; 0 for none.",
 )
-@further(
+@rare_option(
     "--scheduler",
     metavar="ADDRESS|FILE",
     help="Run on the workers of this Dask scheduler, which see the same files.",
 )
-@telling
+@basic_options
 def crosscheck(paths: tuple[Path, ...], **given: Any) -> int:
     """Compare results with manifold3d's, as exact sets, and with other engines' in doubtful cases.
 
@@ -225,7 +225,7 @@ class _Campaign:
                 "crosscheck cannot read standard input; give the names of files."
             )
 
-    def _answering(self) -> "Answering":
+    def _answering(self) -> "RequestHandler":
         from ...campaign.running.cluster import Cluster
         from ...campaign.running.pool import LocalPool
         from ...campaign.running.runner import greeting
@@ -252,12 +252,12 @@ class _Campaign:
             relative="" if folder is None else folder.name,
         )
 
-    def _cases(self, answering: "Answering") -> "list[Case]":
-        from ...campaign.cases.sources import Draw, cases_of, inputs_in
+    def _cases(self, answering: "RequestHandler") -> "list[Case]":
+        from ...campaign.cases.sources import PairSelection, cases_of, inputs_in
 
         count, seed = self._settings["poses"] or 0, self._settings["seed"]
         asked = self._settings["pose"] or [(None, None)]
-        draws = [Draw(count, seed, pose, number) for pose, number in asked]
+        draws = [PairSelection(count, seed, pose, number) for pose, number in asked]
         inputs = self._usable(inputs_in(self._paths), answering)
         operations = self._settings["operations"] or SET_OPS
         cases = cases_of(inputs, tuple(dict.fromkeys(operations)), *draws)
@@ -275,7 +275,7 @@ class _Campaign:
             cases = cases[number - 1 :: count]
         return cases
 
-    def _usable(self, inputs: "CaseInputs", answering: "Answering") -> "CaseInputs":
+    def _usable(self, inputs: "CaseInputs", answering: "RequestHandler") -> "CaseInputs":
         """Drop meshes with too many triangles, and meshes that are no solids.
 
         Without ``--max-triangles`` and ``--poses``, all inputs are returned unread.
@@ -291,7 +291,7 @@ class _Campaign:
         bad = [path for path in inputs.meshes if found[path]["refused"]]
         large = [path for path in inputs.meshes if most and found[path]["triangles"] > most]
         for path in bad:
-            self._out.detail(f"{shown(path)}: left out: {found[path]['refused']}")
+            self._out.detail(f"{display_name(path)}: left out: {found[path]['refused']}")
         if bad:
             words = (
                 "file left out because it is not a solid"
@@ -313,7 +313,7 @@ class _Campaign:
         return run_record(shlex.join(["bspcsg", *arguments]), self._settings["seed"])
 
     def _records(
-        self, cases: "Sequence[Case]", answering: "Answering", header: "RunRecord"
+        self, cases: "Sequence[Case]", answering: "RequestHandler", header: "RunRecord"
     ) -> "list[CaseRecord]":
         from ...campaign.record import Journal, read_results
         from ...campaign.running.runner import CampaignPlan, run_cases
@@ -332,7 +332,8 @@ class _Campaign:
         done = len(cases) - len(plan.open_cases)
         if done:
             self._out.note(
-                f"{counted(done, 'case')} of {len(cases)} already finished in {shown(results)}"
+                f"{counted(done, 'case')} of {len(cases)} already finished in"
+                f" {display_name(results)}"
             )
         with Journal(results) if results else nullcontext() as journal:
             if journal is not None:
@@ -357,7 +358,7 @@ class _Campaign:
 
         from ...campaign.record import is_failure
 
-        status.end()
+        status_line.end()
         times = TimeElapsedColumn(), TimeRemainingColumn()
         columns = ("comparing", BarColumn(), MofNCompleteColumn(), *times)
         with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
@@ -367,7 +368,10 @@ class _Campaign:
                 bar.advance(task)
                 if is_failure(record) or self._out.verbosity > 0:
                     bar.console.print(
-                        harmless(_line(record)), markup=False, emoji=False, highlight=False
+                        without_control_characters(_line(record)),
+                        markup=False,
+                        emoji=False,
+                        highlight=False,
                     )
 
             yield notice

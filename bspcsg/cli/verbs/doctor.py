@@ -14,7 +14,7 @@ from ...machine import system
 from ..console import output
 from ..console.output import Output
 from ..console.tables import table_text
-from ..options.shared import common, verb
+from ..options.shared import common_options, verb
 
 _EPILOG = """\b
 Example:
@@ -77,7 +77,7 @@ class _Part:
 
 
 @verb("doctor", short_help="Say what is installed, and how to get the rest.", epilog=_EPILOG)
-@common
+@common_options
 def doctor(**given: Any) -> int:
     """Say which parts are installed, and how to get those that are not.
 
@@ -129,8 +129,8 @@ def _with_libraries(part: _Part) -> _Part:
 
     pymeshlab is loaded in a separate process.
     """
-    from ...repair.child import PLUGINS
-    from ...repair.repair import remedy
+    from ...repair.pymeshlab_child import PLUGINS
+    from ...repair.repair import install_command
 
     if not part.found:
         return part
@@ -139,7 +139,7 @@ def _with_libraries(part: _Part) -> _Part:
     if count.isdigit() and int(count) >= PLUGINS:
         return part
     reason = f"{count} of {PLUGINS} plug-ins" if count.isdigit() else "cannot be loaded"
-    remedied = remedy("plug-ins" if count.isdigit() else said)
+    remedied = install_command("plug-ins" if count.isdigit() else said)
     return _Part(part.name, f"{part.found}, {reason}", part.purpose, remedied)
 
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import BspcsgError
-from ..job import Job
 from ..options.formula import File, Formula, FormulaError, evaluated, files_of, parse, subtracted
 from ..options.patterns import matches
 from ..options.shared import from_files, verb
+from ..solid_verb import SolidVerb
 
 if TYPE_CHECKING:
     from ...solid.solid import Solid
@@ -41,7 +41,7 @@ def evaluate(formula: str, **given: Any) -> int:
     return _Evaluation(formula, **given).run()
 
 
-class _Evaluation(Job):
+class _Evaluation(SolidVerb):
     """The work of the verb `eval`: it evaluates a formula, reading each file once."""
 
     def __init__(self, formula: str, **settings: Any) -> None:
@@ -49,7 +49,7 @@ class _Evaluation(Job):
         try:
             self._formula: Formula = parse(formula)
         except FormulaError as error:
-            raise click.UsageError(_pointed(formula, error.message, error.column)) from None
+            raise click.UsageError(_with_caret(formula, error.message, error.column)) from None
         super().__init__("eval", **settings)
         self._cutters: list[Solid] = []
 
@@ -79,7 +79,7 @@ class _Evaluation(Job):
             advice = (
                 "Put blanks around + and - if they are operators and not part of the file name."
             )
-            message = _pointed(self._text, f"{error.message} {advice}", file.column)
+            message = _with_caret(self._text, f"{error.message} {advice}", file.column)
             raise type(error)(message, error.code, error.where) from error
 
 
@@ -91,7 +91,7 @@ def _combined(name: str, solids: list["Solid"]) -> "Solid":
     return OPERATIONS[name](*solids)
 
 
-def _pointed(formula: str, message: str, column: int) -> str:
+def _with_caret(formula: str, message: str, column: int) -> str:
     """Return a message, followed by the formula and a mark (^) under the column of an error."""
     if not formula.strip():
         return f"formula:{column + 1}: {message}"

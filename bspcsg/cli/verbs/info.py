@@ -7,9 +7,9 @@ from ...errors import BspcsgError
 from ..console import output, terminal
 from ..console.output import Output, counted, grouped
 from ..console.tables import table_text
-from ..inputs.files import Inputs, shown
+from ..inputs.files import Inputs, display_name
 from ..options.patterns import files_argument
-from ..options.shared import common, reading, verb
+from ..options.shared import common_options, reading_options, verb
 
 if TYPE_CHECKING:
     from ...formats.raw import RawMesh
@@ -26,8 +26,8 @@ Examples:
     "info", short_help="Say what is in each file: counts, size, volume, findings.", epilog=_EPILOG
 )
 @files_argument("FILE|FOLDER [...]")
-@reading
-@common
+@reading_options
+@common_options
 def info(files: tuple[Path, ...], **given: Any) -> int:
     """Print what is in each file: counts, size, volume, area, objects, unit and findings.
 
@@ -44,7 +44,7 @@ def info(files: tuple[Path, ...], **given: Any) -> int:
     out.result("" if out.as_json else _text(described), {"files": [e.document for e in described]})
     for entry in described:
         if entry.error is not None:
-            terminal.say_error(entry.error.message)
+            terminal.print_error(entry.error.message)
     return max(entry.code for entry in described)
 
 
@@ -78,11 +78,11 @@ class _Entry:
 
 
 def _described(inputs: Inputs, path: Path) -> _Entry:
-    from ...assembly.examining import examine
+    from ...assembly.object_diagnosis import examine
 
     try:
         raw = inputs.raw(path)
-        return _Entry(path, (raw, examine(raw).found))
+        return _Entry(path, (raw, examine(raw).diagnosis))
     except BspcsgError as error:
         return _Entry(path, error=error)
 
@@ -94,7 +94,7 @@ def _text(entries: list[_Entry]) -> str:
 
 def _block(path: Path, raw: "RawMesh", found: "Diagnosis") -> str:
     rows = [*_counts(raw, found), *_measures(raw, found)]
-    lines = table_text((shown(path), ""), rows).splitlines()
+    lines = table_text((display_name(path), ""), rows).splitlines()
     lines += [f"{finding.severity}: {finding.message.rstrip('.')}." for finding in found.findings]
     return "\n".join(lines)
 

@@ -5,12 +5,12 @@ from typing import Any
 
 import click
 
-from ...browsing import opened, temporary_page
+from ...browsing import open_page, temporary_page
 from ..console import output
 from ..console.output import Output
-from ..inputs.files import shown
-from ..options.shared import FilePath, common, verb
-from ..pages.written import refuse_page, write_page
+from ..inputs.files import display_name
+from ..options.shared import FilePath, common_options, verb
+from ..pages.page_output import refuse_page, write_page
 
 _EPILOG = """\b
 Examples:
@@ -28,7 +28,7 @@ Examples:
     type=FilePath(),
     help="Page to write, ending in .html; by default a temporary one, opened in a browser.",
 )
-@common
+@common_options
 def lecture(target: Path | None, **given: Any) -> int:
     """Write one page that explains partition trees with figures to drag and to step through.
 
@@ -40,10 +40,10 @@ def lecture(target: Path | None, **given: Any) -> int:
     page = temporary_page("lecture") if target is None else target
     refuse_page(page)
     size = write_page(page, lecture_page())
-    reason = opened(page.as_uri()) if target is None else ""
+    reason = open_page(page.as_uri()) if target is None else ""
     if reason:
         out.note(reason)
-    line = f"{shown(page)}  {len(CHAPTERS)} chapters"
+    line = f"{display_name(page)}  {len(CHAPTERS)} chapters"
     document = {"output": str(page), "chapters": len(CHAPTERS), "bytes": size}
     out.result(line, document)
     return output.DONE

@@ -7,9 +7,18 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..inputs.lengths import as_length
-from ..job import Job
 from ..options.patterns import file_argument, files_argument
-from ..options.shared import ALLOW_EMPTY, OUTPUT, SIMPLIFY, common, reading, sets, verb, writing
+from ..options.shared import (
+    ALLOW_EMPTY,
+    OUTPUT,
+    SIMPLIFY,
+    common_options,
+    reading_options,
+    set_options,
+    verb,
+    writing_options,
+)
+from ..solid_verb import SolidVerb
 
 if TYPE_CHECKING:
     from ...solid.solid import Solid
@@ -28,12 +37,12 @@ Example:
 @verb("hull", short_help="Write the convex hull of all files together.", epilog=_HULL_EPILOG)
 @files_argument("A [B ...]")
 @OUTPUT
-@writing
+@writing_options
 @SIMPLIFY
 @ALLOW_EMPTY
-@reading
-@sets
-@common
+@reading_options
+@set_options
+@common_options
 def hull(files: tuple[Path, ...], **given: Any) -> int:
     """Write the convex hull of all files together, exactly.
 
@@ -55,11 +64,11 @@ def hull(files: tuple[Path, ...], **given: Any) -> int:
     callback=as_length,
     help="Remove edges and slivers up to this, as 0.01mm, moving no surface farther.",
 )
-@writing
+@writing_options
 @ALLOW_EMPTY
-@reading
-@sets
-@common
+@reading_options
+@set_options
+@common_options
 def simplify(file: Path, **given: Any) -> int:
     """Write a solid without short edges and slivers.
 
@@ -69,7 +78,7 @@ def simplify(file: Path, **given: Any) -> int:
     return _Simplified((file,), **given).run()
 
 
-class _OfFiles(Job):
+class _OfFiles(SolidVerb):
     """A job that makes a solid of files, without comparing the result with manifold3d's."""
 
     def __init__(self, op: str, files: tuple[Path, ...], **settings: Any) -> None:
@@ -99,7 +108,7 @@ class _Hull(_OfFiles):
 
 
 class _Simplified(_OfFiles):
-    """The work of the verb `simplify`: the solid of one file, which `Job.run` simplifies."""
+    """The work of the verb `simplify`: the solid of one file, which `SolidVerb.run` simplifies."""
 
     def __init__(self, files: tuple[Path, ...], **settings: Any) -> None:
         super().__init__("simplify", files, **settings)

@@ -5,10 +5,10 @@ from typing import Any
 
 from ..console import output
 from ..console.output import counted
-from ..drawing import Drawing
-from ..inputs.files import shown
+from ..drawing_verb import DrawingVerb
+from ..inputs.files import display_name
 from ..options.patterns import file_argument
-from ..options.shared import common, drawing, reading, sets, verb
+from ..options.shared import common_options, drawing_options, reading_options, set_options, verb
 
 _EPILOG = """\b
 Example:
@@ -20,10 +20,10 @@ _SUFFIXES = (".svg", ".dxf")
 
 @verb("project", short_help="Write the outline of a solid seen from above.", epilog=_EPILOG)
 @file_argument()
-@drawing
-@reading
-@sets
-@common
+@drawing_options
+@reading_options
+@set_options
+@common_options
 def project(file: Path, target: Path, **given: Any) -> int:
     """Write the shadow of a solid on the plane z = 0 as an SVG or DXF drawing.
 
@@ -33,14 +33,15 @@ def project(file: Path, target: Path, **given: Any) -> int:
     return _Projection(file, target, _SUFFIXES, **given).run()
 
 
-class _Projection(Drawing):
+class _Projection(DrawingVerb):
     """The work of the verb `project`: it draws the region below and above a solid."""
 
     def drawn(self) -> tuple[bytes, str, dict[str, Any]]:
         region = self.inputs.solid(self.file).project()
         if region.is_empty:
             message = (
-                f"{shown(self.file)}: the solid is empty, so its projection is empty and nothing"
+                f"{display_name(self.file)}: the solid is empty, so its projection is empty and"
+                " nothing"
                 " was written."
             )
             raise output.EmptyResultError(message, "empty_result")

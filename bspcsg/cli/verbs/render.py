@@ -8,11 +8,20 @@ import click
 
 from ...errors import BspcsgError
 from ..console.output import counted
-from ..drawing import Drawing
-from ..options.camera import camera_of, refuse_contradictions, seeing
+from ..drawing_verb import DrawingVerb
+from ..options.camera import camera_of, refuse_contradictions, view_options
 from ..options.patterns import files_argument
-from ..options.shared import SECONDS, common, drawing, further, is_given, numbers, reading, verb
-from ..pages.seen import layers_of
+from ..options.shared import (
+    SECONDS,
+    common_options,
+    drawing_options,
+    is_given,
+    numbers,
+    rare_option,
+    reading_options,
+    verb,
+)
+from ..pages.file_layers import layers_of
 
 if TYPE_CHECKING:
     from ..._types import FloatArray
@@ -108,8 +117,8 @@ def _is_paint(word: str, layers: "list[Layer]") -> bool:
 
 @verb("render", short_help="Write a picture of meshes.", epilog=_EPILOG)
 @files_argument("FILE [...]")
-@drawing
-@seeing
+@drawing_options
+@view_options
 @click.option(
     "--size",
     metavar="WxH",
@@ -148,7 +157,7 @@ def _is_paint(word: str, layers: "list[Layer]") -> bool:
     callback=_as_colour,
     help="A colour like orange or '#3070b0', or none for transparent.",
 )
-@further(
+@rare_option(
     "--frames",
     metavar="N",
     type=click.IntRange(2, _MAX_FRAMES),
@@ -156,7 +165,7 @@ def _is_paint(word: str, layers: "list[Layer]") -> bool:
     show_default=True,
     help="Pictures of one turn around z, in a GIF.",
 )
-@further(
+@rare_option(
     "--seconds",
     metavar="T",
     type=SECONDS,
@@ -164,8 +173,8 @@ def _is_paint(word: str, layers: "list[Layer]") -> bool:
     show_default=True,
     help="How long one turn takes, in a GIF.",
 )
-@reading
-@common
+@reading_options
+@common_options
 def render(files: tuple[Path, ...], target: Path, **given: Any) -> int:
     """Write a picture of meshes as SVG or PNG, or pictures of one turn around z as GIF.
 
@@ -175,7 +184,7 @@ def render(files: tuple[Path, ...], target: Path, **given: Any) -> int:
     return _Rendering(files, target, _SUFFIXES, **given).run()
 
 
-class _Rendering(Drawing):
+class _Rendering(DrawingVerb):
     """The work of the verb `render`: it draws a picture of meshes, or several in a GIF."""
 
     def __init__(self, files: tuple[Path, ...], *paths: Any, **settings: Any) -> None:
@@ -219,7 +228,7 @@ class _Rendering(Drawing):
 
     def _colours(self, layers: "list[Layer]") -> Any:
         """Return a colour for each face, one colour for all faces, or None for the default."""
-        from ...report.viewer.faces import are_textured, face_colours
+        from ...report.viewer.face_colours import are_textured, face_colours
 
         given = self.settings["colours"]
         if given is not None and given.startswith("#"):
@@ -238,7 +247,7 @@ class _Rendering(Drawing):
 
     def _picture(self, layers: "list[Layer]") -> "Picture":
         from ...bsp.painting.picture import picture
-        from ...report.viewer.faces import joined
+        from ...report.viewer.face_colours import joined
 
         mesh = joined(layers)
         width, height = self.settings["size"]
@@ -248,7 +257,7 @@ class _Rendering(Drawing):
     def _turn(self, layers: "list[Layer]") -> tuple[bytes, dict[str, Any], str]:
         from ...bsp import PartitionTree
         from ...bsp.painting.turntable import gif
-        from ...report.viewer.faces import joined
+        from ...report.viewer.face_colours import joined
 
         frames = self.settings["frames"]
         vertices, faces = joined(layers)

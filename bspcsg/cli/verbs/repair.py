@@ -5,13 +5,21 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..batch import each, targets_of
+from ..batch import process_each, targets_of
 from ..console import output
 from ..console.output import Output, counted, grouped
 from ..console.tables import table_text
-from ..inputs.files import Inputs, Target, make_folder, shown
+from ..inputs.files import Inputs, Target, display_name, make_folder
 from ..options.patterns import files_argument
-from ..options.shared import TIMEOUT, FiniteRange, common, one_by_one, reading, verb, writing
+from ..options.shared import (
+    TIMEOUT,
+    FiniteRange,
+    common_options,
+    per_file_options,
+    reading_options,
+    verb,
+    writing_options,
+)
 
 if TYPE_CHECKING:
     from ...repair.diagnosis import Diagnosis
@@ -35,8 +43,8 @@ _DEFECTS = {
 
 @verb("repair", short_help="Close and orient meshes with pymeshlab.", epilog=_EPILOG)
 @files_argument("FILE|FOLDER [...]")
-@one_by_one
-@writing
+@per_file_options
+@writing_options
 @click.option(
     "--steps",
     metavar="STEPS",
@@ -60,8 +68,8 @@ _DEFECTS = {
     help="Edges around the largest hole to fill.",
 )
 @TIMEOUT
-@reading
-@common
+@reading_options
+@common_options
 def repair(files: tuple[Path, ...], target: Path | None, outdir: Path | None, **given: Any) -> int:
     """Close and orient meshes with pymeshlab, and say what changed.
 
@@ -106,38 +114,38 @@ class _Repairing:
         def doing(path: Path, target: Target) -> tuple[dict[str, Any], int]:
             return self._repaired(path, target, steps)
 
-        documents, code = each(self._pairs, self._out, doing, "repairing")
+        documents, code = process_each(self._pairs, self._out, doing, "repairing")
         if self._out.as_json:
             self._out.result("", documents[0] if self._is_single else {"files": documents})
         return code
 
     def _repaired(self, path: Path, target: Target, steps: list[str]) -> tuple[dict[str, Any], int]:
         """Repair one file; return its JSON document and the exit code."""
-        from ...assembly.examining import examine
-        from ...assembly.mending import mended_as_found
+        from ...assembly.object_diagnosis import examine
+        from ...assembly.object_repair import repaired_objects
 
         raw = self._inputs.raw(path)
-        self._inputs.tell(path, raw.findings)
+        self._inputs.print_findings(path, raw.findings)
         if len(raw.faces) == 0:
-            message = f"{shown(path)}: no triangles are left, so nothing was written."
+            message = f"{display_name(path)}: no triangles are left, so nothing was written."
             raise output.EmptyResultError(message, "empty_result")
         before = examine(raw)
         limits = {name: self._settings[name] for name in ("weld", "max_hole", "timeout")}
-        made = mended_as_found(before, steps=steps, **limits)
-        after = examine(target.rounded(made.mesh)[0]).found
+        made = repaired_objects(before, steps=steps, **limits)
+        after = examine(target.rounded(made.mesh)[0]).diagnosis
         lost = target.write(made.mesh)
-        self._inputs.tell(path, made.lost)
+        self._inputs.print_findings(path, made.lost)
         for finding in lost:
-            self._out.finding(shown(target.path), finding)
+            self._out.finding(display_name(target.path), finding)
         for step, reason in made.failed.items():
-            self._out.warning(f"{shown(path)}: the repair step {step} failed: {reason}")
+            self._out.warning(f"{display_name(path)}: the repair step {step} failed: {reason}")
         if not self._out.as_json:
             text = _text if self._is_single else _line
-            self._out.result(text(before.found, after, made, target), {})
+            self._out.result(text(before.diagnosis, after, made, target), {})
         document = {
             "file": str(path),
             "output": str(target.path),
-            "before": before.found.to_dict(),
+            "before": before.diagnosis.to_dict(),
             "after": after.to_dict(),
             "steps_failed": made.failed,
             "turned": made.turned,
@@ -167,7 +175,7 @@ def _text(before: "Diagnosis", after: "Diagnosis", made: "Repair", target: Targe
         lines.append(f"{counted(made.turned, 'triangle')} faced inwards and were reversed.")
     if made.dropped:
         lines.append(f"Removed {counted(made.dropped, 'triangle')} of stray fragments.")
-    return "\n".join([*lines, f"{shown(target.path)}: {_verdict(after)}"])
+    return "\n".join([*lines, f"{display_name(target.path)}: {_verdict(after)}"])
 
 
 def _line(before: "Diagnosis", after: "Diagnosis", made: "Repair", target: Target) -> str:
@@ -175,7 +183,7 @@ def _line(before: "Diagnosis", after: "Diagnosis", made: "Repair", target: Targe
     words = [f"{counted(before.triangles, 'triangle')} became {grouped(after.triangles)}"]
     words += [f"{grouped(made.turned)} reversed"] if made.turned else []
     words += [f"{grouped(made.dropped)} stray ones removed"] if made.dropped else []
-    return f"{shown(target.path)}: {_verdict(after)}; {', '.join(words)}"
+    return f"{display_name(target.path)}: {_verdict(after)}; {', '.join(words)}"
 
 
 def _verdict(after: "Diagnosis") -> str:

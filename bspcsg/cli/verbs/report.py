@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import FormatError
-from ..console import clock, output, standard, status
+from ..console import clock, output, standard_streams, status_line
 from ..console.output import Output, counted
-from ..inputs.files import STREAM, is_among, is_dropped, refuse_folder, shown
+from ..inputs.files import STREAM, display_name, is_among, is_dropped, refuse_folder
 from ..options.patterns import files_argument
-from ..options.shared import PATH, common, verb
+from ..options.shared import PATH, common_options, verb
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -62,7 +62,7 @@ _FORMATS = ("html", "md", "json", "junit")
     show_default=True,
     help="Title of the page.",
 )
-@common
+@common_options
 def report(files: tuple[Path, ...], target: Path, **given: Any) -> int:
     """Make one page of the results of bspcsg crosscheck; nothing is computed again.
 
@@ -101,7 +101,7 @@ class _Reporting:
         failures = sum(map(is_failure, results.cases.values()))
         seconds = clock.elapsed()
         line = (
-            f"{shown(self._target)}  {counted(len(results.cases), 'case')}"
+            f"{display_name(self._target)}  {counted(len(results.cases), 'case')}"
             f"  {counted(failures, 'failure')}  {len(text) / 1000:.0f} kB  {seconds:.2f} s"
         )
         document = {
@@ -123,7 +123,7 @@ class _Reporting:
                     "to write to standard output, give the format, such as --format md."
                 )
             message = (
-                f"{shown(self._target)}: the format is unknown; the output name must end in"
+                f"{display_name(self._target)}: the format is unknown; the output name must end in"
                 f" one of {known}, or give --format."
             )
             raise FormatError(message, "unknown_format")
@@ -141,7 +141,7 @@ class _Reporting:
 
     def _text(self, results: "Results") -> str:
         if self._form == "html":
-            from ...report.page import report_page
+            from ...report.campaign_page import report_page
 
             with _progress(self._out) as watch:
                 settings = self._settings
@@ -167,7 +167,7 @@ class _Reporting:
         from ...formats.atomic import write_file
 
         if self._is_stream:
-            standard.put([data])
+            standard_streams.write_bytes([data])
         else:
             write_file(self._target, [data])
 
@@ -181,7 +181,7 @@ def _progress(out: Output) -> "Iterator[Callable[[list[CaseRecord]], Iterable[Ca
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
 
-    status.end()
+    status_line.end()
     columns = ("drawing", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         yield bar.track

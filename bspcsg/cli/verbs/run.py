@@ -11,21 +11,21 @@ import click
 
 from ...errors import FormatError, InvalidMeshError
 from ..console.output import Output
-from ..inputs.files import ON_INVALID, STREAM, shown, stream_text
-from ..inputs.scripts import SUFFIXES, made_by
-from ..job import Job
+from ..inputs.files import ON_INVALID, STREAM, display_name, stream_text
+from ..inputs.scripts import SUFFIXES, solid_of_script
 from ..options.patterns import file_argument
 from ..options.shared import (
     PORT,
     TIMEOUT,
     FilePath,
-    common,
-    further,
+    common_options,
     is_given,
-    making_or_showing,
+    rare_option,
+    solid_or_view_options,
     verb,
 )
-from ..pages.watching import NOWHERE, Watching
+from ..pages.script_page import NOWHERE, ScriptPage
+from ..solid_verb import SolidVerb
 
 if TYPE_CHECKING:
     from ...csg import Polish
@@ -102,7 +102,7 @@ _NOT_FOR = {
 }
 
 #: How options are spelled, where that does not follow from the parameter name.
-_SPELLED = {"defines": "-D", "allow_paths": "--allow-path"}
+_OPTION_NAMES = {"defines": "-D", "allow_paths": "--allow-path"}
 
 
 @verb("run", short_help="Write the solid that an OpenSCAD or Python script makes.", epilog=_EPILOG)
@@ -116,7 +116,7 @@ _SPELLED = {"defines": "-D", "allow_paths": "--allow-path"}
     help="Set a variable of a .scad or .py script, in place of what it assigns at its top level: a"
     " number, text, true, false or [list]; can be repeated.",
 )
-@further(
+@rare_option(
     "--list-nodes",
     is_flag=True,
     is_eager=True,
@@ -136,13 +136,13 @@ _SPELLED = {"defines": "-D", "allow_paths": "--allow-path"}
     show_default=True,
     help="Refuse meshes that are not closed, leave them out, or close them; not for Python.",
 )
-@further(
+@rare_option(
     "--lenient",
     is_flag=True,
     help="Leave out what cannot be made or is not closed, with a warning that names its place; not"
     " for Python.",
 )
-@further(
+@rare_option(
     "--allow-path",
     "allow_paths",
     metavar="DIR",
@@ -160,11 +160,13 @@ _SPELLED = {"defines": "-D", "allow_paths": "--allow-path"}
     is_flag=True,
     help="Show the result in a browser, in a page that follows it, until Ctrl-C.",
 )
-@further("--open/--no-open", "opens", default=True, help="Open that page in a browser (default).")
+@rare_option(
+    "--open/--no-open", "opens", default=True, help="Open that page in a browser (default)."
+)
 @PORT
 @TIMEOUT
-@making_or_showing
-@common
+@solid_or_view_options
+@common_options
 def run(
     script: Path,
     target: Path | None,
@@ -188,17 +190,17 @@ def run(
     if not shows and is_given("port"):
         raise click.UsageError("--port can only be used with --view.")
 
-    def job() -> Job:
+    def job() -> SolidVerb:
         return _Run(script, target=NOWHERE if target is None else target, **given)
 
     if not watches and not shows:
         return job().run()
     if str(script) == STREAM:
         raise click.UsageError("--watch and --view need a script file, not standard input.")
-    return Watching(script, job, Output.of(given), watches).run(port if shows else None, opens)
+    return ScriptPage(script, job, Output.of(given), watches).run(port if shows else None, opens)
 
 
-class _Run(Job):
+class _Run(SolidVerb):
     """The work of the verb `run`: it evaluates one script once."""
 
     def __init__(self, script: Path, **settings: Any) -> None:
@@ -212,13 +214,14 @@ class _Run(Job):
 
     @property
     def name(self) -> str:
-        return super().name if self.target.path != NOWHERE else shown(self._script)
+        return super().name if self.target.path != NOWHERE else display_name(self._script)
 
     def refuse_inputs(self) -> None:
         if self._suffix not in SUFFIXES:
             known = ", ".join(SUFFIXES)
             message = (
-                f"{shown(self._script)}: the file is not a script; its name must end in one of"
+                f"{display_name(self._script)}: the file is not a script; its name must end in one"
+                " of"
                 f" {known}."
             )
             raise FormatError(message, "unknown_format")
@@ -230,7 +233,7 @@ class _Run(Job):
     def _refuse_options(self) -> None:
         for name, useless in _NOT_FOR.items():
             if self._suffix in useless and is_given(name):
-                option = _SPELLED.get(name, f"--{name.replace('_', '-')}")
+                option = _OPTION_NAMES.get(name, f"--{name.replace('_', '-')}")
                 raise click.UsageError(
                     f"{option} cannot be used with {self._suffix} files; leave it out."
                 )
@@ -239,12 +242,14 @@ class _Run(Job):
         given = {"timeout": self.settings["timeout"], "defines": self._defines}
         options = {name: value for name, value in given.items() if value}
         if self._suffix == ".py":
-            return made_by(self._script, self.out, **options)
+            return solid_of_script(self._script, self.out, **options)
         names = ("polish", "on_invalid", "allow_paths", "lenient")
         options |= {name: self.settings[name] for name in names}
         text = stream_text() if str(self._script) == STREAM else None
         with self._advised():
-            return made_by(self._script, self.out, text, on_polish=self._tell_polish, **options)
+            return solid_of_script(
+                self._script, self.out, text, on_polish=self._tell_polish, **options
+            )
 
     def _tell_polish(self, done: "Polish") -> None:
         if done.pitch is None:

@@ -9,10 +9,17 @@ import click
 from ...errors import Finding
 from ..console import output
 from ..console.output import counted
-from ..drawing import Drawing
-from ..inputs.files import shown
+from ..drawing_verb import DrawingVerb
+from ..inputs.files import display_name
 from ..options.patterns import file_argument
-from ..options.shared import common, drawing, numbers, reading, sets, verb
+from ..options.shared import (
+    common_options,
+    drawing_options,
+    numbers,
+    reading_options,
+    set_options,
+    verb,
+)
 
 _EPILOG = """\b
 Example:
@@ -34,7 +41,7 @@ def _as_finite(
 
 @verb("slice", short_help="Write the section of a solid by a plane.", epilog=_EPILOG)
 @file_argument()
-@drawing
+@drawing_options
 @click.option(
     "--z", "height", type=float, metavar="HEIGHT", callback=_as_finite, help="Cut at this height."
 )
@@ -51,9 +58,9 @@ def _as_finite(
     callback=_as_finite,
     help="The d of --normal; 0 by default.",
 )
-@reading
-@sets
-@common
+@reading_options
+@set_options
+@common_options
 def section(file: Path, target: Path, **given: Any) -> int:
     """Write the section of a solid by a plane as an SVG or DXF drawing.
 
@@ -64,7 +71,7 @@ def section(file: Path, target: Path, **given: Any) -> int:
     return _Section(file, target, _SUFFIXES, **given).run()
 
 
-class _Section(Drawing):
+class _Section(DrawingVerb):
     """The work of the verb `slice`: it draws the section of one solid by one plane."""
 
     def __init__(self, *paths: Any, **settings: Any) -> None:
@@ -98,12 +105,13 @@ class _Section(Drawing):
         plane = Hyperplane.from_numbers(self._normal, self._offset).on_lattice(pitch)
         if plane.note is not None:
             finding = Finding("half_space_rounded", "note", plane.note, (), 1)
-            self.out.finding(shown(self.file), finding)
+            self.out.finding(display_name(self.file), finding)
 
     def _missed(self) -> str:
         normal = ",".join(f"{number:g}" for number in self._normal)
         return (
-            f"{shown(self.file)}: the plane with normal {normal} and offset {self._offset:g} does"
+            f"{display_name(self.file)}: the plane with normal {normal} and offset"
+            f" {self._offset:g} does"
             " not cut it, so nothing was written; bspcsg info shows the bounds."
         )
 

@@ -10,20 +10,20 @@ import click
 from ...errors import Finding
 from ..console import output
 from ..console.output import Output
-from ..inputs.files import Inputs, Target, expanded, is_dropped, refuse_inputs, shown
-from ..job import mesh_values, summary
+from ..inputs.files import Inputs, Target, display_name, expanded, is_dropped, refuse_inputs
 from ..options.patterns import files_argument
 from ..options.shared import (
     PATH,
     SIMPLIFY,
     check_depth,
-    common,
+    common_options,
     numbers,
-    reading,
-    sets,
+    reading_options,
+    set_options,
     verb,
-    writing,
+    writing_options,
 )
+from ..solid_verb import mesh_values, summary
 
 if TYPE_CHECKING:
     from ...mesh.mesh import Mesh
@@ -65,12 +65,12 @@ _FORMER = "explode"
 @click.option(
     "--by", "cutter", metavar="FILE", type=PATH, help="Cut along the surface of another solid."
 )
-@writing
+@writing_options
 @SIMPLIFY
 @check_depth
-@reading
-@sets
-@common
+@reading_options
+@set_options
+@common_options
 @click.pass_context
 def split(context: click.Context, /, files: tuple[Path, ...], target: Path, **given: Any) -> int:
     """Write each connected component of solids to a file of its own, the largest first.
@@ -124,7 +124,7 @@ class _Splitting:
         failed = [one.file for one in found if "subject failed" in one.verdicts]
         for file in failed:
             self._out.result(
-                f"{shown(file)}: not written, because the check of the parts failed", {}
+                f"{display_name(file)}: not written, because the check of the parts failed", {}
             )
         if failed:
             return output.FOUND
@@ -174,19 +174,21 @@ class _Splitting:
         tolerance = self._settings["tolerance"]
         simple = solid.simplify(tolerance) if tolerance else solid
         if simple is not solid:
-            self._inputs.tell(file, simple.normalized().findings)
+            self._inputs.print_findings(file, simple.normalized().findings)
         return simple
 
     def _tell_of_plane(self, file: Path, side: "Solid") -> None:
         """Print a note if the plane on the lattice differs from the requested plane."""
         found = [Finding.from_core(finding) for finding in side.tree.findings]
-        self._inputs.tell(file, [one for one in found if one not in self._inputs.noticed])
+        self._inputs.print_findings(
+            file, [one for one in found if one not in self._inputs.noticed_findings]
+        )
 
     def _refuse_less_than(self, least: int, file: Path, meshes: "list[Mesh]") -> None:
         if len(meshes) >= least:
             return
         what = "the solid is empty" if least == 1 else "the whole solid lies on one side of the cut"
-        message = f"{shown(file)}: {what}, so nothing was written."
+        message = f"{display_name(file)}: {what}, so nothing was written."
         raise output.EmptyResultError(message, "empty_result")
 
     def _write(self, found: list[_Parts]) -> None:
@@ -205,9 +207,9 @@ class _Splitting:
             target = self._target(parts.file, number)
             lost = target.write(mesh)
             for finding in lost:
-                self._out.finding(shown(target.path), finding)
+                self._out.finding(display_name(target.path), finding)
             verdict = parts.verdicts[number - 1] if parts.verdicts else None
-            line = summary(shown(target.path), mesh, False)
+            line = summary(display_name(target.path), mesh, False)
             line += f"\n  check: {verdict}" if verdict else ""
             if not self._out.as_json:
                 self._out.result(line, {})

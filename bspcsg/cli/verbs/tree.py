@@ -8,12 +8,19 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ...errors import FormatError, harmless
+from ...errors import FormatError, without_control_characters
 from ..console import output
 from ..console.output import Output, counted
-from ..inputs.files import STREAM, is_dropped, put, refuse_unwritable, shown, stream_text
+from ..inputs.files import (
+    STREAM,
+    display_name,
+    is_dropped,
+    refuse_unwritable,
+    stream_text,
+    write_output,
+)
 from ..options.patterns import file_argument
-from ..options.shared import OVERWRITE, PATH, TIMEOUT, common, verb
+from ..options.shared import OVERWRITE, PATH, TIMEOUT, common_options, verb
 
 if TYPE_CHECKING:
     from ...csg import CsgTree
@@ -64,7 +71,7 @@ _FORMS = {
 @click.option("--simplify", is_flag=True, help="Leave out nodes that make no difference.")
 @OVERWRITE
 @TIMEOUT
-@common
+@common_options
 def tree(file: Path, **given: Any) -> int:
     """Show the tree of an OpenSCAD script, or write it in another form.
 
@@ -72,10 +79,10 @@ def tree(file: Path, **given: Any) -> int:
     is evaluated, and nodes that bspcsg cannot evaluate stay. --json prints the number of nodes of
     each kind.
     """
-    return _Showing(file, **given).run()
+    return _TreeVerb(file, **given).run()
 
 
-class _Showing:
+class _TreeVerb:
     """The work of the verb `tree`: it reads the tree of one script and writes it."""
 
     def __init__(
@@ -98,7 +105,7 @@ class _Showing:
         return self._target is not None and str(self._target) != STREAM
 
     def run(self) -> int:
-        from ...csg.syntax.simplified import simplified
+        from ...csg.syntax.simplification import simplified
 
         refuse_unwritable(self._target or Path(STREAM), self._settings["overwrite"])
         found = self._read()
@@ -116,7 +123,8 @@ class _Showing:
         suffix = self._file.suffix.lower()
         if suffix not in _READ:
             message = (
-                f"{shown(self._file)}: the file is not a script with a tree; its name must end in"
+                f"{display_name(self._file)}: the file is not a script with a tree; its name must"
+                " end in"
                 f" one of {', '.join(_READ)}."
             )
             raise FormatError(message, "unknown_format")
@@ -127,10 +135,10 @@ class _Showing:
 
     def _write(self, text: str) -> None:
         if self._target and self._to_file:
-            put(self._target, [text.encode()], self._settings["overwrite"])
+            write_output(self._target, [text.encode()], self._settings["overwrite"])
         elif not self._out.as_json:
             # Without color=True, click would drop a terminal's control sequences from a pipe.
-            said = harmless(text) if sys.stdout.isatty() else text
+            said = without_control_characters(text) if sys.stdout.isatty() else text
             click.echo(said, nl=False, color=True)
 
     def _tell(self, kinds: "Counter[str]") -> None:
@@ -138,9 +146,11 @@ class _Showing:
 
         unknown = sorted(set(kinds) - set(node_names()))
         if unknown:
-            self._out.note(f"{shown(self._file)}: bspcsg run cannot evaluate {', '.join(unknown)}")
+            self._out.note(
+                f"{display_name(self._file)}: bspcsg run cannot evaluate {', '.join(unknown)}"
+            )
         count = kinds.total()
-        line = f"{shown(self._target)}  {counted(count, 'node')}" if self._target else ""
+        line = f"{display_name(self._target)}  {counted(count, 'node')}" if self._target else ""
         document = {
             "file": str(self._file),
             "output": str(self._target) if self._to_file else None,
@@ -159,8 +169,8 @@ def _form_of(target: Path | None) -> str:
     if suffix not in _FORMS:
         known = ", ".join(_FORMS)
         message = (
-            f"{shown(target)}: the format is unknown; the output name must end in one of {known},"
-            " or give --to."
+            f"{display_name(target)}: the format is unknown; the output name must end in one of"
+            f" {known}, or give --to."
         )
         raise FormatError(message, "unknown_format")
     return _FORMS[suffix]

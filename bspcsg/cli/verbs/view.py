@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ...browsing import opened, temporary_page
+from ...browsing import open_page, temporary_page
 from ..console import output
 from ..console.output import Output, counted
-from ..inputs.files import STREAM, Inputs, is_dropped, shown
+from ..inputs.files import STREAM, Inputs, display_name, is_dropped
 from ..options.patterns import files_argument
-from ..options.shared import PORT, FilePath, common, is_given, reading, verb
-from ..pages.seen import layers_of
-from ..pages.written import refuse_page, write_page
+from ..options.shared import PORT, FilePath, common_options, is_given, reading_options, verb
+from ..pages.file_layers import layers_of
+from ..pages.page_output import refuse_page, write_page
 
 if TYPE_CHECKING:
     from ...report.viewer.layer import Layer
@@ -51,8 +51,8 @@ _MAX_QUICK_PAGE_BYTES = 20_000_000
     "--live", is_flag=True, help="Serve the page on this machine; it follows the files' changes."
 )
 @PORT
-@reading
-@common
+@reading_options
+@common_options
 def view(files: tuple[Path, ...], target: Path | None, **given: Any) -> int:
     """Show meshes in a browser: turn, zoom, cut, measure, make transparent, hide each part.
 
@@ -77,7 +77,7 @@ class _Viewing:
         self._inputs = Inputs.of(self._out, settings)
 
     def run(self) -> int:
-        from ...report.viewer.view import view_page
+        from ...report.viewer.view_page import view_page
 
         self._refuse_early()
         if self._settings["live"] or self._folder is not None:
@@ -104,7 +104,7 @@ class _Viewing:
         return self._files[0] if len(self._files) == 1 and self._files[0].is_dir() else None
 
     def _scene(self, files: Sequence[Path]) -> "tuple[list[Layer], str]":
-        from ...report.viewer.parts import with_thickness
+        from ...report.viewer.layer_making import with_thickness
 
         layers, unit = layers_of(self._inputs, files)
         if self._settings["thickness"]:
@@ -113,8 +113,8 @@ class _Viewing:
 
     def _served(self) -> int:
         """Serve the page until Ctrl-C, and return the exit code."""
-        from ..pages.live import LiveServer
-        from ..pages.showing import site_of_files, site_of_folder
+        from ..pages.file_pages import site_of_files, site_of_folder
+        from ..pages.live_server import LiveServer
 
         folder = self._folder
         site = (
@@ -149,14 +149,14 @@ class _Viewing:
 
     def _opened(self, address: str) -> bool:
         """Open an address in a browser; return False and print the reason if that fails."""
-        reason = opened(address)
+        reason = open_page(address)
         if reason:
             self._out.note(reason)
         return not reason
 
     def _tell(self, target: Path, layers: "list[Layer]", size: int, is_open: bool) -> None:
         triangles = sum(len(layer.faces) for layer in layers)
-        line = f"{shown(target)}  {counted(triangles, 'triangle')}  {size / 1000:.0f} kB"
+        line = f"{display_name(target)}  {counted(triangles, 'triangle')}  {size / 1000:.0f} kB"
         document = {
             "files": [str(path) for path in self._files],
             "output": str(target),

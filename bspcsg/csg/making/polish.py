@@ -14,7 +14,7 @@ from ...mesh.mesh import Mesh, surfaces_of
 from ...solid.solid import Solid
 
 #: A matrix becomes a rotation if each of its entries differs by at most this.
-NEARLY = 1e-5
+ROTATION_TOLERANCE = 1e-5
 
 #: The number of significant digits that OpenSCAD writes.
 DIGITS = 6
@@ -34,7 +34,7 @@ def polished_matrix(matrix: FloatArray) -> FloatArray:
     """
     u, _, v = np.linalg.svd(matrix[:3, :3])
     rotation = u @ v
-    if np.abs(rotation - matrix[:3, :3]).max() > NEARLY:
+    if np.abs(rotation - matrix[:3, :3]).max() > ROTATION_TOLERANCE:
         return matrix
     whole = np.round(rotation)
     rotation = np.where(np.abs(rotation - whole) < 1e-12, whole, rotation)
@@ -79,13 +79,15 @@ def polished_pitch(kinds: Sequence[Sequence[FloatArray]], finest: int) -> int | 
     if largest == 0:
         return None
     coarsest = math.floor(math.log10(largest)) + 1 - DIGITS
-    gains = [sum(_gain(kind, pitch) for kind in kinds) for pitch in range(finest, coarsest + 1)]
+    gains = [
+        sum(_lattice_score(kind, pitch) for kind in kinds) for pitch in range(finest, coarsest + 1)
+    ]
     if not gains or max(gains) == gains[0]:
         return None
     return finest + gains.index(max(gains))
 
 
-def _gain(parts: Sequence[FloatArray], pitch: int) -> int:
+def _lattice_score(parts: Sequence[FloatArray], pitch: int) -> int:
     """Return a score of a lattice: the number of features that parts share, less those they lose.
 
     Features are the rows of the arrays; only differences of scores are meaningful.

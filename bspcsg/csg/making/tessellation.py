@@ -15,7 +15,7 @@ from ..syntax.arguments import MAX_NUMBER, Arguments
 _MIN_SIDE = 0.01
 
 #: Lengths below this, in model units, count as zero.
-_NOTHING = 2.0**-20
+_MIN_LENGTH = 2.0**-20
 
 
 @dataclass(frozen=True)
@@ -50,11 +50,11 @@ class Fineness:
 
     def fragments(self, radius: float) -> float:
         """Return the number of sides of a full circle of the given radius, a whole number."""
-        if radius < _NOTHING:
+        if radius < _MIN_LENGTH:
             return 3
         if self.fn > 0:
             return math.floor(max(self.fn, 3))
-        if self.fe >= _NOTHING:
+        if self.fe >= _MIN_LENGTH:
             finest = min(360 / _MIN_SIDE, radius * 2 * math.pi / _MIN_SIDE)
             return math.ceil(max(min(math.tau / self._step_within(radius), finest), 5))
         return math.ceil(max(min(360 / self.fa, radius * 2 * math.pi / self.fs), 5))
@@ -71,11 +71,11 @@ class Fineness:
         """
         turn = abs(twist)
         least = max(math.ceil(turn / 120), 1)
-        if reach < _NOTHING:
+        if reach < _MIN_LENGTH:
             return least
         if self.fn > 0:
             return max(math.ceil(turn / 360 * self.fn), least)
-        if self.fe >= _NOTHING and scale == 1:
+        if self.fe >= _MIN_LENGTH and scale == 1:
             return max(math.ceil(math.radians(turn) / self._step_within(reach)), least)
         length = _helix_length(reach, height, math.radians(turn), scale)
         return max(min(math.ceil(turn / self.fa), math.ceil(length / self.fs)), least)
@@ -93,7 +93,7 @@ class Fineness:
             The largest distance between a corner's x, y at the lower and at the upper end.
         height : float
         """
-        if shift < _NOTHING:
+        if shift < _MIN_LENGTH:
             return 1
         if self.fn > 0:
             return max(math.floor(self.fn), 1)

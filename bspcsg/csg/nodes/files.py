@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from ...bsp import Region
-from ...bsp.drawings.left_out import LeftOut
+from ...bsp.drawings.unread_content import UnreadContent
 from ...formats.files import read
 from ...formats.registry import FORMATS
-from ...modelling.making.heights import (
+from ...modelling.making.height_maps import (
     BRIGHTEST,
     height_map,
     heights_of,
@@ -17,8 +17,8 @@ from ...modelling.making.heights import (
     read_picture,
 )
 from ...solid.solid import Solid
-from ..making.drawings import dxf_region
-from ..making.paper import svg_region
+from ..making.dxf_import import dxf_region
+from ..making.svg_import import svg_region
 from ..syntax.arguments import Arguments
 from ..syntax.tree import Node, Value
 from .registry import Evaluation, Geometry, node
@@ -28,7 +28,7 @@ from .signature import Signature
 _DEFAULT_DPI, _MIN_DPI = 72.0, 0.001
 
 #: Arguments that only some types of files use, with the default values that OpenSCAD writes.
-_ASKING_NOTHING: dict[str, Value] = {
+_DEFAULT_ARGUMENTS: dict[str, Value] = {
     "id": "", "layer": "", "origin": (0.0, 0.0), "scale": 1.0, "dpi": _DEFAULT_DPI,
 }  # fmt: skip
 
@@ -72,7 +72,7 @@ def _tell_of_unused(
     owner: Node, arguments: Arguments, run: Evaluation, used: tuple[str, ...]
 ) -> None:
     """Warn of arguments that a file of this type ignores, unless they have default values."""
-    for name, nothing in _ASKING_NOTHING.items():
+    for name, nothing in _DEFAULT_ARGUMENTS.items():
         if name not in used and arguments.value(name) not in (None, nothing):
             run.warn(
                 owner, f"its {name} is ignored for this file format, whose files are read whole"
@@ -93,7 +93,7 @@ def _svg(path: Path, owner: Node, arguments: Arguments, run: Evaluation) -> Regi
             f"its dpi must be at least {_MIN_DPI:g}, not {dpi:g}; {_DEFAULT_DPI:g} is used instead",
         )
         dpi = _DEFAULT_DPI
-    lost = LeftOut()
+    lost = UnreadContent()
     region = svg_region(path, dpi, arguments.flag("center"), lost)
     return _with_warning(owner, run, arguments.text("file"), lost, region)
 
@@ -101,14 +101,16 @@ def _svg(path: Path, owner: Node, arguments: Arguments, run: Evaluation) -> Regi
 def _dxf(path: Path, owner: Node, arguments: Arguments, run: Evaluation, scale: float) -> Region:
     origin = arguments.vector("origin", 2, (0.0, 0.0))
     layer = arguments.text("layer", "")
-    lost = LeftOut()
+    lost = UnreadContent()
     region = dxf_region(path, layer, np.array(origin), scale, arguments, lost)
     return _with_warning(owner, run, arguments.text("file"), lost, region)
 
 
-def _with_warning(owner: Node, run: Evaluation, name: str, lost: LeftOut, region: Region) -> Region:
+def _with_warning(
+    owner: Node, run: Evaluation, name: str, lost: UnreadContent, region: Region
+) -> Region:
     """Return the region of a drawing unchanged, and warn of its omitted entities."""
-    words = lost.words(region)
+    words = lost.warning_text(region)
     if words:
         run.warn(owner, f"{name}: {words}")
     return region

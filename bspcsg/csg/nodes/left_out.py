@@ -35,7 +35,7 @@ def is_left_out(error: BspcsgError, *, lenient: bool) -> bool:
     return lenient and isinstance(error, own_faults)
 
 
-def nothing_of(node: Node) -> Geometry:
+def empty_geometry_of(node: Node) -> Geometry:
     """Return the empty solid or region that replaces a node; None if its dimension is unknown."""
     if node.name in _SOLIDS:
         return Solid.empty()

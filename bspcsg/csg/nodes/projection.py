@@ -4,7 +4,7 @@ from ...bsp import Region
 from ...solid.solid import Solid
 from ..syntax.tree import Node
 from .registry import Evaluation, Geometry, node
-from .sets import union_of
+from .set_operations import union_of
 from .signature import Signature
 
 

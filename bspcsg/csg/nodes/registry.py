@@ -10,7 +10,7 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...bsp import Region
-from ...errors import InvalidMeshError, harmless
+from ...errors import InvalidMeshError, without_control_characters
 from ...formats.raw import RawMesh
 from ...repair.repair import repair
 from ...solid.solid import Solid
@@ -26,7 +26,7 @@ OnInvalid: TypeAlias = Literal["error", "warn", "repair"]
 
 
 #: The error codes of meshes that do not bound a solid.
-_BOUND_NOTHING = frozenset({"not_closed", "empty_mesh"})
+_NO_SOLID_CODES = frozenset({"not_closed", "empty_mesh"})
 
 
 class CsgWarning(UserWarning):
@@ -58,10 +58,10 @@ class Evaluation:
         Unions of plane figures by their `id`, each with the figures that it is made of.
     in_hull : bool
         True while a child of a hull is evaluated, of which only the corners matter.
-    loose : dict
+    open_meshes : dict
         The empty solids that represent open meshes in hulls, by `id`, each with the corners of its
         mesh.
-    told : set of str
+    issued_warnings : set of str
         The warnings that were already issued.
     """
 
@@ -74,17 +74,17 @@ class Evaluation:
     explained: Callable[[str], str] = str
     united: dict[int, tuple[Region, list[Region]]] = field(default_factory=dict)
     in_hull: bool = False
-    loose: dict[int, tuple[Solid, FloatArray]] = field(default_factory=dict)
-    told: set[str] = field(default_factory=set)
+    open_meshes: dict[int, tuple[Solid, FloatArray]] = field(default_factory=dict)
+    issued_warnings: set[str] = field(default_factory=set)
 
     def arguments(self, node: Node) -> Arguments:
         """Return the arguments of a node, with names for positional arguments."""
-        return Arguments(node, self.script, RECIPES[node.name].takes.order)
+        return Arguments(node, self.script, NODE_KINDS[node.name].takes.order)
 
-    def tell_of_arguments(self, node: Node) -> None:
+    def warn_of_arguments(self, node: Node) -> None:
         """Warn of each argument of a node that is ignored."""
-        if node.name in RECIPES:
-            for complaint in RECIPES[node.name].takes.complaints(node):
+        if node.name in NODE_KINDS:
+            for complaint in NODE_KINDS[node.name].takes.complaints(node):
                 self.warn(node, complaint)
 
     def figures(self, owner: Node, children: list[Geometry]) -> list[Geometry]:
@@ -107,20 +107,20 @@ class Evaluation:
 
     def corners_or(self, solid: Solid) -> Solid | FloatArray:
         """Return the corners of the open mesh that an empty solid represents, else the solid."""
-        return self.loose[id(solid)][1] if id(solid) in self.loose else solid
+        return self.open_meshes[id(solid)][1] if id(solid) in self.open_meshes else solid
 
     def warn(self, node: Node, message: str) -> None:
         """Issue a warning with the script, line, column and name of a node."""
         place = node.place
-        self.tell(f"{self.script}:{place.line}:{place.column}: {node.name}(): {message}")
+        self.warn_once(f"{self.script}:{place.line}:{place.column}: {node.name}(): {message}")
 
-    def tell(self, message: str) -> None:
+    def warn_once(self, message: str) -> None:
         """Issue a warning, unless the same message was issued before."""
         # A polished model may be evaluated twice.
-        if message in self.told:
+        if message in self.issued_warnings:
             return
-        self.told.add(message)
-        warnings.warn(harmless(self.explained(message)), CsgWarning, stacklevel=2)
+        self.issued_warnings.add(message)
+        warnings.warn(without_control_characters(self.explained(message)), CsgWarning, stacklevel=2)
 
     def closed_solid(self, node: Node, vertices: Any, faces: Any) -> Solid | None:
         """Return the solid of a mesh from the script, whatever its orientation.
@@ -132,7 +132,7 @@ class Evaluation:
             solid = Solid(vertices, faces, winding="nonzero")
             return self._loose(vertices, faces) if self.in_hull and solid.is_empty else solid
         except InvalidMeshError as error:
-            if self.in_hull and error.code in _BOUND_NOTHING:
+            if self.in_hull and error.code in _NO_SOLID_CODES:
                 return self._loose(vertices, faces)
             if self.on_invalid == "error" or error.code != "not_closed":
                 raise
@@ -145,7 +145,7 @@ class Evaluation:
 
     def _loose(self, vertices: Any, faces: Any) -> Solid:
         stand_in = Solid.empty()
-        self.loose[id(stand_in)] = stand_in, np.asarray(vertices)[np.unique(faces)]
+        self.open_meshes[id(stand_in)] = stand_in, np.asarray(vertices)[np.unique(faces)]
         return stand_in
 
     def same_kind(
@@ -173,7 +173,7 @@ NodeMaker: TypeAlias = Callable[[Node, list[Geometry], Evaluation], Geometry]
 
 
 @dataclass(frozen=True)
-class Recipe:
+class NodeKind:
     """The function that evaluates the nodes of one name, and their arguments.
 
     Parameters
@@ -191,7 +191,7 @@ class Recipe:
     makes_corners: bool
 
 
-RECIPES: dict[str, Recipe] = {}
+NODE_KINDS: dict[str, NodeKind] = {}
 
 
 _NO_ARGUMENTS = Signature()
@@ -204,7 +204,7 @@ def node(
 
     def register(maker: NodeMaker) -> NodeMaker:
         for name in names:
-            RECIPES[name] = Recipe(maker, takes, makes_corners)
+            NODE_KINDS[name] = NodeKind(maker, takes, makes_corners)
         return maker
 
     return register

@@ -8,7 +8,7 @@ from ..syntax.tree import SPECIAL, Argument, Node, Value
 
 #: Arguments that every node may have: the special variables, of which some concern only the
 #: preview, and `convexity`.
-_EVERYWHERE = frozenset(
+_COMMON_ARGUMENTS = frozenset(
     {*SPECIAL, "$t", "$preview", "$vpr", "$vpt", "$vpd", "$vpf", "convexity"}
 )  # fmt: skip
 
@@ -23,20 +23,20 @@ class Signature:
         The names of positional arguments, in order.
     named : tuple of str
         The names of arguments that are given only by name.
-    beside : tuple of (str, tuple of str)
+    overridden_by : tuple of (str, tuple of str)
         Pairs of an argument and the arguments that override it if all of them are given.
     """
 
     order: tuple[str, ...] = ()
     named: tuple[str, ...] = ()
-    beside: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    overridden_by: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
     def complaints(self, node: Node) -> Iterator[str]:
         """Yield a complaint for each argument of a node that is ignored."""
         names = self._names(node.arguments)
         given = Counter(name for name in names if name is not None)
         for name, count in given.items():
-            if name not in _EVERYWHERE and name not in self.order and name not in self.named:
+            if name not in _COMMON_ARGUMENTS and name not in self.order and name not in self.named:
                 yield f"it has no argument “{name}”, so this argument is ignored; {self._known()}"
             elif count > 1:
                 yield f"its {name} is given {count} times; the last value is used"
@@ -47,8 +47,8 @@ class Signature:
                 f" {self._known()}"
             )
         values = dict(zip(names, (argument.value for argument in node.arguments), strict=True))
-        for name, others in self.beside:
-            if _asks(values.get(name)) and all(_asks(values.get(other)) for other in others):
+        for name, others in self.overridden_by:
+            if _is_set(values.get(name)) and all(_is_set(values.get(other)) for other in others):
                 yield f"its {name} is ignored in favour of {' and '.join(others)}"
 
     def _names(self, arguments: tuple[Argument, ...]) -> list[str | None]:
@@ -61,6 +61,6 @@ class Signature:
         return f"its arguments are {', '.join(known)}" if known else "it has no arguments"
 
 
-def _asks(value: Value) -> bool:
+def _is_set(value: Value) -> bool:
     """Return True if the value of an argument is neither undef nor false."""
     return value is not None and value is not False

@@ -7,7 +7,7 @@ from ...geometry.polygon import triangulate_face
 from ...mesh.weld import welded
 from ...shapes.arrays import from_arrays
 from ...shapes.primitives import box, cylinder
-from ...shapes.sweep import strip, unit_circle
+from ...shapes.sweep import quad_triangles, unit_circle
 from ...solid.solid import Solid
 from ..making.tessellation import Fineness
 from ..syntax.tree import Node
@@ -46,7 +46,9 @@ def _sphere(r: float, around: int, rings: int) -> Solid:
     ids = np.arange(around * rings).reshape(rings, around)
     following = np.roll(ids, -1, axis=1)
     # The first ring is the upper one.
-    bands = [strip(ids[k + 1], following[k + 1], ids[k], following[k]) for k in range(rings - 1)]
+    bands = [
+        quad_triangles(ids[k + 1], following[k + 1], ids[k], following[k]) for k in range(rings - 1)
+    ]
     cap = np.array([(0, k, k + 1) for k in range(1, around - 1)])
     faces = [*bands, cap, cap[:, ::-1] + around * (rings - 1)]
     return from_arrays(np.concatenate(levels) * r, np.concatenate(faces))

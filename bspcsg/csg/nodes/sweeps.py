@@ -9,13 +9,13 @@ from ...bsp import Region
 from ...modelling.making import roofs
 from ...shapes.profile import extrude, least_segments
 from ...solid.solid import Solid
-from ..making.dividing import Stretch, divided
+from ..making.edge_subdivision import TwistAndScale, divided_outline
 from ..making.tessellation import Fineness
 from ..syntax.arguments import Arguments
 from ..syntax.tree import Node
 from .files import drawing_of
 from .registry import Evaluation, Geometry, node
-from .sets import union_of
+from .set_operations import union_of
 from .signature import Signature
 
 #: Arguments of extrusions in scripts from before 2013, which name the file of a drawing.
@@ -35,15 +35,15 @@ def linear_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Ge
     """Extrude the children along z or the vector `v`, with `twist` and `scale`."""
     arguments = run.arguments(owner)
     figure = _figure(arguments, owner, children, run)
-    way = _way(arguments)
+    vector = _extrusion_vector(arguments)
     if figure is None:
         return None
-    if figure.is_empty or way[2] == 0:
+    if figure.is_empty or vector[2] == 0:
         return Solid.empty()
-    return _leaning(_extruded(arguments, figure, abs(way[2])), way)
+    return _sheared(_extruded(arguments, figure, abs(vector[2])), vector)
 
 
-def _way(arguments: Arguments) -> tuple[float, float, float]:
+def _extrusion_vector(arguments: Arguments) -> tuple[float, float, float]:
     """Return the vector from the lower to the upper end of an extrusion.
 
     It is `v`, scaled to the length `height` if both are given, else (0, 0, height). A negative
@@ -62,12 +62,12 @@ def _way(arguments: Arguments) -> tuple[float, float, float]:
     return x / length * height, y / length * height, z / length * height
 
 
-def _leaning(upright: Solid, way: tuple[float, float, float]) -> Solid:
+def _sheared(upright: Solid, vector: tuple[float, float, float]) -> Solid:
     """Shear an upright extrusion so that its top is displaced by a vector.
 
     The length of the vector along z is the height; if it points down, the solid is mirrored.
     """
-    x, y, z = way
+    x, y, z = vector
     if z < 0:
         upright = upright.mirror((0, 0, 1))
     if x == 0 and y == 0:
@@ -89,20 +89,20 @@ def _extruded(arguments: Arguments, figure: Region, height: float) -> Solid:
     twist, scale = arguments.number("twist", 0.0), (max(x, 0.0), max(y, 0.0))
     outlines = figure.to_polygons()
     slices = _slices(arguments, np.concatenate(outlines), height, twist, scale)
-    stretch = Stretch(twist, scale, slices)
+    stretch = TwistAndScale(twist, scale, slices)
     shape = figure if stretch.is_even else _segmented(arguments, outlines, stretch)
     center = arguments.flag("center")
     return extrude(shape, height, center=center, twist=twist, scale=scale, slices=slices)
 
 
 def _segmented(
-    arguments: Arguments, outlines: list[FloatArray], stretch: Stretch
+    arguments: Arguments, outlines: list[FloatArray], stretch: TwistAndScale
 ) -> list[FloatArray]:
     """Return the outlines with edges divided, so that each outline has up to `segments` edges."""
     wanted = arguments.number("segments", 0.0)
     arguments.limited(wanted * len(outlines) * (stretch.slices + 1), "this extrusion")
     return [
-        outline if len(outline) >= wanted else divided(outline, int(wanted), stretch)
+        outline if len(outline) >= wanted else divided_outline(outline, int(wanted), stretch)
         for outline in outlines
     ]
 
@@ -157,10 +157,10 @@ def rotate_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Ge
     segments = max(int(around * abs(angle) / 360), least_segments(angle))
     arguments.limited(segments * sum(map(len, figure.to_polygons())), "this turn")
     start = arguments.number("start", 180.0 if angle == 360 else 0.0)
-    return _turned(figure, angle, segments, start + 180 if left < 0 else start)
+    return _revolved(figure, angle, segments, start + 180 if left < 0 else start)
 
 
-def _turned(figure: Region, angle: float, segments: int, start: float) -> Solid:
+def _revolved(figure: Region, angle: float, segments: int, start: float) -> Solid:
     """Revolve a figure on one side of the y axis by an angle, in `segments` steps.
 
     The side away from the axis starts at the angle `start`, in degrees.

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any, TypeGuard
 
 from ...errors import FormatError
-from ...parameters import at_least, file_path, of_kind, text_value
-from .tree import MAX_VECTOR_DEPTH, WORDS, Argument, CsgTree, Node, Value, is_name
+from ...parameters import at_least, file_path, instance_of, text_value
+from .tree import KEYWORDS, MAX_VECTOR_DEPTH, Argument, CsgTree, Node, Value, is_name
 
 FORMAT = "bspcsg-csg"
 VERSION = 1
@@ -23,7 +23,7 @@ VERSION = 1
 #: allows 1000 by default, so a third of them remains for the caller.
 MAX_NODE_DEPTH = 200
 
-_ODD = {"inf": math.inf, "-inf": -math.inf, "nan": math.nan}
+_NON_FINITE = {"inf": math.inf, "-inf": -math.inf, "nan": math.nan}
 
 
 #: The largest number of spaces by which a level is indented.
@@ -39,7 +39,7 @@ def to_json(tree: CsgTree, *, indent: int | None = None) -> str:
         If nodes are nested deeper than 200, which some JSON readers refuse; code "too_deep".
     """
     steps = None if indent is None else min(at_least(0, indent, "indent"), _MAX_INDENT)
-    nodes = [_node_data(node, 1, tree.name) for node in of_kind(CsgTree, tree, "tree").nodes]
+    nodes = [_node_data(node, 1, tree.name) for node in instance_of(CsgTree, tree, "tree").nodes]
     document = {"format": FORMAT, "version": VERSION, "nodes": nodes}
     return json.dumps(document, indent=steps, ensure_ascii=False, allow_nan=False)
 
@@ -132,7 +132,7 @@ def _argument(data: Any, where: str, name: str) -> Argument:
     named = data.get("name") if isinstance(data, dict) else None
     if not isinstance(data, dict) or "value" not in data or not (named is None or is_name(named)):
         raise _wrong(name, where, "an argument with a value")
-    if named in WORDS:
+    if named in KEYWORDS:
         raise _wrong(name, f"{where}.name", f"a name, but {named} is a reserved value")
     return Argument(named, _value(data["value"], f"{where}.value", name, 1))
 
@@ -142,8 +142,12 @@ def _value(data: Any, where: str, name: str, depth: int) -> Value:
         return tuple(
             _value(entry, f"{where}[{k}]", name, depth + 1) for k, entry in enumerate(data)
         )
-    if isinstance(data, dict) and isinstance(data.get("number"), str) and data["number"] in _ODD:
-        return _ODD[data["number"]]
+    if (
+        isinstance(data, dict)
+        and isinstance(data.get("number"), str)
+        and data["number"] in _NON_FINITE
+    ):
+        return _NON_FINITE[data["number"]]
     if isinstance(data, bool) or data is None or _is_text(data):
         return data
     if isinstance(data, (int, float)) and math.isfinite(number := _double(data)):

@@ -19,8 +19,8 @@ from pathlib import Path
 from ...errors import FormatError
 from ...parameters import file_path, text_value
 from .source import Script
-from .tokens import Token, Words, unquoted
-from .tree import MAX_VECTOR_DEPTH, WORDS, Argument, CsgTree, Node, Place, Value
+from .tokens import Token, TokenReader, unquoted
+from .tree import KEYWORDS, MAX_VECTOR_DEPTH, Argument, CsgTree, Node, Place, Value
 
 
 def parse(text: str, name: str = "<csg>", folder: str | Path | None = None) -> CsgTree:
@@ -82,7 +82,7 @@ class _Parser:
     def __init__(self, script: Script) -> None:
         self._script = script
         self._places = script.places()
-        self._words = Words(script)
+        self._words = TokenReader(script)
         self._next = self._words.next()
 
     def value(self) -> Value:
@@ -159,7 +159,7 @@ class _Parser:
         return tuple(found)
 
     def _argument(self) -> Argument:
-        if self._next.kind != "name" or self._next.text in WORDS:
+        if self._next.kind != "name" or self._next.text in KEYWORDS:
             return Argument(None, self._value())
         name = self._take().text
         self._expect("=", f"after {name}")
@@ -220,8 +220,8 @@ class _Parser:
             return sign * (math.inf if word.text == "inf" else math.nan)
         if signed is word and word.kind == "string":
             return unquoted(word.text)
-        if signed is word and word.text in WORDS:
-            return WORDS[word.text]
+        if signed is word and word.text in KEYWORDS:
+            return KEYWORDS[word.text]
         raise self._error(f"expected a value, found {word}.", word)
 
     def _number(self, word: Token) -> float:

@@ -26,16 +26,16 @@ class Script:
     name: str = "<csg>"
     folder: Path = field(default_factory=Path)
 
-    def places(self) -> "Places":
+    def places(self) -> "LineIndex":
         """Return the converter of offsets in this text to lines and columns."""
-        return Places(self.text)
+        return LineIndex(self.text)
 
     def error(self, place: Place, message: str, code: str = "syntax") -> FormatError:
         """Return an error at a line and column, both from 1, which `where` contains."""
         return error_at(self.name, place, message, code)
 
 
-class Places:
+class LineIndex:
     """A converter of offsets in a text to lines and columns.
 
     Parameters

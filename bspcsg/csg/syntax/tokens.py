@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, NoReturn
 from .source import Script
 
 _SPACE = r"(?:[\s\ufeff]+ | //[^\n]* | /\*.*?\*/)*+"
-_GAP = re.compile(_SPACE, re.VERBOSE | re.DOTALL)
+_BLANKS = re.compile(_SPACE, re.VERBOSE | re.DOTALL)
 _WORD = re.compile(
     _SPACE
     + r"""(?:
@@ -45,7 +45,7 @@ class Token(NamedTuple):
         return f"“{text}{'…' if len(self.text) > _MAX_QUOTED_CHARACTERS else ''}”"
 
 
-class Words:
+class TokenReader:
     """An iterator over the tokens of a script.
 
     Parameters
@@ -71,7 +71,7 @@ class Words:
             kind = match.lastgroup or ""
             self._position = match.end()
             return Token(kind, match.group(kind), match.start(kind))
-        gap = _GAP.match(text, self._position)
+        gap = _BLANKS.match(text, self._position)
         self._position = gap.end() if gap else self._position
         if self._position < len(text):
             raise _unreadable(self._script, self._position)

@@ -18,7 +18,7 @@ from .intermediate import Intermediate
 Value: TypeAlias = "float | str | bool | tuple[Value, ...] | None"
 
 #: Keywords that denote values, and so cannot be names of arguments.
-WORDS: dict[str, Value] = {
+KEYWORDS: dict[str, Value] = {
     "true": True,
     "false": False,
     "undef": None,
@@ -112,7 +112,7 @@ class Argument:
     value: Value
 
     def __post_init__(self) -> None:
-        if self.name is not None and (not is_name(self.name) or self.name in WORDS):
+        if self.name is not None and (not is_name(self.name) or self.name in KEYWORDS):
             raise invalid_parameter(
                 f"{shown(self.name)} is not a valid argument name; use letters, digits and"
                 " underscores, and no reserved word."

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 
-from ...parameters import of_kind, truth_value
+from ...parameters import instance_of, truth_value
 from .tokens import quoted
 from .tree import Argument, CsgTree, Node, Value
 
@@ -31,7 +31,7 @@ def written(tree: CsgTree, *, scad: bool = False) -> str:
     """
     odd = _IN_SCAD if truth_value(scad, "scad") else _IN_CSG
     lines: list[str] = []
-    waiting: list[Node | str] = list(reversed(of_kind(CsgTree, tree, "tree").nodes))
+    waiting: list[Node | str] = list(reversed(instance_of(CsgTree, tree, "tree").nodes))
     depth = 0
     while waiting:
         node = waiting.pop()

@@ -57,13 +57,13 @@ def fractions(values: Values) -> Values:
 
 def _rows(
     container: Container,
-    told: "dict[str, int]",
+    location: "dict[str, int]",
     count: int,
     width: int,
     item: "np.dtype[np.generic]",
 ) -> Values:
     """Return (count, width) numbers of a buffer view, without a copy."""
-    view = container.tree["bufferViews"][told["bufferView"]]
+    view = container.tree["bufferViews"][location["bufferView"]]
     stride = view.get("byteStride") or item.itemsize * width
-    start = view.get("byteOffset", 0) + told.get("byteOffset", 0)
+    start = view.get("byteOffset", 0) + location.get("byteOffset", 0)
     return np.ndarray((count, width), item, container.data, start, (stride, item.itemsize))

@@ -28,11 +28,17 @@ _INSTANCES = "EXT_mesh_gpu_instancing"
 #: Extensions that a file may require: those that are read here, and the first letters of the names
 #: of those that change only the appearance.
 _READ = (_INSTANCES, "KHR_mesh_quantization")
-_LOOKS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "EXT_lights_")
+_APPEARANCE_PREFIXES = (
+    "KHR_materials_",
+    "KHR_texture_",
+    "EXT_texture_",
+    "KHR_lights_",
+    "EXT_lights_",
+)
 
 #: Extensions that compress data, and the advice on decompressing it.
-_PACKINGS = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
-_UNPACK = " “gltf-transform copy in.glb out.glb” removes the compression."
+_COMPRESSIONS = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
+_DECOMPRESSION_ADVICE = " “gltf-transform copy in.glb out.glb” removes the compression."
 
 #: Names, in messages, of vertex attributes that are not read, by the first letters of their keys.
 _ATTRIBUTES = {
@@ -79,7 +85,7 @@ def container_of(source: Source) -> Container:
     """
     tree, data = _chunks(source)
     try:
-        _Claims(source, tree, len(data)).check()
+        _DescriptionCheck(source, tree, len(data)).check()
         return Container(tree, data, _passed_by(tree), _dropped(tree))
     except FormatError:
         raise
@@ -124,7 +130,7 @@ def _parsed(source: Source, chunk: bytes) -> dict[str, Any]:
     return tree
 
 
-class _Claims:
+class _DescriptionCheck:
     """A check of a GLB file's JSON description against the length of its binary data.
 
     Parameters
@@ -136,19 +142,19 @@ class _Claims:
         Length of the binary chunk in bytes.
     """
 
-    def __init__(self, source: Source, tree: dict[str, Any], held: int) -> None:
+    def __init__(self, source: Source, tree: dict[str, Any], data_bytes: int) -> None:
         self._source = source
         self._tree = tree
-        self._held = held
+        self._data_bytes = data_bytes
 
     def check(self) -> None:
         """Raise a `FormatError` if the description has an error that would break decoding."""
         for extension in self._tree.get("extensionsRequired", []):
-            if extension not in _READ and not extension.startswith(_LOOKS):
+            if extension not in _READ and not extension.startswith(_APPEARANCE_PREFIXES):
                 message = (
                     f"the file requires the glTF extension {extension}, which is not supported."
                 )
-                raise self._source.error(message + _way_out(extension), "unsupported")
+                raise self._source.error(message + _conversion_advice(extension), "unsupported")
         for number, buffer in enumerate(self._tree.get("buffers", [])):
             if "uri" in buffer:
                 is_text = str(buffer["uri"]).startswith("data:")
@@ -158,10 +164,10 @@ class _Claims:
                     " the binary chunk of the GLB."
                 )
                 raise self._source.error(message, "unsupported")
-            if number > 0 or not 0 <= buffer["byteLength"] <= self._held:
+            if number > 0 or not 0 <= buffer["byteLength"] <= self._data_bytes:
                 message = (
-                    f"buffer {number} needs more bytes than the {self._held} bytes of the binary"
-                    " chunk."
+                    f"buffer {number} needs more bytes than the {self._data_bytes} bytes of the"
+                    " binary chunk."
                 )
                 raise self._source.error(message, "truncated")
         for number, accessor in enumerate(self._tree.get("accessors", [])):
@@ -196,16 +202,18 @@ class _Claims:
             self._check_elements(number, places, sparse["count"], _bytes_of(places, "SCALAR"))
             self._check_elements(number, sparse["values"], sparse["count"], element)
 
-    def _check_elements(self, number: int, told: dict[str, Any], count: int, element: int) -> None:
-        view = self._entry("bufferViews", told["bufferView"])
+    def _check_elements(
+        self, number: int, accessor: dict[str, Any], count: int, element: int
+    ) -> None:
+        view = self._entry("bufferViews", accessor["bufferView"])
         self._entry("buffers", view["buffer"])
         start, length = view.get("byteOffset", 0), view["byteLength"]
-        offset, stride = told.get("byteOffset", 0), view.get("byteStride") or element
+        offset, stride = accessor.get("byteOffset", 0), view.get("byteStride") or element
         needed = offset + max(count - 1, 0) * stride + (count and element)
-        if min(start, length, offset, stride, count) < 0 or start + length > self._held:
+        if min(start, length, offset, stride, count) < 0 or start + length > self._data_bytes:
             message = (
-                f"accessor {number} refers to bytes outside the {self._held} bytes of the binary"
-                " chunk."
+                f"accessor {number} refers to bytes outside the {self._data_bytes} bytes of the"
+                " binary chunk."
             )
             raise self._source.error(message, "truncated")
         if stride < element:
@@ -229,11 +237,11 @@ class _Claims:
         if "sparse" not in accessor:
             # An accessor has no buffer view if an extension has compressed its data, too.
             used = self._tree.get("extensionsUsed", [])
-            packing = next((one for one in used if one in _PACKINGS), "")
+            packing = next((one for one in used if one in _COMPRESSIONS), "")
             message = f"accessor {number} has no data that can be read; they may be compressed."
-            raise self._source.error(message + _way_out(packing), "unsupported")
+            raise self._source.error(message + _conversion_advice(packing), "unsupported")
         zeros = accessor["count"] * _bytes_of(accessor)
-        if not 0 <= zeros <= self._held:
+        if not 0 <= zeros <= self._data_bytes:
             # Zeros take no bytes in the file, so its length does not limit their number.
             message = (
                 f"accessor {number} has no data and stands for {zeros} bytes of zeros, more than"
@@ -282,7 +290,7 @@ class _Claims:
         times = self._times(node)
         for primitive in self._entry("meshes", node["mesh"])["primitives"]:
             mode = primitive.get("mode", TRIANGLES)
-            if _is_nowhere(primitive):
+            if _lacks_positions(primitive):
                 continue
             if "material" in primitive:
                 self._entry("materials", primitive["material"])
@@ -308,14 +316,17 @@ class _Claims:
         return int(counts.pop())
 
 
-def _way_out(extension: str) -> str:
+def _conversion_advice(extension: str) -> str:
     """Return advice on how to convert a file that needs an extension, or an empty string."""
-    return _UNPACK if extension in _PACKINGS else ""
+    return _DECOMPRESSION_ADVICE if extension in _COMPRESSIONS else ""
 
 
-def _bytes_of(told: dict[str, Any], shape: str = "") -> int:
+def _bytes_of(accessor: dict[str, Any], shape: str = "") -> int:
     """Return the number of bytes of an accessor's element; `shape` replaces the accessor's type."""
-    return np.dtype(COMPONENTS[told["componentType"]]).itemsize * ELEMENTS[shape or told["type"]]
+    return (
+        np.dtype(COMPONENTS[accessor["componentType"]]).itemsize
+        * ELEMENTS[shape or accessor["type"]]
+    )
 
 
 def instances_of(node: dict[str, Any]) -> dict[str, Any] | None:
@@ -324,7 +335,7 @@ def instances_of(node: dict[str, Any]) -> dict[str, Any] | None:
     return None if told is None else dict(told["attributes"])
 
 
-def _is_nowhere(primitive: dict[str, Any]) -> bool:
+def _lacks_positions(primitive: dict[str, Any]) -> bool:
     """Say whether a primitive has no vertex positions: readers skip it (glTF 2.0, 3.7.2.1)."""
     return "POSITION" not in primitive["attributes"]
 
@@ -364,8 +375,8 @@ def uv_of(tree: dict[str, Any], primitive: dict[str, Any]) -> str:
 
 def _passed_by(tree: dict[str, Any]) -> tuple[Finding, ...]:
     primitives = _primitives(tree)
-    nowhere = [primitive for primitive in primitives if _is_nowhere(primitive)]
-    modes = [one.get("mode", TRIANGLES) for one in primitives if not _is_nowhere(one)]
+    nowhere = [primitive for primitive in primitives if _lacks_positions(primitive)]
+    modes = [one.get("mode", TRIANGLES) for one in primitives if not _lacks_positions(one)]
     lines = sum(mode not in (TRIANGLES, STRIP, FAN) for mode in modes)
     told = (
         (lines, "groups of points or lines"),

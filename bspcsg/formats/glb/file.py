@@ -17,14 +17,14 @@ from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes, Values
 from ...errors import Finding
 from ...mesh.mesh import Mesh
-from .. import single
-from ..placing import PlacedMesh, is_exact, placed
-from ..raw import RawMesh, compacted, parts_of, says_empty_set
-from ..said import said_of
+from .. import single_precision
+from ..mesh_placement import PlacedMesh, is_exact, placed_meshes
+from ..raw import RawMesh, compacted, parts_of, represents_empty_set
 from ..source import Source
+from ..storable_attributes import attributes_or_none
+from .attribute_conversion import Pictures, columns_of, dropped_pictures, stored_name
 from .container import container_of
-from .nodes import NodeMesh, shown
-from .said import Pictures, called, columns_of, dropped_pictures
+from .nodes import NodeMesh, visible_meshes
 
 #: Matrices for column vectors from millimetres with z upwards to metres with y upwards, and back.
 TO_METRES = np.array(
@@ -49,12 +49,12 @@ def read(source: Source) -> RawMesh:
     """
     container = container_of(source)
     try:
-        objects, hidden = shown(container)
+        objects, hidden = visible_meshes(container)
     except IndexError as error:
         raise source.error(f"{error}.", "index_out_of_range") from error
     except (ValueError, LookupError, TypeError, AttributeError) as error:
         raise source.error(f"this GLB cannot be decoded: {error}.") from error
-    mesh = placed([_placed(one) for one in objects if len(one.faces)])
+    mesh = placed_meshes([_placed(one) for one in objects if len(one.faces)])
     if not np.isfinite(mesh.vertices).all():
         raise source.error("a coordinate is not a finite number.", "non_finite")
     findings = (*mesh.findings, *container.findings, *_hidden(hidden), _unit())
@@ -68,12 +68,12 @@ def _placed(one: NodeMesh) -> PlacedMesh:
     linear = placing[:3, :3]
     with np.errstate(invalid="ignore", over="ignore"):
         size = np.linalg.det(linear)
-        said = None if one.attributes is None else one.attributes.turned(linear)
+        attributes = None if one.attributes is None else one.attributes.turned(linear)
         keeps = size == 0 or is_exact(one.vertices, linear, placing[:3, 3])
     faces = one.faces
     if size < 0:
-        faces, said = faces[:, ::-1], said and said.reordered([2, 1, 0])
-    own = RawMesh(one.vertices.astype(np.float64), faces, one.name, attributes=said)
+        faces, attributes = faces[:, ::-1], attributes and attributes.reordered([2, 1, 0])
+    own = RawMesh(one.vertices.astype(np.float64), faces, one.name, attributes=attributes)
     return PlacedMesh(own, partial(_moved, matrix=placing), keeps, placing.tobytes())
 
 
@@ -106,7 +106,7 @@ def most_bytes(mesh: Mesh | RawMesh) -> int:
     return 12 * (len(mesh.faces) + vertices)
 
 
-def beyond(mesh: Mesh | RawMesh) -> str:
+def size_problem(mesh: Mesh | RawMesh) -> str:
     """Return why a mesh is too large for GLB, or an empty string if it fits."""
     is_beyond = most_bytes(mesh) > np.iinfo(np.uint32).max
     return (
@@ -121,11 +121,11 @@ def beyond(mesh: Mesh | RawMesh) -> str:
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the bytes of a GLB file; coordinates are rounded to single precision."""
-    said = said_of(mesh)
-    if said is not None:
-        yield from _with_attributes(mesh, said)
+    attributes = attributes_or_none(mesh)
+    if attributes is not None:
+        yield from _with_attributes(mesh, attributes)
         return
-    described = Description(says_empty_set(mesh))
+    described = Description(represents_empty_set(mesh))
     blocks = []
     for name, faces in parts_of(mesh):
         if len(faces) == 0:
@@ -137,16 +137,18 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     yield from container(described.text(), blocks)
 
 
-def _with_attributes(mesh: Mesh | RawMesh, said: Attributes) -> Iterator[bytes]:
+def _with_attributes(mesh: Mesh | RawMesh, attributes: Attributes) -> Iterator[bytes]:
     """Yield the bytes of a GLB file; a vertex whose corners differ in an attribute is split."""
     described = Description(False)
-    pictures = Pictures(said.materials, described.append)
+    pictures = Pictures(attributes.materials, described.append)
     start = 0
     for name, faces in parts_of(mesh):
         rows = np.arange(start, start + len(faces))
         start += len(faces)
         if len(faces):
-            primitives = described.append_mesh(mesh.vertices, faces, said.taken(rows), pictures)
+            primitives = described.append_mesh(
+                mesh.vertices, faces, attributes.for_faces(rows), pictures
+            )
             described.add_object(name, primitives)
     further = pictures.described()
     yield from container(described.text(further), described.blocks)
@@ -191,7 +193,7 @@ class Description:
 
     def add(self, name: str, vertices: "np.ndarray[Any, Any]", triangles: int) -> None:
         """Describe an object; the caller writes its vertices, then its indices, to the data."""
-        self._names.append({"name": called(name)} if name else {})
+        self._names.append({"name": stored_name(name)} if name else {})
         self._primitives.append([_primitive(len(self._names) - 1)])
         low, high = vertices.min(axis=0).tolist(), vertices.max(axis=0).tolist()
         self._append(12 * len(vertices), _VERTICES, len(vertices), _FLOAT, "VEC3")
@@ -207,7 +209,7 @@ class Description:
 
     def add_object(self, name: str, primitives: list[dict[str, Any]]) -> None:
         """Describe an object that consists of primitives from `append_mesh`."""
-        self._names.append({"name": called(name)} if name else {})
+        self._names.append({"name": stored_name(name)} if name else {})
         self._primitives.append(primitives)
 
     def append(self, data: bytes) -> int:
@@ -219,10 +221,10 @@ class Description:
         return len(self._views) - 1
 
     def append_mesh(
-        self, points: FloatArray, faces: IndexArray, said: Attributes, pictures: Pictures
+        self, points: FloatArray, faces: IndexArray, attributes: Attributes, pictures: Pictures
     ) -> list[dict[str, Any]]:
         """Append triangles with attributes to the data; return a primitive for each material."""
-        columns = columns_of(said, np.arange(len(faces)))
+        columns = columns_of(attributes, np.arange(len(faces)))
         first, corners = _divided(faces, columns)
         vertices = points[faces.ravel()[first]].astype("<f4")
         accessors = {"POSITION": self.append_column(vertices, with_bounds=True)}
@@ -230,7 +232,7 @@ class Description:
             flat = values.reshape(3 * len(faces), *values.shape[2:])
             accessors[key] = self.append_column(flat[first])
         primitives = []
-        for begin, end, material in _runs(said.face.get("material"), len(faces)):
+        for begin, end, material in _runs(attributes.face.get("material"), len(faces)):
             indices = self.append_indices(corners[begin:end])
             painted = {"material": pictures.numbers[material]} if material else {}
             primitives.append({"attributes": accessors, "indices": indices, "mode": 4, **painted})
@@ -328,4 +330,4 @@ def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
         "GLB uses metres with the y axis up; the model was assumed to be in millimetres with the"
         " z axis up, and converted."
     )
-    return Finding("unit", "note", message, (), 1), *single.losses(mesh, "GLB")
+    return Finding("unit", "note", message, (), 1), *single_precision.losses(mesh, "GLB")

@@ -9,12 +9,12 @@ import numpy as np
 
 from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes
-from ...attributes.joining import MeshPart, concatenated
-from ..placing import SingleArray
+from ...attributes.concatenation import MeshPart, concatenated
+from ..mesh_placement import SingleArray
 from ..raw import compacted
 from .accessors import fractions, stored
+from .attribute_conversion import Named, materials_of, read_columns
 from .container import COMPONENTS, FAN, STRIP, TRIANGLES, Container, instances_of
-from .said import Named, materials_of, read_columns
 
 _Triangles: TypeAlias = "tuple[SingleArray, IndexArray, Attributes | None]"
 
@@ -44,7 +44,7 @@ class NodeMesh:
     attributes: Attributes | None = None
 
 
-def shown(container: Container) -> tuple[list[NodeMesh], int]:
+def visible_meshes(container: Container) -> tuple[list[NodeMesh], int]:
     """Return the meshes of a scene's nodes, and the number of nodes with a mesh outside the scene.
 
     A mesh of several nodes is returned once for each of them. The nodes come in the order of the
@@ -71,7 +71,7 @@ def shown(container: Container) -> tuple[list[NodeMesh], int]:
             meshes[node["mesh"]] = triangles_of(container, mesh, materials)
         name = mesh.get("name") or node.get("name") or ""
         vertices, faces, said = meshes[node["mesh"]]
-        for place in places_of(container, node):
+        for place in instance_matrices(container, node):
             found.append(NodeMesh(str(name), vertices, faces, matrix @ place, said))
     return found, sum("mesh" in node for node in nodes) - seen
 
@@ -103,24 +103,24 @@ def local_matrix(node: dict[str, Any]) -> FloatArray:
         return np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
     given = [
         np.array([node.get(key, usual)], dtype=np.float64)
-        for key, usual in zip(("translation", "rotation", "scale"), _USUAL, strict=True)
+        for key, usual in zip(("translation", "rotation", "scale"), _DEFAULT_TRANSFORM, strict=True)
     ]
     matrix: FloatArray = _matrices(*given)[0]
     return matrix
 
 
 #: glTF's defaults of a node: no translation, no rotation (a quaternion), and the scale 1.
-_USUAL = ([0, 0, 0], [0, 0, 0, 1], [1, 1, 1])
+_DEFAULT_TRANSFORM = ([0, 0, 0], [0, 0, 0, 1], [1, 1, 1])
 
 
-def places_of(container: Container, node: dict[str, Any]) -> FloatArray:
+def instance_matrices(container: Container, node: dict[str, Any]) -> FloatArray:
     """Return the matrices (n, 4, 4) from a node's instances to the node, or one identity."""
     told = instances_of(node)
     if told is None:
         return _IDENTITY[None]
     count = container.tree["accessors"][next(iter(told.values()))]["count"]
     given = []
-    for key, usual in zip(("TRANSLATION", "ROTATION", "SCALE"), _USUAL, strict=True):
+    for key, usual in zip(("TRANSLATION", "ROTATION", "SCALE"), _DEFAULT_TRANSFORM, strict=True):
         values = np.tile(np.array(usual, dtype=np.float64), (count, 1))
         if key in told:
             values = fractions(stored(container, told[key])).astype(np.float64)
@@ -136,12 +136,12 @@ def places_of(container: Container, node: dict[str, Any]) -> FloatArray:
 def _matrices(translations: FloatArray, rotations: FloatArray, scales: FloatArray) -> FloatArray:
     """Return (n, 4, 4) matrices for column vectors: they scale, then rotate, then translate."""
     found = np.tile(_IDENTITY, (len(scales), 1, 1))
-    found[:, :3, :3] = _turned(rotations) * scales[:, None]
+    found[:, :3, :3] = _rotation_matrices(rotations) * scales[:, None]
     found[:, :3, 3] = translations
     return found
 
 
-def _turned(quaternions: FloatArray) -> FloatArray:
+def _rotation_matrices(quaternions: FloatArray) -> FloatArray:
     """Return the rotation matrices (n, 3, 3) of quaternions (n, 4), any length, real part last."""
     with np.errstate(invalid="ignore"):  # results that are not finite are refused later
         x, y, z, w = (quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)).T

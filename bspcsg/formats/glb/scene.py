@@ -13,11 +13,11 @@ from ...attributes.material import Material
 from ..raw import RawMesh
 from ..scene import SceneNode
 from ..source import Source
+from .attribute_conversion import Pictures, materials_of, storable, stored_name
 from .container import Container, container_of, instances_of
 from .file import TO_METRES, TO_MILLIMETRES, Description, container
-from .light import as_read
-from .nodes import local_matrix, places_of, triangles_of
-from .said import Pictures, called, kept, materials_of
+from .linear_colours import as_read
+from .nodes import instance_matrices, local_matrix, triangles_of
 
 _IDENTITY = np.eye(4)
 
@@ -32,26 +32,26 @@ def read(source: Source) -> SceneNode:
     """
     held = container_of(source)
     try:
-        return _Reading(held).root()
+        return _SceneReader(held).root()
     except IndexError as error:
         raise source.error(f"{error}.", "index_out_of_range") from error
     except (ValueError, LookupError, TypeError, AttributeError) as error:
         raise source.error(f"this GLB cannot be decoded: {error}.") from error
 
 
-class _Reading:
+class _SceneReader:
     """A reader of one file's nodes; a mesh that several nodes share becomes one object."""
 
-    def __init__(self, held: Container) -> None:
-        self._held = held
-        self._nodes = held.tree.get("nodes", [])
+    def __init__(self, container: Container) -> None:
+        self._container = container
+        self._nodes = container.tree.get("nodes", [])
         self._meshes: dict[int, tuple[RawMesh, tuple[float, ...] | None]] = {}
-        self._materials = materials_of(held.tree, held.data)
+        self._materials = materials_of(container.tree, container.data)
 
     def root(self) -> SceneNode:
-        scenes = self._held.tree.get("scenes", [])
+        scenes = self._container.tree.get("scenes", [])
         if scenes:
-            roots = scenes[self._held.tree.get("scene", 0)].get("nodes", [])
+            roots = scenes[self._container.tree.get("scene", 0)].get("nodes", [])
         else:
             inner = {child for node in self._nodes for child in node.get("children", [])}
             roots = [number for number in range(len(self._nodes)) if number not in inner]
@@ -60,10 +60,10 @@ class _Reading:
         found = tuple(self._node(number, TO_MILLIMETRES) for number in roots)
         return found[0] if len(found) == 1 else SceneNode("", _IDENTITY, children=found)
 
-    def _only_turns(self, told: dict[str, Any]) -> bool:
+    def _only_turns(self, node: dict[str, Any]) -> bool:
         """Say whether a node has only one child and the matrix `TO_METRES`, as written here."""
-        is_bare = set(told) == {"matrix", "children"} and len(told["children"]) == 1
-        return is_bare and bool((local_matrix(told) == TO_METRES).all())
+        is_bare = set(node) == {"matrix", "children"} and len(node["children"]) == 1
+        return is_bare and bool((local_matrix(node) == TO_METRES).all())
 
     def _node(self, number: int, outer: FloatArray) -> SceneNode:
         """Return node `number` with all below it; `outer` is applied after the node's matrix."""
@@ -78,30 +78,30 @@ class _Reading:
             mesh = None
         if mesh is None or not (children or instances_of(told)):
             return SceneNode(name, matrix, mesh, color, children)
-        places = places_of(self._held, told)
+        places = instance_matrices(self._container, told)
         own = (SceneNode(mesh.name, place, mesh, color) for place in places)
         return SceneNode(name, matrix, None, None, (*own, *children))
 
     def _mesh(self, number: int) -> tuple[RawMesh, tuple[float, ...] | None]:
         """Return mesh `number`, always the same object, and its colour or None."""
         if number not in self._meshes:
-            told = self._held.tree["meshes"][number]
-            vertices, faces, said = triangles_of(self._held, told, self._materials)
+            told = self._container.tree["meshes"][number]
+            vertices, faces, attributes = triangles_of(self._container, told, self._materials)
             points = vertices.astype(np.float64)
             if not np.isfinite(points).all():
                 raise ValueError("a coordinate is not a finite number")
             name = str(told.get("name") or "")
-            made = RawMesh(points, faces, name, unit="mm", attributes=said)
+            made = RawMesh(points, faces, name, unit="mm", attributes=attributes)
             self._meshes[number] = _painted(made)
         return self._meshes[number]
 
 
 def as_written(root: SceneNode) -> SceneNode:
     """Return a tree with the colours and attributes that reading its GLB file would return."""
-    return _AsGlb().node(root)
+    return _GlbConverter().node(root)
 
 
-class _AsGlb:
+class _GlbConverter:
     """A converter of trees to what GLB can store; nodes that share a mesh share the new one."""
 
     def __init__(self) -> None:
@@ -115,9 +115,9 @@ class _AsGlb:
 
     def _mesh(self, mesh: RawMesh) -> tuple[RawMesh, tuple[float, ...] | None]:
         if id(mesh) not in self._meshes:
-            held = None if mesh.attributes is None else kept(mesh.attributes, mesh.vertices)
-            said = None if held is None or held.is_empty else held
-            one = replace(mesh, attributes=said)
+            held = None if mesh.attributes is None else storable(mesh.attributes, mesh.vertices)
+            attributes = None if held is None or held.is_empty else held
+            one = replace(mesh, attributes=attributes)
             self._meshes[id(mesh)] = one, _painted(one)[1]
         return self._meshes[id(mesh)]
 
@@ -128,16 +128,21 @@ def _painted(mesh: RawMesh) -> tuple[RawMesh, tuple[float, ...] | None]:
     If the mesh has one material, named after its own colour, that material is removed and its
     colour returned.
     """
-    said = mesh.attributes
-    if said is None or "material" not in said.face or "color" in said.names or not len(mesh.faces):
+    attributes = mesh.attributes
+    if (
+        attributes is None
+        or "material" not in attributes.face
+        or "color" in attributes.names
+        or not len(mesh.faces)
+    ):
         return mesh, None
-    names = np.unique(said.face["material"]).tolist()
-    material = said.materials.get(names[0], Material())
+    names = np.unique(attributes.face["material"]).tolist()
+    material = attributes.materials.get(names[0], Material())
     # Materials whose colours are equal in bytes have names that differ by a number at the end.
     is_named = len(names) == 1 and names[0].partition(" ")[0] == hexadecimal(material.color)
     if not is_named or material.texture is not None:
         return mesh, None
-    rest = replace(said.without({"material"}), materials={})
+    rest = replace(attributes.without({"material"}), materials={})
     return replace(mesh, attributes=None if rest.is_empty else rest), material.color
 
 
@@ -155,25 +160,29 @@ def encode(root: SceneNode) -> Iterator[bytes]:
         node, parent = waiting.pop()
         number = len(nodes)
         told: dict[str, Any] = {"matrix": node.matrix.T.ravel().tolist()}
-        nodes.append(told | ({"name": called(node.name)} if node.name else {}))
+        nodes.append(told | ({"name": stored_name(node.name)} if node.name else {}))
         nodes[parent].setdefault("children", []).append(number)
         if node.mesh is not None and len(node.mesh.faces):
             key = (id(node.mesh), node.color)
             if key not in meshes:
-                said = _attributes_of(node.mesh, node.color)
-                meshes[key] = (len(meshes), said.among(taken), node.mesh)
+                attributes = _attributes_of(node.mesh, node.color)
+                meshes[key] = (len(meshes), attributes.among(taken), node.mesh)
             nodes[number]["mesh"] = meshes[key][0]
         waiting.extend((child, number) for child in reversed(node.children))
     pictures = Pictures(taken, described.append)
-    for _, said, mesh in meshes.values():
-        described.add_object("", described.append_mesh(mesh.vertices, mesh.faces, said, pictures))
+    for _, attributes, mesh in meshes.values():
+        described.add_object(
+            "", described.append_mesh(mesh.vertices, mesh.faces, attributes, pictures)
+        )
     further = pictures.described()
     yield from container(described.text(further, nodes), described.blocks)
 
 
 def _attributes_of(mesh: RawMesh, color: tuple[float, ...] | None) -> Attributes:
-    said = Attributes(mesh.faces) if mesh.attributes is None else mesh.attributes
-    if color is None or {"color", "material"}.intersection(said.names):
-        return said
+    attributes = Attributes(mesh.faces) if mesh.attributes is None else mesh.attributes
+    if color is None or {"color", "material"}.intersection(attributes.names):
+        return attributes
     names = np.full(len(mesh.faces), hexadecimal(color))
-    return replace(said, face={"material": names}, materials={hexadecimal(color): Material(color)})
+    return replace(
+        attributes, face={"material": names}, materials={hexadecimal(color): Material(color)}
+    )

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from ...attributes.attributes import Attributes, Kind, Values
-from ..said import chosen
+from ..storable_attributes import selected_attributes
 
 #: The usual names of PLY columns, by the attribute that they form.
 _KNOWN = {
@@ -51,12 +51,12 @@ _NUMBERED = re.compile(r"(.+)_(\d+)")
 _MAX_LIST_LENGTH = 255
 
 
-def kept(said: Attributes) -> Attributes:
+def storable(attributes: Attributes) -> Attributes:
     """Return the attributes that PLY can store: numbers with one-word names."""
-    return chosen(said, _kept)
+    return selected_attributes(attributes, _storable_values)
 
 
-def _kept(kind: Kind, name: str, values: Values) -> Values | None:
+def _storable_values(kind: Kind, name: str, values: Values) -> Values | None:
     depth = 2 if kind == "corner" else 1
     shape = values.shape[depth:]
     if len(shape) > 1 or shape == (0,) or not _NAME.fullmatch(name):

@@ -12,9 +12,9 @@ from ...attributes.attributes import Attributes, Values
 from ...errors import Finding, FormatError
 from ...mesh.mesh import Mesh
 from ..blocks import ROWS_PER_FILE_BLOCK, blocks, encoded_lines, listed
-from ..raw import IndexPolygons, RawMesh, says_empty_set
-from ..said import said_of
-from ..source import Source, integral, quoted
+from ..raw import IndexPolygons, RawMesh, represents_empty_set
+from ..source import Source, quoted, to_integral
+from ..storable_attributes import attributes_or_none
 from .columns import TYPES, attributes_of, columns_of, corners_of, lists_of, names_in
 from .header import Element, Header, Order, read_header
 from .lists import read_mixed, read_uniform
@@ -31,7 +31,7 @@ _LISTS_OF_VERTICES = "the vertices have list properties, which are not supported
 
 
 @dataclass
-class _Found:
+class _PlyContent:
     """The content of the elements that have been read from a PLY file."""
 
     vertices: FloatArray | None = None
@@ -70,7 +70,7 @@ def read(source: Source) -> RawMesh:
     """
     source = source.without_mark()
     header = read_header(source)
-    found = _Found()
+    found = _PlyContent()
     if header.order is None:
         rest = _read_text(source, header, found)
     else:
@@ -83,12 +83,12 @@ def read(source: Source) -> RawMesh:
         raise source.error(
             "the PLY has no element “face” with a list of vertex indices.", line=header.lines
         )
-    faces, said = _triangles_and_attributes(
+    faces, attributes = _triangles_and_attributes(
         found, found.polygons, found.vertices, found.polygon_error
     )
-    dropped = (*_more_than_a_shape(header, said, found.element), *found.polygons.dropped)
+    dropped = (*_more_than_a_shape(header, attributes, found.element), *found.polygons.dropped)
     told = (*_no_statements(header), *rest)
-    return RawMesh(found.vertices, faces, "", told, dropped=dropped, attributes=said)
+    return RawMesh(found.vertices, faces, "", told, dropped=dropped, attributes=attributes)
 
 
 def _no_statements(header: Header) -> tuple[Finding, ...]:
@@ -99,7 +99,7 @@ def _no_statements(header: Header) -> tuple[Finding, ...]:
 
 
 def _triangles_and_attributes(
-    found: _Found,
+    found: _PlyContent,
     polygons: IndexPolygons,
     vertices: FloatArray,
     error_at: Callable[[int, str, str], FormatError],
@@ -116,11 +116,11 @@ def _triangles_and_attributes(
     corner = {name: values[positions] for name, values in corners_of(lists, count).items()}
     face = {name: values[owners] for name, values in attributes_of(single).items()}
     vertex = attributes_of(found.vertex_columns)
-    vertex, corner, face = _apart(vertex, corner, face)
+    vertex, corner, face = _without_repeated_names(vertex, corner, face)
     return faces, Attributes(faces, vertex, corner, face)
 
 
-def _apart(*kinds: dict[str, Values]) -> Iterator[dict[str, Values]]:
+def _without_repeated_names(*kinds: dict[str, Values]) -> Iterator[dict[str, Values]]:
     """Yield each dictionary without the names that an earlier dictionary has."""
     taken: set[str] = set()
     for kind in kinds:
@@ -128,9 +128,11 @@ def _apart(*kinds: dict[str, Values]) -> Iterator[dict[str, Values]]:
         taken.update(kind)
 
 
-def _more_than_a_shape(header: Header, said: Attributes | None, faces: str) -> tuple[str, ...]:
+def _more_than_a_shape(
+    header: Header, attributes: Attributes | None, faces: str
+) -> tuple[str, ...]:
     """Return descriptions of the elements, properties and pictures that are not read."""
-    columns = names_in(said)
+    columns = names_in(attributes)
     told = [f"the picture “{name}”" for name in header.pictures]
     for element in header.elements:
         shape = {"vertex": ("x", "y", "z"), faces: _FACE_LISTS}.get(element.name)
@@ -162,18 +164,18 @@ def _face_column(source: Source, header: Header, element: Element) -> int | None
     return column
 
 
-def _read_text(source: Source, header: Header, found: _Found) -> tuple[Finding, ...]:
+def _read_text(source: Source, header: Header, found: _PlyContent) -> tuple[Finding, ...]:
     lines = [line for line in source.text_lines() if line[0] > header.lines]
     try:
         return _read_lines(source, header, lines, found)
     except FormatError:
-        spread = _spread(header, lines)
+        spread = _one_record_per_line(header, lines)
         if spread is None:
             raise
         return _read_lines(source, header, spread, found)
 
 
-def _spread(header: Header, lines: list[_Line]) -> list[_Line] | None:
+def _one_record_per_line(header: Header, lines: list[_Line]) -> list[_Line] | None:
     """Return a line for each record of a file whose line breaks are elsewhere.
 
     Return None if the numbers are not exactly those that the header promises.
@@ -189,7 +191,7 @@ def _spread(header: Header, lines: list[_Line]) -> list[_Line] | None:
             start = at
             try:
                 for prop in element.properties:
-                    at += 1 if prop.count is None else 1 + max(integral(words[at][1]), 0)
+                    at += 1 if prop.count is None else 1 + max(to_integral(words[at][1]), 0)
             except (ValueError, IndexError):
                 return None
             row = words[start:at]
@@ -200,7 +202,7 @@ def _spread(header: Header, lines: list[_Line]) -> list[_Line] | None:
 
 
 def _read_lines(
-    source: Source, header: Header, lines: list[_Line], found: _Found
+    source: Source, header: Header, lines: list[_Line], found: _PlyContent
 ) -> tuple[Finding, ...]:
     start = 0
     for element in header.elements:
@@ -248,7 +250,7 @@ def _text_faces(
     block: list[_Line],
     element: Element,
     column: int,
-    found: _Found,
+    found: _PlyContent,
 ) -> None:
     lists = [_text_list(source, number, words, element, column) for number, words in block]
     found.take(
@@ -293,7 +295,7 @@ def _split(words: list[bytes], element: Element) -> list[list[bytes]]:
     """Divide the words of a valid line into a list of words for each property."""
     at, found = 0, []
     for prop in element.properties:
-        length = 1 if prop.count is None else integral(words[at])
+        length = 1 if prop.count is None else to_integral(words[at])
         at += prop.count is not None
         found.append(words[at : at + length])
         at += length
@@ -307,7 +309,7 @@ def _text_numbers(
     kind: "np.dtype[np.generic]",
 ) -> Values:
     try:
-        numbers = [float(word) if kind.kind == "f" else integral(word) for word in words]
+        numbers = [float(word) if kind.kind == "f" else to_integral(word) for word in words]
         return np.array(numbers, dtype=kind)
     except (ValueError, OverflowError):
         message = f"a property here is not a number of the type {kind} that the header says."
@@ -321,7 +323,7 @@ def _text_list(
     at, wanted = 0, []
     try:
         for position, prop in enumerate(element.properties):
-            length = integral(words[at]) if prop.count is not None else 1
+            length = to_integral(words[at]) if prop.count is not None else 1
             at += prop.count is not None
             if length < 0 or at + length > len(words):
                 raise ValueError
@@ -340,14 +342,14 @@ def _text_list(
 
 
 def _index(word: bytes) -> int:
-    index = integral(word)
+    index = to_integral(word)
     if not -(2**63) <= index < 2**63:
         raise ValueError
     return index
 
 
 def _read_binary(
-    source: Source, header: Header, order: Order, found: _Found
+    source: Source, header: Header, order: Order, found: _PlyContent
 ) -> tuple[Finding, ...]:
     offset = header.end
     for element in header.elements:
@@ -369,7 +371,9 @@ def _read_binary(
     return () if source.data[offset:].isspace() or not extra else _extra(extra, "bytes", (offset,))
 
 
-def _read_records(source: Source, order: Order, element: Element, start: int, found: _Found) -> int:
+def _read_records(
+    source: Source, order: Order, element: Element, start: int, found: _PlyContent
+) -> int:
     """Read a binary element without lists; return the byte offset at which its data end."""
     fields = [(f"p{k}", p.item.newbyteorder(order)) for k, p in enumerate(element.properties)]
     record = np.dtype(fields)
@@ -406,7 +410,7 @@ def _extra(count: int, unit: str, where: tuple[int, ...]) -> tuple[Finding, ...]
 
 
 def _header(mesh: Mesh | RawMesh, form: str) -> bytes:
-    comment = "comment bspcsg: the empty set\n" if says_empty_set(mesh) else ""
+    comment = "comment bspcsg: the empty set\n" if represents_empty_set(mesh) else ""
     vertex, face, lists = _columns(mesh)
     return (
         f"ply\nformat {form} 1.0\n{comment}element vertex {len(mesh.vertices)}\n"
@@ -422,10 +426,14 @@ _Columns: TypeAlias = list[tuple[str, Values]]
 
 def _columns(mesh: Mesh | RawMesh) -> tuple[_Columns, _Columns, _Columns]:
     """Return the attributes of a mesh as columns of vertices, columns of faces, lists of faces."""
-    said = said_of(mesh)
-    if said is None:
+    attributes = attributes_or_none(mesh)
+    if attributes is None:
         return [], [], []
-    return list(columns_of(said.vertex)), list(columns_of(said.face)), list(lists_of(said.corner))
+    return (
+        list(columns_of(attributes.vertex)),
+        list(columns_of(attributes.face)),
+        list(lists_of(attributes.corner)),
+    )
 
 
 def _properties(columns: _Columns, kind: str = "") -> str:
@@ -437,7 +445,7 @@ def _type_of(values: Values) -> str:
     return TYPES[f"{values.dtype.kind}{values.dtype.itemsize}"]
 
 
-def beyond(mesh: Mesh | RawMesh) -> str:
+def size_problem(mesh: Mesh | RawMesh) -> str:
     """Return why a mesh is too large for PLY, or an empty string if it fits."""
     is_beyond = len(mesh.vertices) > np.iinfo(np.int32).max
     return (

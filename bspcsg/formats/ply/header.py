@@ -32,7 +32,7 @@ _FORMS: dict[str, Order | None] = {
 
 #: The words that begin a line of a header. A misspelt one is an error, not a comment.
 _KEYS = ("ply", "format", "element", "property", "end_header", "comment", "obj_info")
-_ALIKE = 0.7
+_MIN_SIMILARITY = 0.7
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ def read_header(source: Source) -> Header:
             pictures.append(" ".join(words[2:]))
         elif key in ("comment", "obj_info"):
             continue
-        elif get_close_matches(key.lower(), _KEYS, cutoff=_ALIKE):
+        elif get_close_matches(key.lower(), _KEYS, cutoff=_MIN_SIMILARITY):
             raise source.error(
                 "expected a header line (format, element, property or end_header), found"
                 f" {quoted(line)}.",

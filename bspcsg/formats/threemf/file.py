@@ -9,13 +9,13 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...errors import Finding
-from ..placing import PlacedMesh, is_exact, placed
+from ..mesh_placement import PlacedMesh, is_exact, placed_meshes
 from ..raw import RawMesh, empty_set
 from ..source import Source
 from .objects import Objects
 from .package import Package, opened
 from .part import MILLIMETRES, ModelPart
-from .slicers import NEGATIVE, Slicing, settled
+from .slicers import NEGATIVE, Slicing, apply_slicer_settings
 
 #: The largest number of triangles of all build items together.
 _MAX_BUILD_TRIANGLES = 1 << 27
@@ -40,7 +40,7 @@ def read(source: Source) -> RawMesh:
 def _assembled(package: Package, root: str) -> RawMesh:
     """Return one mesh of all build items of the model part `root`, with findings."""
     part, objects = package.part(root), Objects(package)
-    slicing = settled(package, root)
+    slicing = apply_slicer_settings(package, root)
     pieces, findings = [], list(_unit_finding(part))
     unit = np.eye(4, 3) * MILLIMETRES[part.unit]
     beams = hollow = triangles = 0
@@ -72,7 +72,7 @@ def _assembled(package: Package, root: str) -> RawMesh:
     findings += _ignored(hollow, "objects without triangles")
     reached = {(path, item) for path, item, _ in built} | objects.used() | slicing.inner
     findings += _ignored(len(_bodies(package) - reached), "objects that the build does not use")
-    mesh = placed(pieces) if triangles or not objects.used() else empty_set()
+    mesh = placed_meshes(pieces) if triangles or not objects.used() else empty_set()
     dropped = sorted(set().union(*(part.dropped for part in package.parts.values())))
     told = (*mesh.findings, *findings)
     return replace(mesh, findings=told, unit="mm", dropped=tuple(dropped))

@@ -12,10 +12,10 @@ from typing import TypeAlias
 import numpy as np
 
 from ..._types import FloatArray
-from ...errors import BspcsgError, FormatError, InternalError, InvalidParameterError, held
+from ...errors import BspcsgError, FormatError, InternalError, InvalidParameterError, not_none
 from ...solid.solid import Solid, combine, solid_with
 from ..raw import RawMesh
-from ..said import said_of
+from ..storable_attributes import attributes_or_none
 from .package import Package
 from .part import INSTANCE, Object, PlacedObject
 from .properties import properties_of
@@ -134,15 +134,15 @@ class Objects:
         known = part.objects[item]
         vertices, faces = known.arrays()
         try:
-            said = properties_of(part, known, faces, self._package.picture)
+            attributes = properties_of(part, known, faces, self._package.picture)
         except IndexError as error:
             message = f"object {item} in {path}: {error}."
             raise self._package.source.error(message, "index_out_of_range") from error
-        return RawMesh(vertices, faces, attributes=said)
+        return RawMesh(vertices, faces, attributes=attributes)
 
     def _attempted(self, path: str, item: str) -> RawMesh:
         """Return the mesh of a boolean shape; if it cannot be made, the mesh of its base."""
-        shape = held(self._package.part(path).objects[item].shape, "the shape")
+        shape = not_none(self._package.part(path).objects[item].shape, "the shape")
         try:
             return self._evaluated(path, item)
         except FormatError as error:
@@ -156,7 +156,9 @@ class Objects:
         with self._errors_with_name(item):
             mesh = self._solid(path, here, 0)[0].normalized().to_mesh()
         is_nothing = len(mesh.faces) == 0
-        return RawMesh(mesh.vertices, mesh.faces, attributes=said_of(mesh), is_empty_set=is_nothing)
+        return RawMesh(
+            mesh.vertices, mesh.faces, attributes=attributes_or_none(mesh), is_empty_set=is_nothing
+        )
 
     def _solid(self, here: str, placed: PlacedObject, depth: int) -> tuple[Solid, int]:
         """Return an object as a transformed solid, and the count of triangles it is made of."""
@@ -178,7 +180,7 @@ class Objects:
         return solid.transform(matrix), triangles
 
     def _combined(self, path: str, item: str, depth: int) -> tuple[Solid, int]:
-        shape = held(self._package.part(path).objects[item].shape, "the shape")
+        shape = not_none(self._package.part(path).objects[item].shape, "the shape")
         with self._errors_with_name(item):
             parts = [self._solid(path, one, depth + 1) for one in (shape.base, *shape.operands)]
         triangles = sum(count for _, count in parts)
@@ -216,8 +218,8 @@ class Objects:
 
 def _moved(mesh: RawMesh, matrix: FloatArray) -> RawMesh:
     """Return a mesh transformed by a (4, 3) matrix; if it mirrors, triangles are reversed."""
-    faces, said = mesh.faces, mesh.attributes
+    faces, attributes = mesh.faces, mesh.attributes
     if np.linalg.det(matrix[:3]) < 0:
-        faces, said = faces[:, ::-1], said and said.reordered([2, 1, 0])
+        faces, attributes = faces[:, ::-1], attributes and attributes.reordered([2, 1, 0])
     vertices = mesh.vertices @ matrix[:3] + matrix[3]
-    return replace(mesh, vertices=vertices, faces=faces, attributes=said)
+    return replace(mesh, vertices=vertices, faces=faces, attributes=attributes)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..._types import FloatArray, IndexArray
 from ...attributes.colours import one_color, opaque
-from ...errors import FormatError, words_of
+from ...errors import FormatError, message_of
 from ..source import Source, quoted
 
 #: Millimetres in each unit that a model may name.
@@ -225,7 +225,7 @@ def parse_xml(
     except FormatError:
         raise
     except (LookupError, ValueError) as error:  # from decoding: `begin` turns its own into others
-        raise source.error(f"the XML cannot be decoded: {words_of(error)}.", line=1) from error
+        raise source.error(f"the XML cannot be decoded: {message_of(error)}.", line=1) from error
 
 
 def _listen(parser: expat.XMLParserType, name: str, metadata: Metadata) -> None:

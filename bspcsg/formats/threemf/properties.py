@@ -16,10 +16,10 @@ from ...attributes.attributes import Attributes, Kind, Values
 from ...attributes.colours import as_bytes, is_color, opaque
 from ...attributes.material import Material
 from ...errors import InvalidMeshError
-from ..said import chosen
+from ..storable_attributes import selected_attributes
 from .part import Base, ModelPart, Object
 from .textures import fit_for_parts, named_after
-from .write import called
+from .write import stored_name
 
 _Entry = TypeVar("_Entry")
 
@@ -28,14 +28,14 @@ _WHITE = (255, 255, 255, 255)
 
 
 def properties_of(
-    part: ModelPart, held: Object, faces: IndexArray, picture: Callable[[str], bytes]
+    part: ModelPart, source: Object, faces: IndexArray, picture: Callable[[str], bytes]
 ) -> Attributes | None:
     """Return the attributes of the triangles of an object, in file order.
 
     Parameters
     ----------
     part : ModelPart
-    held : Object
+    source : Object
         An object of `part`.
     faces : (m, 3) int64
     picture : callable
@@ -46,18 +46,18 @@ def properties_of(
     IndexError
         If a triangle names a property that does not exist.
     """
-    if held.usual is None and not held.properties:
+    if source.usual is None and not source.properties:
         return None
-    usual = None if held.usual is None else (held.usual[0], (held.usual[1],) * 3)
-    reading = _Reading(part, len(held.triangles))
-    for k in range(len(held.triangles)):
-        row = held.properties.get(k, usual)
+    usual = None if source.usual is None else (source.usual[0], (source.usual[1],) * 3)
+    reading = _PropertyCollector(part, len(source.triangles))
+    for k in range(len(source.triangles)):
+        row = source.properties.get(k, usual)
         if row is not None:
             reading.take(k, *row)
     return reading.attributes(faces, picture)
 
 
-class _Reading:
+class _PropertyCollector:
     """The properties of the triangles of one object, collected triangle by triangle."""
 
     def __init__(self, part: ModelPart, count: int) -> None:
@@ -85,10 +85,12 @@ class _Reading:
             self._materials[self._names[k]] = _plain(base[1])
         elif group in part.coordinates:
             texture, places = part.coordinates[group]
-            self._names[k] = self._textures.setdefault(texture, self._called(texture))
+            self._names[k] = self._textures.setdefault(
+                texture, self._distinct_texture_name(texture)
+            )
             self._places[k] = [_entry(places, number) for number in numbers]
 
-    def _called(self, texture: str) -> str:
+    def _distinct_texture_name(self, texture: str) -> str:
         """Return the material name of a texture, distinct from all other material names."""
         if texture not in self._part.textures:
             raise IndexError(f"it refers to texture {texture}, which does not exist")
@@ -147,26 +149,26 @@ def _entry(group: list[_Entry], number: int) -> _Entry:
     return group[number]
 
 
-def kept(said: Attributes) -> Attributes:
+def storable(attributes: Attributes) -> Attributes:
     """Return the attributes that 3MF can store: materials of faces or else colours, as bytes."""
-    said = said.without_empty_material()
-    names = said.face.get("material")
+    attributes = attributes.without_empty_material()
+    names = attributes.face.get("material")
     if names is not None and names.dtype.kind == "U" and names.ndim == 1:
-        return _kept_materials(said.with_materials_called(called))
+        return _storable_materials(attributes.with_renamed_materials(stored_name))
 
     def keep(kind: Kind, name: str, values: Values) -> Values | None:
         if not is_color(name, values, 2 if kind == "corner" else 1):
             return None
         return opaque(as_bytes(values))
 
-    return Attributes(said.faces, *_kinds(chosen(said, keep)))
+    return Attributes(attributes.faces, *_kinds(selected_attributes(attributes, keep)))
 
 
-def _kept_materials(said: Attributes) -> Attributes:
-    names = said.face["material"]
+def _storable_materials(attributes: Attributes) -> Attributes:
+    names = attributes.face["material"]
     used = [name for name in np.unique(names).tolist() if name]
-    given = {name: said.materials.get(name, Material()) for name in used}
-    is_pair = _has_places(said)
+    given = {name: attributes.materials.get(name, Material()) for name in used}
+    is_pair = _has_places(attributes)
     textured = [name for name, one in given.items() if one.texture is not None and is_pair]
     fit = fit_for_parts(textured, used)
     materials = {
@@ -174,23 +176,25 @@ def _kept_materials(said: Attributes) -> Attributes:
         for name, one in given.items()
     }
     if not fit:
-        return Attributes(said.faces, {}, {}, {"material": names}, materials)
+        return Attributes(attributes.faces, {}, {}, {"material": names}, materials)
     renamed = np.array([fit.get(name, name) for name in names.tolist()])
-    places = np.nan_to_num(said.at_corners("uv").astype(np.float64))
+    places = np.nan_to_num(attributes.at_corners("uv").astype(np.float64))
     places[~np.isin(names, textured)] = np.nan
-    return Attributes(said.faces, {}, {"uv": places}, {"material": renamed}, materials)
+    return Attributes(attributes.faces, {}, {"uv": places}, {"material": renamed}, materials)
 
 
-def _has_places(said: Attributes) -> bool:
+def _has_places(attributes: Attributes) -> bool:
     """Say whether vertices or corners have texture coordinates: pairs of floats named “uv”."""
-    if said.kind_of("uv") not in ("vertex", "corner"):
+    if attributes.kind_of("uv") not in ("vertex", "corner"):
         return False
-    places = said.at_corners("uv")
+    places = attributes.at_corners("uv")
     return places.dtype.kind == "f" and places.shape[2:] == (2,)
 
 
-def _kinds(said: Attributes) -> tuple[dict[str, Values], dict[str, Values], dict[str, Values]]:
-    return dict(said.vertex), dict(said.corner), dict(said.face)
+def _kinds(
+    attributes: Attributes,
+) -> tuple[dict[str, Values], dict[str, Values], dict[str, Values]]:
+    return dict(attributes.vertex), dict(attributes.corner), dict(attributes.face)
 
 
 def _in_bytes(material: Material) -> Material:

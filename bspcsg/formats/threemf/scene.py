@@ -17,9 +17,9 @@ from ..source import Source
 from .objects import Objects
 from .package import Package, opened
 from .part import INSTANCE, MILLIMETRES, ModelPart, Object, PlacedObject
-from .slicers import settled
+from .slicers import apply_slicer_settings
 from .textures import Resources
-from .write import beginning, called, hex_of, mesh_object, packed, properties
+from .write import beginning, hex_of, mesh_object, packed, properties, stored_name
 
 _IDENTITY = np.eye(4)
 
@@ -35,11 +35,11 @@ def read(source: Source) -> SceneNode:
     """
     with opened(source) as package:
         root = package.root()
-        settled(package, root)
-        return _Reading(package, root).tree()
+        apply_slicer_settings(package, root)
+        return _SceneReader(package, root).tree()
 
 
-class _Reading:
+class _SceneReader:
     """A reader of one package's nodes; an object that several nodes show becomes one mesh."""
 
     def __init__(self, package: Package, root: str) -> None:
@@ -88,14 +88,14 @@ class _Reading:
         return self._meshes[path, item]
 
 
-def _color(part: ModelPart, told: Object) -> tuple[float, ...] | None:
+def _color(part: ModelPart, source: Object) -> tuple[float, ...] | None:
     """Return the only colour of an object; None if it has none or its triangles have properties."""
-    if told.usual is None or told.properties or told.usual[0] not in part.bases:
+    if source.usual is None or source.properties or source.usual[0] not in part.bases:
         return None
-    group = part.bases[told.usual[0]]
-    if not 0 <= told.usual[1] < len(group):
+    group = part.bases[source.usual[0]]
+    if not 0 <= source.usual[1] < len(group):
         return None
-    return tuple(value / 255 for value in group[told.usual[1]][1])
+    return tuple(value / 255 for value in group[source.usual[1]][1])
 
 
 def encode(root: SceneNode) -> Iterator[bytes]:
@@ -106,7 +106,7 @@ def encode(root: SceneNode) -> Iterator[bytes]:
 
 
 def _model(root: SceneNode, resources: Resources) -> Iterator[str]:
-    writing = _Writing(root, resources)
+    writing = _ObjectWriter(root, resources)
     top = writing.object_of(root)
     meshes = (node.mesh for node in root.walk() if node.mesh is not None)
     yield beginning(mesh.attributes for mesh in meshes if mesh.attributes is not None)
@@ -116,7 +116,7 @@ def _model(root: SceneNode, resources: Resources) -> Iterator[str]:
     yield "</model>\n"
 
 
-class _Writing:
+class _ObjectWriter:
     """A writer of a package's objects as XML; each comes after the objects that it refers to."""
 
     def __init__(self, root: SceneNode, resources: Resources) -> None:
@@ -162,7 +162,7 @@ class _Writing:
 
     def _components(self, name: str, inner: list[tuple[int, FloatArray]], mark: str) -> int:
         number = self._resources.free()
-        named = f" name={quoteattr(called(name))}" if name else ""
+        named = f" name={quoteattr(stored_name(name))}" if name else ""
         marked = f' partnumber="{mark}"' if mark else ""
         self.lines.append(f'<object id="{number}" type="model"{named}{marked}><components>\n')
         self.lines += [

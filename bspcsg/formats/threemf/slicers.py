@@ -79,7 +79,7 @@ class _SlicerSettings:
             self.components.setdefault(self.current, {})[attributes["id"]] = kind
 
 
-def settled(package: Package, root: str) -> Slicing:
+def apply_slicer_settings(package: Package, root: str) -> Slicing:
     """Change the objects of a package according to the settings of slicers.
 
     Parts that are no material are removed; negative volumes become operands of a boolean shape.
@@ -140,10 +140,10 @@ def _divide(
         if kind:
             is_body[rows] = False
         if kind == NEGATIVE and len(rows):
-            negatives.append(_taken(whole, rows.tolist()))
+            negatives.append(_sub_object(whole, rows.tolist()))
     if is_body.all():
         return
-    body = _taken(whole, np.flatnonzero(is_body).tolist())
+    body = _sub_object(whole, np.flatnonzero(is_body).tolist())
     part.objects[item] = body
     if negatives and body.triangles:
         base = _added(slicing, root, part, item, body)
@@ -165,11 +165,13 @@ def _sort(slicing: Slicing, package: Package, root: str, item: str, kinds: dict[
         slicing.inner.add((one.path or root, one.item))
         negatives += [one] if kind == NEGATIVE else []
     if negatives:
-        kept = [_lessened(slicing, package, root, item, one, negatives) for one in kept]
+        kept = [
+            _with_negatives_subtracted(slicing, package, root, item, one, negatives) for one in kept
+        ]
     whole.components[:] = kept
 
 
-def _lessened(
+def _with_negatives_subtracted(
     slicing: Slicing,
     package: Package,
     root: str,
@@ -198,7 +200,7 @@ def _added(slicing: Slicing, root: str, part: ModelPart, item: str, one: Object)
     return PlacedObject("", f"{item}.{number}", np.eye(4, 3))
 
 
-def _taken(whole: Object, rows: list[int]) -> Object:
+def _sub_object(whole: Object, rows: list[int]) -> Object:
     """Return an object with the triangles `rows` of another, and the vertices that they use."""
     triangles = [whole.triangles[row] for row in rows]
     used = sorted({corner for triangle in triangles for corner in triangle})

@@ -20,8 +20,8 @@ from ...attributes.material import Material
 from ...errors import Finding
 from ...mesh.mesh import Mesh
 from ..blocks import listed
-from ..raw import RawMesh, compacted, empty_set, parts_of, says_empty_set
-from ..said import said_of
+from ..raw import RawMesh, compacted, empty_set, parts_of, represents_empty_set
+from ..storable_attributes import attributes_or_none
 from .textures import PackedPicture, Resources, content_types, relations
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
@@ -48,8 +48,8 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the bytes of a 3MF file; every coordinate reads back as the same double."""
-    said, resources = said_of(mesh), Resources(_GROUP)
-    for name, one in ({} if said is None else said.materials).items():
+    attributes, resources = attributes_or_none(mesh), Resources(_GROUP)
+    for name, one in ({} if attributes is None else attributes.materials).items():
         if one.texture is not None:
             resources.picture(name, one)
     yield packed(_model(mesh, resources), resources.pictures)
@@ -93,8 +93,8 @@ def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
             " out."
         )
         found.append(Finding("degenerate", "warning", message, (), count))
-    said = said_of(mesh)
-    materials = {} if said is None else said.materials
+    attributes = attributes_or_none(mesh)
+    materials = {} if attributes is None else attributes.materials
     behind = [one for one in materials.values() if one.texture and one.color != Material().color]
     if behind:
         message = (
@@ -112,13 +112,13 @@ def _repeats_corner(faces: IndexArray) -> "np.ndarray[tuple[int], np.dtype[np.bo
 
 
 def _model(mesh: Mesh | RawMesh, resources: Resources) -> Iterator[str]:
-    said = said_of(mesh)
-    yield beginning([] if said is None else [said])
-    if says_empty_set(mesh):
+    attributes = attributes_or_none(mesh)
+    yield beginning([] if attributes is None else [attributes])
+    if represents_empty_set(mesh):
         yield "<!-- bspcsg: the empty set -->\n"
     yield "<resources>\n"
     count = start = 0
-    groups, words = ([], None) if said is None else properties(said, resources)
+    groups, words = ([], None) if attributes is None else properties(attributes, resources)
     yield from groups
     for name, faces in parts_of(mesh):
         is_proper = ~_repeats_corner(faces)
@@ -137,9 +137,9 @@ def _model(mesh: Mesh | RawMesh, resources: Resources) -> Iterator[str]:
 _GROUP = 1 << 30
 
 
-def beginning(said: Iterable[Attributes]) -> str:
+def beginning(attributes: Iterable[Attributes]) -> str:
     """Return the first lines of a model part, with the namespaces that the attributes need."""
-    needs_more = any(not {"color", "uv"}.isdisjoint(one.names) for one in said)
+    needs_more = any(not {"color", "uv"}.isdisjoint(one.names) for one in attributes)
     more = f' xmlns:m="{_MATERIALS}"' if needs_more else ""
     return f'{_HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}"{more}>\n'
 
@@ -163,11 +163,11 @@ def hex_of(color: Sequence[float]) -> str:
     return hexadecimal(color).upper()
 
 
-def properties(said: Attributes, resources: Resources) -> tuple[list[str], Values]:
+def properties(attributes: Attributes, resources: Resources) -> tuple[list[str], Values]:
     """Return the XML of property groups, and the property attributes of each triangle's XML."""
-    if "material" in said.face:
-        return _materials(said, resources)
-    corners = said.at_corners("color").reshape(-1, 4)
+    if "material" in attributes.face:
+        return _materials(attributes, resources)
+    corners = attributes.at_corners("color").reshape(-1, 4)
     colors, numbers = np.unique(corners, axis=0, return_inverse=True)
     lines = [f'<m:color color="#{bytes(color).hex().upper()}"/>\n' for color in colors.tolist()]
     group = resources.free()
@@ -175,17 +175,17 @@ def properties(said: Attributes, resources: Resources) -> tuple[list[str], Value
     return [f'<m:colorgroup id="{group}">\n', *lines, "</m:colorgroup>\n"], words
 
 
-def _materials(said: Attributes, resources: Resources) -> tuple[list[str], Values]:
+def _materials(attributes: Attributes, resources: Resources) -> tuple[list[str], Values]:
     """Return the XML of base materials and textures, and the attributes of each triangle's XML."""
-    names = said.face["material"]
-    plain = {name: one for name, one in said.materials.items() if one.texture is None}
+    names = attributes.face["material"]
+    plain = {name: one for name, one in attributes.materials.items() if one.texture is None}
     lines, words = _bases(names, plain, resources)
-    for name, material in said.materials.items():
+    for name, material in attributes.materials.items():
         if name in plain:
             continue
         texture, told = resources.texture(resources.picture(name, material))
         group, rows = resources.free(), np.flatnonzero(names == name)
-        corners = said.at_corners("uv", rows).reshape(-1, 2)
+        corners = attributes.at_corners("uv", rows).reshape(-1, 2)
         places, numbers = np.unique(corners, axis=0, return_inverse=True)
         words[rows] = _corner_words(group, numbers)
         lines += [*told, f'<m:texture2dgroup id="{group}" texid="{texture}">\n']
@@ -202,7 +202,7 @@ def _bases(
         return [], np.full(len(names), "", dtype=object)
     group = resources.free()
     lines = [
-        f'<base name={quoteattr(called(name))} displaycolor="{hex_of(material.color)}"/>\n'
+        f'<base name={quoteattr(stored_name(name))} displaycolor="{hex_of(material.color)}"/>\n'
         for name, material in plain.items()
     ]
     told = {name: f' pid="{group}" p1="{k}"' for k, name in enumerate(plain)}
@@ -224,7 +224,7 @@ def _object(
     number: int, name: str, vertices: FloatArray, faces: IndexArray, words: Values | None = None
 ) -> Iterator[str]:
     used, corners = compacted(faces)
-    named = f" name={quoteattr(called(name))}" if name else ""
+    named = f" name={quoteattr(stored_name(name))}" if name else ""
     yield f'<object id="{number}" type="model"{named}><mesh><vertices>\n'
     for point in listed(vertices[used]):
         yield '<vertex x="{!r}" y="{!r}" z="{!r}"/>\n'.format(*point)
@@ -235,7 +235,7 @@ def _object(
     yield "</triangles></mesh></object>\n"
 
 
-def called(name: str) -> str:
+def stored_name(name: str) -> str:
     """Return a name in which U+FFFD replaces the characters that XML forbids."""
     return _FORBIDDEN.sub("\N{REPLACEMENT CHARACTER}", name)
 

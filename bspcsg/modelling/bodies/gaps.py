@@ -8,11 +8,11 @@ import numpy as np
 from ..._types import FloatArray, IndexArray
 from ...errors import LimitError, invalid_parameter
 from ...geometry.hyperplane import exact_number
-from ...mesh.box_tree import BoxTree, Nearness, squared_gaps
-from ...parameters import of_kind
-from ...solid.counting import uncounted
+from ...mesh.box_tree import BoxTree, NearPairSearch, squared_gaps
+from ...parameters import instance_of
+from ...solid.ledger import uncounted
 from ...solid.solid import Solid, surfaces_meet
-from .triangles import least_gaps, nearest_points
+from .triangle_distance import least_gaps, nearest_points
 
 #: The largest error of a computed distance, relative to the largest absolute coordinate. It allows
 #: for about 50 roundings of doubles.
@@ -34,7 +34,7 @@ _PAIRS_PER_BATCH = 1 << 16
 @uncounted
 def min_gap(solid: Solid, other: Solid) -> float:
     """Return the least distance between two solids; 0 if they touch, infinity if one is empty."""
-    if solid.is_empty or of_kind(Solid, other, "other").is_empty:
+    if solid.is_empty or instance_of(Solid, other, "other").is_empty:
         return math.inf
     found = _nearest(solid, other)
     return 0.0 if found is None else math.sqrt(found[0])
@@ -43,7 +43,7 @@ def min_gap(solid: Solid, other: Solid) -> float:
 @uncounted
 def closest_points(solid: Solid, other: Solid) -> tuple[FloatArray, FloatArray]:
     """Return the point of each solid that is nearest to the other solid, two (3,) arrays."""
-    if solid.is_empty or of_kind(Solid, other, "other").is_empty:
+    if solid.is_empty or instance_of(Solid, other, "other").is_empty:
         raise invalid_parameter(
             "One of the two solids is empty, so it has no closest point; pass solids that are not"
             " empty."
@@ -69,12 +69,14 @@ def _common_point(common: Solid) -> FloatArray:
 @uncounted
 def intersects(solid: Solid, other: Solid) -> bool:
     """Return True if two solids have a point in common, also if they only touch."""
-    if solid.is_empty or of_kind(Solid, other, "other").is_empty:
+    if solid.is_empty or instance_of(Solid, other, "other").is_empty:
         return False
-    return not _apart(solid, other) and (not solid.isdisjoint(other) or surfaces_meet(solid, other))
+    return not _are_boxes_apart(solid, other) and (
+        not solid.isdisjoint(other) or surfaces_meet(solid, other)
+    )
 
 
-def _apart(solid: Solid, other: Solid) -> bool:
+def _are_boxes_apart(solid: Solid, other: Solid) -> bool:
     """Return True if the bounding boxes of two solids lie apart by more than rounding errors."""
     (low, high), (low_b, high_b) = (_box(one) for one in (solid, other))
     doubt = _ROUNDING * max(float(np.abs(box).max()) for box in (low, high, low_b, high_b))
@@ -119,7 +121,7 @@ def _candidates(first: FloatArray, second: FloatArray) -> tuple[IndexArray, Inde
     """
     scale = max(float(np.abs(first).max()), float(np.abs(second).max()))
     trees = BoxTree.over(first), BoxTree.over(second)
-    search = Nearness(*trees, _bounded(_some_gap(first, second), scale))
+    search = NearPairSearch(*trees, _bounded(_gap_upper_bound(first, second), scale))
     boxes = [(corners.min(axis=1), corners.max(axis=1)) for corners in (first, second)]
     best, found = np.inf, []
     for leaves in search.leaves():
@@ -151,7 +153,7 @@ def _bounded(gap: float, scale: float) -> float:
     return (math.sqrt(gap) + _NOISE * scale) ** 2
 
 
-def _some_gap(first: FloatArray, second: FloatArray) -> float:
+def _gap_upper_bound(first: FloatArray, second: FloatArray) -> float:
     """Return an upper bound of the squared distance of two lists of triangles.
 
     It is the squared distance between a corner of one list and a nearby corner of the other.

@@ -12,8 +12,8 @@ from ...errors import InvalidMeshError, core_errors, invalid_parameter
 from ...geometry.arrays import axes_of
 from ...mesh import interop
 from ...parameters import shown
-from ...solid.counting import counted
 from ...solid.leaf import MeshLeaf
+from ...solid.ledger import counted
 from ...solid.solid import Solid, from_leaf, given_pitch, keeping_pitch
 from ..planar.hulls import hull_of_figures
 

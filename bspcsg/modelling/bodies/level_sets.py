@@ -12,7 +12,7 @@ from ...geometry.arrays import doubles
 from ...mesh.weld import welded
 from ...parameters import number, positive, shown
 from ...shapes.primitives import box
-from ...solid.counting import counted
+from ...solid.ledger import counted
 from ...solid.solid import Solid
 
 #: A function that maps (n, 3) float64 points to (n,) numbers.

@@ -4,7 +4,7 @@ from ..._types import Scalar
 from ...errors import invalid_parameter
 from ...parameters import number, positive, sides_around, truth_value
 from ...shapes.primitives import sphere
-from ...solid.counting import counted
+from ...solid.ledger import counted
 from ...solid.solid import Solid
 from .sums import minkowski
 

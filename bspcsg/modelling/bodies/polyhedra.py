@@ -9,16 +9,16 @@ import numpy as np
 
 from ..._types import FloatArray, IndexArray
 from ...mesh.mesh import surfaces_of
-from .shading import half_edges, unit
+from .shading import half_edges, unit_vectors
 
 #: An array of Python integers, which cannot overflow.
 LongArray: TypeAlias = np.ndarray[Any, np.dtype[np.object_]]
 
 #: An array of truth values.
-Marks: TypeAlias = np.ndarray[Any, np.dtype[np.bool_]]
+Mask: TypeAlias = np.ndarray[Any, np.dtype[np.bool_]]
 
 #: A bound of the rounding error of the dot product of two unit vectors in doubles.
-_DOUBT = 2e-15
+_SIGN_ERROR = 2e-15
 
 #: The number of signs of dot products in one batch. Each takes about 10 bytes, and 100 if doubles
 #: do not decide it.
@@ -29,25 +29,25 @@ _TETRAHEDRON = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
 
 
 class Vectors(NamedTuple):
-    """Vectors, (n, 3), as exact integers (`whole`) and as rounded unit vectors (`units`)."""
+    """Vectors, (n, 3), as exact integers (`exact`) and as rounded unit vectors (`units`)."""
 
-    whole: LongArray
+    exact: LongArray
     units: FloatArray
 
     def at(self, rows: IndexArray | slice) -> "Vectors":
         """Return the vectors at the given row numbers."""
-        return Vectors(self.whole[rows], self.units[rows])
+        return Vectors(self.exact[rows], self.units[rows])
 
 
 class Directions(NamedTuple):
-    """Distinct directions (`each`), and the row in them for each edge or face (`of`)."""
+    """Distinct directions (`distinct`), and the row in them for each edge or face (`rows`)."""
 
-    each: Vectors
-    of: IndexArray
+    distinct: Vectors
+    rows: IndexArray
 
     def at(self, things: IndexArray) -> Vectors:
         """Return the direction vectors of edges or faces, given their numbers."""
-        return self.each.at(self.of[things])
+        return self.distinct.at(self.rows[things])
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ class Polyhedron:
         return self.faces.ravel()[forth], self.faces.ravel()[back]
 
     @cached_property
-    def beside(self) -> tuple[IndexArray, IndexArray]:
+    def adjacent_faces(self) -> tuple[IndexArray, IndexArray]:
         """The faces on the left and right of each edge, seen from outside."""
         forth, back = self._sides
         return forth // 3, back // 3
@@ -83,14 +83,14 @@ class Polyhedron:
     @cached_property
     def sharp(self) -> IndexArray:
         """The edges between faces of different directions."""
-        left, right = self.beside
-        return np.flatnonzero(self.normals.of[left] != self.normals.of[right])
+        left, right = self.adjacent_faces
+        return np.flatnonzero(self.normals.rows[left] != self.normals.rows[right])
 
     @cached_property
     def convex(self) -> IndexArray:
         """The sharp edges at which the solid is convex, or whose two faces lie back to back."""
-        left, right = (self.normals.at(side[self.sharp]).whole for side in self.beside)
-        return self.sharp[_dots(_cross(left, right), self.along.at(self.sharp).whole) >= 0]
+        left, right = (self.normals.at(side[self.sharp]).exact for side in self.adjacent_faces)
+        return self.sharp[_dots(_cross(left, right), self.along.at(self.sharp).exact) >= 0]
 
     @cached_property
     def _leaving(self) -> tuple[IndexArray, IndexArray, IndexArray]:
@@ -106,9 +106,9 @@ class Polyhedron:
     def holds(self, point: IndexArray) -> bool:
         """Return True if a point is inside this convex polyhedron or on its surface."""
         away = (point - self.points[self.faces[:, 0]]).astype(object)
-        return bool((_dots(self.normals.each.whole[self.normals.of], away) <= 0).all())
+        return bool((_dots(self.normals.distinct.exact[self.normals.rows], away) <= 0).all())
 
-    def tops(self, rises: Marks) -> tuple[IndexArray, IndexArray]:
+    def tops(self, rises: Mask) -> tuple[IndexArray, IndexArray]:
         """Return all pairs of a corner and a direction in which none of the corner's edges rises.
 
         Parameters
@@ -191,12 +191,12 @@ def _without_short_edges(points: IndexArray, faces: IndexArray) -> IndexArray:
     return kept
 
 
-def _borrow_normals(normals: LongArray, faces: IndexArray) -> Marks:
+def _borrow_normals(normals: LongArray, faces: IndexArray) -> Mask:
     """Replace zero normals, in place, by normals of neighbouring faces.
 
     Return a mask, (n,) bool, that is True for each face with a nonzero normal.
     """
-    has_normal: Marks = (normals != 0).any(axis=1)
+    has_normal: Mask = (normals != 0).any(axis=1)
     if has_normal.all():
         return has_normal
     forth, back = half_edges(faces)
@@ -213,37 +213,39 @@ def _directions(vectors: LongArray) -> Directions:
     numbers: dict[tuple[int, ...], int] = {}
     of = [numbers.setdefault(tuple(row), len(numbers)) for row in shortest.tolist()]
     whole = np.array(list(numbers), dtype=object).reshape(-1, 3)
-    return Directions(Vectors(whole, unit(whole.astype(np.float64))), np.array(of, np.int64))
+    return Directions(
+        Vectors(whole, unit_vectors(whole.astype(np.float64))), np.array(of, np.int64)
+    )
 
 
-def rising(first: Vectors, second: Vectors) -> Marks:
+def positive_products(first: Vectors, second: Vectors) -> Mask:
     """Return an (m, n) mask that is True where the dot product of two vectors is positive.
 
     Rows are the `first`, columns the `second` vectors. The second ones are rotated by an
     infinitesimal angle, the same in all calls, so that no dot product is zero.
     """
     products = first.units @ second.units.T
-    signs: Marks = products > 0
-    row, column = np.nonzero(np.abs(products) <= _DOUBT)
+    signs: Mask = products > 0
+    row, column = np.nonzero(np.abs(products) <= _SIGN_ERROR)
     if len(row):
-        signs[row, column] = _is_positive(first.whole[row], second.whole[column])
+        signs[row, column] = _is_positive(first.exact[row], second.exact[column])
     return signs
 
 
-def rising_in_pairs(first: Vectors, second: Vectors) -> Marks:
+def positive_pair_products(first: Vectors, second: Vectors) -> Mask:
     """Return a mask, (n,) bool, that is True where first[k] and second[k] have a positive product.
 
     The second vectors are rotated by an infinitesimal angle, so that no dot product is zero.
     """
     products = np.einsum("ij,ij->i", first.units, second.units)
-    signs: Marks = products > 0
-    doubtful = np.flatnonzero(np.abs(products) <= _DOUBT)
+    signs: Mask = products > 0
+    doubtful = np.flatnonzero(np.abs(products) <= _SIGN_ERROR)
     if len(doubtful):
-        signs[doubtful] = _is_positive(first.whole[doubtful], second.whole[doubtful])
+        signs[doubtful] = _is_positive(first.exact[doubtful], second.exact[doubtful])
     return signs
 
 
-def _is_positive(first: LongArray, second: LongArray) -> Marks:
+def _is_positive(first: LongArray, second: LongArray) -> Mask:
     """Return where the dot product of first[k] and the slightly rotated second[k] is positive.
 
     The rotation is infinitesimal, and its axis has a large x, a smaller y and a much smaller z. So
@@ -252,7 +254,7 @@ def _is_positive(first: LongArray, second: LongArray) -> Marks:
     sign = _dots(first, second)
     for change in _cross(second, first).T:
         sign = np.where(sign == 0, change, sign)
-    positive: Marks = (sign > 0).astype(bool)
+    positive: Mask = (sign > 0).astype(bool)
     return positive
 
 

@@ -6,11 +6,11 @@ import numpy as np
 
 from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes
-from ...attributes.carrying import Surface, carried
+from ...attributes.transfer import Surface, inherited_attributes
 from ...errors import LimitError, invalid_parameter
 from ...mesh.mesh import Mesh
 from ...parameters import at_least, positive
-from ...solid.counting import counted
+from ...solid.ledger import counted
 from ...solid.solid import Solid, given_pitch, keeping_pitch, solid_with
 
 #: A factor by which rounding never lengthens an edge.
@@ -18,7 +18,7 @@ _ROUNDED = 1 + 2.0**-30
 
 #: A refined mesh: vertices, triangles, and for each triangle the row of the original triangle that
 #: contains it.
-Finer: TypeAlias = tuple[FloatArray, IndexArray, IndexArray]
+RefinedMesh: TypeAlias = tuple[FloatArray, IndexArray, IndexArray]
 
 #: The rows of original triangles, and for each row a part of that triangle, as three vertices.
 _Piece: TypeAlias = tuple[IndexArray, IndexArray]
@@ -41,12 +41,12 @@ def refine(solid: Solid, n: Any = None, edge_length: Any = None) -> Solid:
         return solid
     if n is not None:
         parts = at_least(1, n, "n")
-        refuse_many(len(mesh.faces) * parts**2)
+        refuse_many_triangles(len(mesh.faces) * parts**2)
         if parts == 1:
             return solid
-        finer = divided(mesh.vertices, mesh.faces, parts)
+        finer = with_triangles_divided(mesh.vertices, mesh.faces, parts)
     else:
-        finer = halved(mesh.vertices, mesh.faces, positive(edge_length, "edge_length"))
+        finer = with_edges_halved(mesh.vertices, mesh.faces, positive(edge_length, "edge_length"))
     said = None if mesh.carried is None else attributes_on(mesh, *finer)
     return keeping_pitch(solid_with(*finer[:2], said, pitch=solid.pitch), given_pitch(solid))
 
@@ -61,10 +61,10 @@ def attributes_on(
     source = np.stack([np.zeros_like(origins), origins], axis=1)
     surface = Surface(vertices, faces, source, np.zeros(len(faces), dtype=bool))
     known = mesh.vertices, mesh.vertices, mesh.faces, np.arange(len(mesh.faces))
-    return carried(surface, [mesh.attributes], lambda _: known)
+    return inherited_attributes(surface, [mesh.attributes], lambda _: known)
 
 
-def divided(vertices: FloatArray, faces: IndexArray, parts: int) -> Finer:
+def with_triangles_divided(vertices: FloatArray, faces: IndexArray, parts: int) -> RefinedMesh:
     """Divide each triangle into parts² similar triangles, whose corners are evenly spaced."""
     edges, sides = _edges(faces, len(vertices))
     shares = np.arange(1, parts) / parts
@@ -119,13 +119,13 @@ def _between(low: FloatArray, high: FloatArray, shares: FloatArray) -> FloatArra
     return points
 
 
-def halved(vertices: FloatArray, faces: IndexArray, longest: float) -> Finer:
+def with_edges_halved(vertices: FloatArray, faces: IndexArray, longest: float) -> RefinedMesh:
     """Return the mesh with edges halved until none is longer than `longest`.
 
     A triangle with one, two or three halved edges is divided into two, three or four, so no
     vertex lies inside an edge of another triangle.
     """
-    refuse_many(least_halved(vertices, faces, longest), "at least ")
+    refuse_many_triangles(least_halved(vertices, faces, longest), "at least ")
     origins = np.arange(len(faces))
     while True:
         edges, sides = _edges(faces, len(vertices))
@@ -136,7 +136,7 @@ def halved(vertices: FloatArray, faces: IndexArray, longest: float) -> Finer:
         long &= (middles != ends[:, 0]).any(axis=1) & (middles != ends[:, 1]).any(axis=1)
         if not long.any():
             return vertices, faces, origins
-        refuse_many(len(faces) + 2 * int(long.sum()), "at least ")
+        refuse_many_triangles(len(faces) + 2 * int(long.sum()), "at least ")
         number = np.full(len(edges), -1)
         number[long] = len(vertices) + np.arange(int(long.sum()))
         vertices = np.concatenate([vertices, middles[long]])
@@ -220,7 +220,7 @@ def _edges(faces: IndexArray, count: int) -> tuple[IndexArray, IndexArray]:
     return np.stack([keys // count, keys % count], axis=1), sides.reshape(-1, 3)
 
 
-def refuse_many(count: int, about: str = "") -> None:
+def refuse_many_triangles(count: int, about: str = "") -> None:
     """Raise `LimitError` if `count` triangles are too many; the message puts `about` before it."""
     if count > _MAX_TRIANGLES:
         amount = f"{about}{count:,}" if count < _MAX_TRIANGLES**2 else "far too many"

@@ -8,7 +8,7 @@ from ..._types import FloatArray, IndexArray, Scalar
 from ...errors import invalid_parameter
 from ...mesh.mesh import Mesh, surfaces_of
 from ...parameters import not_negative
-from ...solid.counting import uncounted
+from ...solid.ledger import uncounted
 from ...solid.solid import Solid
 
 #: A bound of the rounding error of the cosine of an angle between faces.
@@ -24,12 +24,12 @@ def normals(solid: Solid, sharp_angle: Scalar = 30.0) -> FloatArray:
     mesh = solid.normalized().to_mesh()
     if len(mesh.faces) == 0:
         return np.zeros((0, 3, 3))
-    own = unit(_areas(mesh))
+    own = unit_vectors(_areas(mesh))
     fans = _fans(mesh, own, limit)
     weighted = (own[:, None] * _angles(mesh)[..., None]).reshape(-1, 3)
     sums = np.zeros((int(fans.max()) + 1, 3))
     np.add.at(sums, fans, weighted)
-    found: FloatArray = unit(sums)[fans].reshape(-1, 3, 3)
+    found: FloatArray = unit_vectors(sums)[fans].reshape(-1, 3, 3)
     return found
 
 
@@ -43,7 +43,7 @@ def curvature(solid: Solid) -> tuple[FloatArray, FloatArray]:
     angles = np.bincount(mesh.faces.ravel(), _angles(mesh).ravel(), count)
     forth, back = half_edges(mesh.faces)
     start, end = mesh.faces.ravel()[forth], mesh.faces.ravel()[back]
-    own, along = unit(_areas(mesh)), mesh.vertices[end] - mesh.vertices[start]
+    own, along = unit_vectors(_areas(mesh)), mesh.vertices[end] - mesh.vertices[start]
     bends = _signed_bends(own[forth // 3], own[back // 3], along)
     quarters = np.linalg.norm(along, axis=1) * bends / 4
     bent = np.bincount(start, quarters, count) + np.bincount(end, quarters, count)
@@ -57,7 +57,7 @@ def _areas(mesh: Mesh) -> FloatArray:
     return np.cross(b - a, c - a)
 
 
-def unit(vectors: FloatArray) -> FloatArray:
+def unit_vectors(vectors: FloatArray) -> FloatArray:
     """Return vectors divided by their lengths; a zero vector stays zero."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
     units: FloatArray = np.divide(vectors, lengths, np.zeros_like(vectors), where=lengths > 0)

@@ -6,11 +6,11 @@ from ..._types import FloatArray, Scalar
 from ...attributes.attributes import NORMALS
 from ...mesh.mesh import Mesh
 from ...parameters import at_least
-from ...solid.counting import counted
-from ...solid.moving import AttributedMesh
+from ...solid.ledger import counted
+from ...solid.mesh_transform import AttributedMesh
 from ...solid.solid import Solid, given_pitch, solid_with
-from .refining import attributes_on, divided, refuse_many, small_triangles
-from .shading import half_edges, next_side, normals, unit
+from .refining import attributes_on, refuse_many_triangles, small_triangles, with_triangles_divided
+from .shading import half_edges, next_side, normals, unit_vectors
 from .warping import refuse_crossings
 
 #: The sine of the least angle between two normals at which the edge between them counts as sharp.
@@ -25,19 +25,19 @@ def smooth(solid: Solid, n: int, sharp_angle: Scalar = 60.0) -> Solid:
     mesh = solid.normalized().to_mesh()
     if len(mesh.faces) == 0:
         return solid
-    refuse_many(len(mesh.faces) * parts**2)
-    flat, faces, origins = divided(mesh.vertices, mesh.faces, parts)
+    refuse_many_triangles(len(mesh.faces) * parts**2)
+    flat, faces, origins = with_triangles_divided(mesh.vertices, mesh.faces, parts)
     vertices = flat.copy()
     weights = _weights(parts)
     # Neighbouring triangles compute shared points identically, so no gaps arise.
     patches = _points(mesh, _handles(mesh, at_corners), weights)
     vertices[faces.reshape(len(mesh.faces), -1)] = patches
     refuse_crossings(vertices, faces, "Bent smoothly")
-    said = None
+    attributes = None
     if mesh.carried is not None:
-        said = attributes_on(mesh, flat, faces, origins).without(NORMALS)
-    bent = AttributedMesh(vertices, faces, said)
-    return solid_with(vertices, faces, said, pitch=bent.held_pitch(given_pitch(solid)))
+        attributes = attributes_on(mesh, flat, faces, origins).without(NORMALS)
+    bent = AttributedMesh(vertices, faces, attributes)
+    return solid_with(vertices, faces, attributes, pitch=bent.pitch_in_range(given_pitch(solid)))
 
 
 def _handles(mesh: Mesh, at_corners: FloatArray) -> FloatArray:
@@ -62,9 +62,9 @@ def _along(ways: FloatArray, one: FloatArray, other: FloatArray) -> FloatArray:
 
     If the normals are nearly equal, the vectors become perpendicular to the mean normal only.
     """
-    mean, edge = unit(one + other), np.cross(one, other)
+    mean, edge = unit_vectors(one + other), np.cross(one, other)
     is_sharp = np.linalg.norm(edge, axis=1, keepdims=True) > _SHARP
-    along = unit(edge)
+    along = unit_vectors(edge)
     flat = ways - mean * np.einsum("ij,ij->i", ways, mean)[:, None]
     line = along * np.einsum("ij,ij->i", ways, along)[:, None]
     found: FloatArray = np.where(is_sharp, line, flat)

@@ -12,14 +12,14 @@ from ...errors import LimitError, UnboundedError, core_errors, invalid_parameter
 from ...geometry.hyperplane import Hyperplane
 from ...mesh.mesh import Mesh
 from ...operations import setops
-from ...solid.counting import counted
 from ...solid.leaf import PlaneLeaf
+from ...solid.ledger import counted
 from ...solid.solid import Solid, from_leaf
 from ..planar.sums import sum_of_regions
+from .convex_sums import sum_of_convex, swept
 from .hulls import hull_of
 from .polyhedra import LongArray, in_steps
 from .shading import half_edges, next_side
-from .sweeping import sum_of_convex, swept
 
 #: The corners of each of several convex solids, as arrays of shape (n, 3).
 ConvexParts: TypeAlias = list[FloatArray]

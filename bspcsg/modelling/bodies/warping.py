@@ -11,8 +11,8 @@ from ...errors import InvalidMeshError, invalid_parameter
 from ...mesh.crossing import Crossings, crossings
 from ...mesh.interop import points_array
 from ...parameters import shown, winding_rule
-from ...solid.counting import counted
-from ...solid.moving import AttributedMesh
+from ...solid.ledger import counted
+from ...solid.mesh_transform import AttributedMesh
 from ...solid.solid import Solid, given_pitch, solid_with
 
 #: A function that maps all corners, (n, 3) float64, to points of the same shape.
@@ -39,7 +39,7 @@ def warp(solid: Solid, f: PointMap, winding: WindingRule | None = None) -> Solid
     moved = AttributedMesh(_moved(f, mesh.vertices), mesh.faces, said)
     if rule is None:
         moved = _uncrossed(moved, mesh.vertices, given_pitch(solid))
-    pitch = moved.held_pitch(given_pitch(solid))
+    pitch = moved.pitch_in_range(given_pitch(solid))
     return solid_with(
         moved.vertices, moved.faces, moved.attributes, pitch=pitch, winding=rule or "nonzero"
     )
@@ -50,13 +50,13 @@ def _uncrossed(moved: AttributedMesh, before: FloatArray, given: int | None) -> 
 
     Raise `InvalidMeshError` for faces that cross by more than rounding.
     """
-    held = moved.held_pitch(given)
+    held = moved.pitch_in_range(given)
     pitch = moved.suited_pitch() if held is None else held
     found = crossings(moved.vertices, moved.faces, _farthest(moved.vertices, pitch))
     if not len(found.pairs):
         return moved
     mended = None if found.are_deep or pitch is None else moved.mended(before, pitch)
-    if mended is None or len(mended.left):
+    if mended is None or len(mended.crossing):
         raise _refusal(found, moved.vertices, moved.faces, "After f moved the corners")
     return mended.mesh
 

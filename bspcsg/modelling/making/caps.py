@@ -1,7 +1,7 @@
 """Blends along all edges of a face, if some of the edges shrink to nothing inwards.
 
 The material that remains below such a face is a roof over its outline, whose sides meet above the
-straight skeleton. For a fillet, each chord of the profile has a roof of its own slope.
+straight graph. For a fillet, each chord of the profile has a roof of its own slope.
 """
 
 from collections.abc import Set
@@ -15,40 +15,40 @@ from ...errors import LimitError
 from ...operations.setops import union
 from ...solid.solid import Solid
 from ..planar.offsetting import offset_region
+from .blend_fit import face_loops, no_room
+from .plane_faces import FaceGraph
 from .roofs import roof
-from .rooms import face_loops, no_room
-from .skeleton import Skeleton
 
 #: Walls count as perpendicular to a face if their angle differs from 90 by less, in degrees.
 _SQUARE = 1e-4
 
 #: Lattice steps by which the removed solid extends past the face and its walls.
-_BEYOND = 20
+_EXTENSION_STEPS = 20
 
 #: The share of a blend's size by which rounding may lower a roof.
 _SAME = 1e-6
 
 
-def is_cap(skeleton: Skeleton, face: int, chosen: Set[int]) -> bool:
+def is_cap(graph: FaceGraph, face: int, chosen: Set[int]) -> bool:
     """Return True if a face can be blended as a whole.
 
     All its edges are selected, all are convex or all concave, no other edge at its corners is
     selected, and the adjacent faces are perpendicular to it.
     """
-    own = np.flatnonzero((skeleton.sides == face).any(axis=1))
-    if not set(own.tolist()) <= chosen or len(set(skeleton.is_convex[own].tolist())) > 1:
+    own = np.flatnonzero((graph.sides == face).any(axis=1))
+    if not set(own.tolist()) <= chosen or len(set(graph.is_convex[own].tolist())) > 1:
         return False
-    there = {edge for end in skeleton.ends[own].ravel().tolist() for edge in skeleton.edges_at(end)}
-    bends = np.abs(180 - skeleton.angles[own])
+    there = {edge for end in graph.ends[own].ravel().tolist() for edge in graph.edges_at(end)}
+    bends = np.abs(180 - graph.angles[own])
     return len(there & chosen) == len(own) and bool((np.abs(bends - 90) < _SQUARE).all())
 
 
-def cap_tool(skeleton: Skeleton, face: int, sign: int, profile: FloatArray, pitch: int) -> Solid:
+def cap_tool(graph: FaceGraph, face: int, sign: int, profile: FloatArray, pitch: int) -> Solid:
     """Return the solid to remove below a face, or to add above it if the sign is -1.
 
     Parameters
     ----------
-    skeleton : Skeleton
+    graph : FaceGraph
     face, sign : int
     profile : (k, 2) float64
         The section of the blend from a wall to the face: distance from the wall, and height above
@@ -61,17 +61,17 @@ def cap_tool(skeleton: Skeleton, face: int, sign: int, profile: FloatArray, pitc
     InvalidParameterError
         If the blend would consume a part of the face, or no roof over the face can be computed.
     """
-    frame = _frame(skeleton.normals[face] * sign)
-    loops = [points @ frame.T for points in face_loops(skeleton, face)]
+    frame = _frame(graph.normals[face] * sign)
+    loops = [points @ frame.T for points in face_loops(graph, face)]
     level = float(np.concatenate(loops)[:, 2].mean())
     figure = Region([points[:: int(sign), :2] for points in loops], pitch=pitch)
-    beyond, size = _BEYOND * 10.0**pitch, float(profile[-1, 1])
+    beyond, size = _EXTENSION_STEPS * 10.0**pitch, float(profile[-1, 1])
     roofs = []
     for part in figure.components:
         above = _roof_or_none(part)
         if above is None or above.vertices[:, 2].max() < (1 - _SAME) * profile[-1, 0]:
             place = np.append(part.to_polygons()[0][0], level) @ frame
-            raise no_room(skeleton, place, [face])
+            raise no_room(graph, place, [face])
         roofs.append(above)
     # Evaluate the union, so that it is transformed as one mesh. Extend it downwards, so that its
     # floor is not in the plane of the blocks' floors.

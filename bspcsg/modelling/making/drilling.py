@@ -13,12 +13,18 @@ from ..._types import FloatArray, Scalar
 from ...errors import invalid_parameter
 from ...geometry.arrays import doubles
 from ...operations.setops import union
-from ...parameters import number, positive, radius, refuse_many_corners, sides_around
+from ...parameters import (
+    number,
+    positive,
+    radius_or_half_diameter,
+    refuse_many_corners,
+    sides_around,
+)
 from ...shapes.arrays import from_arrays
 from ...shapes.sweep import surface_of_revolution
 from ...solid.solid import Solid
 from .faces import FaceSelection, flat_face
-from .skeleton import Skeleton, flatness, skeleton_of
+from .plane_faces import FaceGraph, face_graph_of, flatness
 
 #: A hole begins above its face, so that no thin skin remains: by this many times the rounding error
 #: of corners or the lattice step, whichever is larger.
@@ -81,7 +87,7 @@ def countersink(
 
 
 def _bore(r: Scalar | None, d: Scalar | None) -> float:
-    return positive(radius(r, d, "A hole"), "r")
+    return positive(radius_or_half_diameter(r, d, "A hole"), "r")
 
 
 def _head(r: Scalar | None, d: Scalar | None, bore: float) -> float:
@@ -113,28 +119,30 @@ def _drilled(
     """
     around = sides_around(3, segments, "segments")
     normal, offset = flat_face(face)
-    skeleton = skeleton_of(solid.normalized().to_mesh())
-    points = _points_on(skeleton, normal, offset, face.middle if at is None else at)
+    graph = face_graph_of(solid.normalized().to_mesh())
+    points = _points_on(graph, normal, offset, face.middle if at is None else at)
     refuse_many_corners(len(points) * around * (len(head) + 2), "These holes")
     deepest = max((below for _, below in head), default=0.0)
-    bottom = _bottom(skeleton, normal, points, bore) if depth is None else positive(depth, "depth")
+    bottom = (
+        _through_depth(graph, normal, points, bore) if depth is None else positive(depth, "depth")
+    )
     if bottom <= deepest:
         raise invalid_parameter(
             f"depth must be greater than the depth of the head, {deepest:g}, but is {bottom:g}."
         )
     wide = head[-1][0] if head else bore
-    before = _BEFORE * max(flatness(skeleton.vertices), 10.0**solid.pitch)
+    before = _BEFORE * max(flatness(graph.vertices), 10.0**solid.pitch)
     profile = [(0, bottom), (bore, bottom), *head, (wide, -before), (0, -before)]
     tools = _turned(np.array(profile) * (1, -1), around, normal, points)
     return solid - union(tools) if tools else solid
 
 
-def _bottom(skeleton: Skeleton, normal: FloatArray, points: FloatArray, bore: float) -> float:
+def _through_depth(graph: FaceGraph, normal: FloatArray, points: FloatArray, bore: float) -> float:
     """Return a depth below the face at which a hole has passed the whole solid."""
-    return float((points @ normal).max(initial=0) - (skeleton.vertices @ normal).min()) + bore
+    return float((points @ normal).max(initial=0) - (graph.vertices @ normal).min()) + bore
 
 
-def _points_on(skeleton: Skeleton, normal: FloatArray, offset: float, at: Any) -> FloatArray:
+def _points_on(graph: FaceGraph, normal: FloatArray, offset: float, at: Any) -> FloatArray:
     """Return the given points as an (n, 3) array.
 
     Raise `InvalidParameterError` for a point that is not on a face of the solid in the plane.
@@ -147,12 +155,12 @@ def _points_on(skeleton: Skeleton, normal: FloatArray, offset: float, at: Any) -
         return np.zeros((0, 3))
     if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
         raise refusal
-    near = flatness(skeleton.vertices)
-    corners = skeleton.vertices[skeleton.triangles]
+    near = flatness(graph.vertices)
+    corners = graph.vertices[graph.triangles]
     is_level = (np.abs(corners @ normal - offset) <= near).all(axis=1)
-    level = corners[is_level & (skeleton.areas @ normal > 0)]
+    level = corners[is_level & (graph.areas @ normal > 0)]
     for point in points:
-        if abs(float(point @ normal) - offset) > near or not _hold(level, normal, point, near):
+        if abs(float(point @ normal) - offset) > near or not _contain(level, normal, point, near):
             place = ", ".join(f"{value:.6g}" for value in point)
             raise invalid_parameter(
                 f"The solid has no face in the plane of the hole at the point ({place}); choose a"
@@ -161,7 +169,7 @@ def _points_on(skeleton: Skeleton, normal: FloatArray, offset: float, at: Any) -
     return points
 
 
-def _hold(triangles: FloatArray, normal: FloatArray, point: FloatArray, near: float) -> bool:
+def _contain(triangles: FloatArray, normal: FloatArray, point: FloatArray, near: float) -> bool:
     """Return True if one of several coplanar triangles contains a point, up to rounding."""
     along = np.roll(triangles, -1, axis=1) - triangles
     left = np.cross(along, point - triangles) @ normal

@@ -6,12 +6,12 @@ import numpy as np
 
 from ..._types import BoolArray, FloatArray, IndexArray, Scalar
 from ...errors import invalid_parameter
-from ...owned import owning
+from ...method_ownership import with_own_methods
 from ...parameters import truth_value
-from ...solid.counting import uncounted
+from ...solid.ledger import uncounted
 from ...solid.solid import Solid
+from .plane_faces import FaceGraph, face_graph_of, groups, members
 from .selection import Selection, as_bend, bends
-from .skeleton import Skeleton, groups, members, skeleton_of
 
 #: The largest ratio of the widths of two neighbouring facets that count as one round face. A plane
 #: face beside a round edge is usually wider than that.
@@ -21,7 +21,7 @@ _AS_WIDE = 2.0
 _CORNERS_PER_BATCH = 1_000_000
 
 
-@owning
+@with_own_methods
 class FaceSelection(Selection):
     """A selection of a solid's faces: flat faces, and round faces that consist of flat facets.
 
@@ -30,12 +30,12 @@ class FaceSelection(Selection):
 
     Parameters
     ----------
-    skeleton : Skeleton
+    graph : FaceGraph
         The plane faces and edges of the solid.
     numbers : (n,) int64
         The numbers of the selected faces.
     surface : (f,) int64
-        The number of the face that contains each plane face of the skeleton.
+        The number of the face that contains each plane face of the face graph.
 
     Examples
     --------
@@ -48,24 +48,24 @@ class FaceSelection(Selection):
     _things: ClassVar[str] = "faces"
     _sizes: ClassVar[tuple[str, ...]] = ("area",)
 
-    def __init__(self, skeleton: Skeleton, numbers: IndexArray, surface: IndexArray) -> None:
-        super().__init__(skeleton, numbers)
+    def __init__(self, graph: FaceGraph, numbers: IndexArray, surface: IndexArray) -> None:
+        super().__init__(graph, numbers)
         self._surface = surface
 
     def _with(self, numbers: IndexArray) -> Self:
-        return type(self)(self._skeleton, numbers, self._surface)
+        return type(self)(self._graph, numbers, self._surface)
 
     @property
     def area(self) -> FloatArray:
         """The area of each face, (n,) float64, in model units squared."""
-        return np.asarray(self._sums(np.linalg.norm(self._skeleton.areas, axis=1)))
+        return np.asarray(self._sums(np.linalg.norm(self._graph.areas, axis=1)))
 
     @property
     def middle(self) -> FloatArray:
         """The centroid of each face, (n, 3), in model units; not on the face if that is round."""
-        skeleton = self._skeleton
-        weights = np.linalg.norm(skeleton.areas, axis=1)
-        middles = skeleton.vertices[skeleton.triangles].mean(axis=1)
+        graph = self._graph
+        weights = np.linalg.norm(graph.areas, axis=1)
+        middles = graph.vertices[graph.triangles].mean(axis=1)
         moments = [self._sums(weights * middles[:, axis]) for axis in range(3)]
         return np.column_stack(moments) / self.area[:, None]
 
@@ -80,7 +80,7 @@ class FaceSelection(Selection):
         """The outward unit normal of each flat face, (n, 3) float64; zero for a round face."""
         first = np.zeros(self._total(), dtype=np.int64)
         first[self._surface] = np.arange(len(self._surface))
-        normals = self._skeleton.normals[first[self._numbers]]
+        normals = self._graph.normals[first[self._numbers]]
         return np.where(self.is_flat[:, None], normals, 0.0)
 
     @property
@@ -90,7 +90,7 @@ class FaceSelection(Selection):
 
     def _sums(self, values: FloatArray) -> FloatArray:
         """Return the sum of the triangles' values over each selected face, (n,)."""
-        of_triangle = self._surface[self._skeleton.face]
+        of_triangle = self._surface[self._graph.face]
         sums = np.bincount(of_triangle, values, minlength=self._total())
         return np.asarray(sums[self._numbers], dtype=np.float64)
 
@@ -101,8 +101,8 @@ class FaceSelection(Selection):
         return np.flatnonzero(owners >= 0), owners[owners >= 0]
 
     def _between(self, heights: FloatArray) -> tuple[FloatArray, FloatArray]:
-        corners = heights[self._skeleton.triangles]
-        of_triangle = self._surface[self._skeleton.face]
+        corners = heights[self._graph.triangles]
+        of_triangle = self._surface[self._graph.face]
         low, high = np.full(self._total(), np.inf), np.full(self._total(), -np.inf)
         np.minimum.at(low, of_triangle, corners.min(axis=1))
         np.maximum.at(high, of_triangle, corners.max(axis=1))
@@ -119,9 +119,9 @@ class FaceSelection(Selection):
 def faces_of(solid: Solid, *, all: bool, angle: Scalar) -> FaceSelection:  # noqa: A002
     """Return the selection of the faces of a solid; see `Solid.faces`."""
     least = as_bend(angle, truth_value(all, "all"))
-    skeleton = skeleton_of(solid.normalized().to_mesh())
-    surface = _surfaces(skeleton, least)
-    return FaceSelection(skeleton, np.arange(int(surface.max(initial=-1)) + 1), surface)
+    graph = face_graph_of(solid.normalized().to_mesh())
+    surface = _surfaces(graph, least)
+    return FaceSelection(graph, np.arange(int(surface.max(initial=-1)) + 1), surface)
 
 
 def flat_face(faces: FaceSelection) -> tuple[FloatArray, float]:
@@ -144,28 +144,28 @@ def flat_face(faces: FaceSelection) -> tuple[FloatArray, float]:
     return normal, float(faces.middle[0] @ normal)
 
 
-def _surfaces(skeleton: Skeleton, least: float) -> IndexArray:
-    """Return the number of the flat or round face that contains each plane face of a skeleton.
+def _surfaces(graph: FaceGraph, least: float) -> IndexArray:
+    """Return the number of the flat or round face that contains each plane face of a face graph.
 
     Plane faces belong together if their widths are similar and their angle is below `least`.
     """
-    smooth = np.flatnonzero(~bends(skeleton, least))
-    wide = [_widths(skeleton, smooth, side) for side in (0, 1)]
+    smooth = np.flatnonzero(~bends(graph, least))
+    wide = [_widths(graph, smooth, side) for side in (0, 1)]
     alike = np.maximum(*wide) <= _AS_WIDE * np.minimum(*wide)
-    return groups(skeleton.sides[smooth[alike]], len(skeleton.normals))
+    return groups(graph.sides[smooth[alike]], len(graph.normals))
 
 
-def _widths(skeleton: Skeleton, edges: IndexArray, side: int) -> FloatArray:
+def _widths(graph: FaceGraph, edges: IndexArray, side: int) -> FloatArray:
     """Return how far the plane face on side 0 or 1 of each edge extends from the edge, (n,)."""
     widths = np.zeros(len(edges))
-    counts = np.bincount(skeleton.face, minlength=len(skeleton.normals))
-    sizes = counts[skeleton.sides[edges, side]]
+    counts = np.bincount(graph.face, minlength=len(graph.normals))
+    sizes = counts[graph.sides[edges, side]]
     parts = np.cumsum(sizes) // _CORNERS_PER_BATCH
     for part in np.split(np.arange(len(edges)), np.flatnonzero(np.diff(parts)) + 1):
         own = edges[part]
-        triangles, pair = members(skeleton.face, skeleton.sides[own, side])
-        starts, inward = skeleton.vertices[skeleton.ends[own, 0]], skeleton.inward[own, side]
-        corners = skeleton.vertices[skeleton.triangles[triangles]]
+        triangles, pair = members(graph.face, graph.sides[own, side])
+        starts, inward = graph.vertices[graph.ends[own, 0]], graph.inward[own, side]
+        corners = graph.vertices[graph.triangles[triangles]]
         away = np.einsum("ijk,ik->ij", corners - starts[pair, None], inward[pair])
         np.maximum.at(widths, part[pair], away.max(axis=1))
     return widths

@@ -9,10 +9,10 @@ from ..._types import FloatArray, IndexArray
 from ...errors import invalid_parameter
 from ...geometry.polygon import directed_edges
 from ...parameters import refuse_many_corners, truth_value
-from ...solid.counting import counted
+from ...solid.ledger import counted
 from ...solid.solid import Solid
 from .rings import solid_of, walls
-from .sections import Section, aligned, section_of, shortest_band
+from .sections import Section, aligned_section, section_of, shortest_band
 
 
 @counted
@@ -65,7 +65,7 @@ def loft(profiles: Sequence[Any], *, closed: bool = False) -> Solid:
         )
     _refuse_inner_tips(sections, is_ring)
     for k in range(1, len(sections)):
-        sections[k] = aligned(sections[k - 1], sections[k], k)
+        sections[k] = aligned_section(sections[k - 1], sections[k], k)
     rings = [np.concatenate(section.loops) for section in sections]
     starts = np.cumsum([0, *map(len, rings)])
     refuse_many_corners(int(starts[-1]), "This loft")
@@ -74,7 +74,7 @@ def loft(profiles: Sequence[Any], *, closed: bool = False) -> Solid:
         for k in range(len(sections) - 1)
     ]
     if is_ring:
-        first = aligned(sections[-1], sections[0], 0)
+        first = aligned_section(sections[-1], sections[0], 0)
         rings.append(np.concatenate(first.loops))
         faces.append(_between(sections[-1], first, starts[-2], starts[-1]))
     else:

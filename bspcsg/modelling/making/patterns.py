@@ -13,7 +13,7 @@ from ...geometry.hyperplane import exact_number
 from ...geometry.transform import vector3
 from ...operations.setops import union
 from ...parameters import at_least, number, shown, truth_value
-from ...solid.counting import counted
+from ...solid.ledger import counted
 from ...solid.solid import Solid
 
 #: The largest number of copies in one pattern. Each takes about 2 kB, as a node of the expression
@@ -140,7 +140,7 @@ def grid(shape: _Shape, counts: Sequence[int], steps: Vector, *, center: bool = 
     for axis, (amount, length) in enumerate(zip(copies, lengths, strict=True)):
         step = [0.0] * axes
         step[axis] = number(length, "steps")
-        shift = _times(step, Fraction(1 - amount, 2)) if is_central else [0.0] * axes
+        shift = _scaled_vector(step, Fraction(1 - amount, 2)) if is_central else [0.0] * axes
         result = _row(result.translate(shift), amount, step)
     return result
 
@@ -164,11 +164,11 @@ def _entries(given: Any) -> list[Any]:
 
 def _row(shape: _Shape, copies: int, step: Vector) -> _Shape:
     stride = _vector(shape, step, "step")
-    united: _Shape = _united([shape.translate(_times(stride, k)) for k in range(copies)])
+    united: _Shape = _united([shape.translate(_scaled_vector(stride, k)) for k in range(copies)])
     return united
 
 
-def _times(step: Sequence[float], factor: int | Fraction) -> list[float]:
+def _scaled_vector(step: Sequence[float], factor: int | Fraction) -> list[float]:
     """Return a vector times a factor, computed exactly from its decimals and then rounded once."""
     try:
         return [float(exact_number(entry) * factor) for entry in step]
@@ -185,10 +185,10 @@ def _turned(shape: Any, angle: float, axis: str | Vector) -> Any:
 
 
 def _united(shapes: Sequence[Any]) -> Any:
-    return union(*shapes) if isinstance(shapes[0], Solid) else _halves(shapes)
+    return union(*shapes) if isinstance(shapes[0], Solid) else _united_in_pairs(shapes)
 
 
-def _halves(regions: Sequence[Any]) -> Any:
+def _united_in_pairs(regions: Sequence[Any]) -> Any:
     """Return the union of regions: pairs of neighbours are united, then pairs of the results."""
     while len(regions) > 1:
         pairs = zip(regions[::2], regions[1::2], strict=False)

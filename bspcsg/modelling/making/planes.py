@@ -10,11 +10,11 @@ from ...geometry.hyperplane import Hyperplane, exact_number
 from ...geometry.transform import whole_steps
 from ...solid.leaf import PlaneLeaf
 from ...solid.solid import Solid, from_leaf
-from .skeleton import Skeleton
+from .plane_faces import FaceGraph
 
 #: Lattice steps by which a half-space extends past a face whose plane is not exact. Rounding moves
 #: the face's corners by less than one step.
-_BEYOND = 20
+_EXTENSION_STEPS = 20
 
 
 class Planes:
@@ -22,13 +22,13 @@ class Planes:
 
     Parameters
     ----------
-    skeleton : Skeleton
+    graph : FaceGraph
     pitch : int
         The pitch of the solid.
     """
 
-    def __init__(self, skeleton: Skeleton, pitch: int) -> None:
-        self._skeleton = skeleton
+    def __init__(self, graph: FaceGraph, pitch: int) -> None:
+        self._graph = graph
         self._pitch = pitch
         self._made: dict[tuple[int, int, bool], Solid] = {}
         self._exact: dict[int, Hyperplane | None] = {}
@@ -62,14 +62,16 @@ class Planes:
         if exact is not None:
             normal = [Fraction(sign * entry) for entry in exact.normal]
             return Hyperplane.of(normal, sign * exact.offset)
-        unit = sign * self._skeleton.normals[face]
+        unit = sign * self._graph.normals[face]
         products = self._corners(face) @ unit
-        offset = products.max() + _BEYOND * 10.0**self._pitch if beyond else products.mean()
+        offset = (
+            products.max() + _EXTENSION_STEPS * 10.0**self._pitch if beyond else products.mean()
+        )
         return Hyperplane.from_numbers(unit.tolist(), float(offset))
 
     def _corners(self, face: int) -> FloatArray:
-        own = np.unique(self._skeleton.triangles[self._skeleton.face == face])
-        corners: FloatArray = self._skeleton.vertices[own]
+        own = np.unique(self._graph.triangles[self._graph.face == face])
+        corners: FloatArray = self._graph.vertices[own]
         return corners
 
     def _lattice_plane(self, face: int) -> Hyperplane | None:
@@ -77,7 +79,7 @@ class Planes:
         corners = self._corners(face)
         for axis in range(3):
             if np.ptp(corners[:, axis]) == 0:
-                side = int(np.sign(self._skeleton.normals[face, axis]))
+                side = int(np.sign(self._graph.normals[face, axis]))
                 unit = [Fraction(side * (k == axis)) for k in range(3)]
                 return Hyperplane.of(unit, side * exact_number(corners[0, axis]))
         steps = [self._steps(corner) for corner in corners]
@@ -96,11 +98,11 @@ class Planes:
 
         None means that there is no such triangle, or that its area is zero.
         """
-        triangles = self._skeleton.triangles[self._skeleton.face == face]
-        a, b, c = (self._skeleton.vertices[triangles[:, k]] for k in range(3))
+        triangles = self._graph.triangles[self._graph.face == face]
+        a, b, c = (self._graph.vertices[triangles[:, k]] for k in range(3))
         order = np.argsort(-np.linalg.norm(np.cross(b - a, c - a), axis=1), kind="stable")
         for triangle in triangles[order].tolist():
-            corners = [self._steps(self._skeleton.vertices[vertex]) for vertex in triangle]
+            corners = [self._steps(self._graph.vertices[vertex]) for vertex in triangle]
             if corners[0] is None or corners[1] is None or corners[2] is None:
                 continue
             one, other = (

@@ -11,7 +11,7 @@ from ...errors import LimitError
 from ...geometry.polygon import signed_area, triangulate
 from ...operations import setops
 from ...solid.solid import Solid
-from .fronts import Front, Meeting, Piece, Walls, meeting
+from .shrinking_outlines import Contacts, ShrinkingOutlines, SidePart, Walls, contacts_at
 
 #: The largest number of corners of one connected part of a figure. The time grows with its cube.
 _MAX_CORNERS = 1000
@@ -49,7 +49,7 @@ def roof(figure: Region) -> Solid:
 def is_convex(figure: Region) -> bool:
     """Return True if a figure has no reflex corner, and hence no hole."""
     for loop in figure.to_polygons():
-        front = _first_front([loop])
+        front = _first_outlines([loop])
         if front.walls.are_reflex(front.before, front.after).any():
             return False
     return True
@@ -57,7 +57,7 @@ def is_convex(figure: Region) -> bool:
 
 def corner_speeds(figure: Region) -> FloatArray:
     """Return the displacement of each corner if all sides move inwards by 1, (n, 2)."""
-    return np.concatenate([_first_front([loop]).speeds() for loop in figure.to_polygons()])
+    return np.concatenate([_first_outlines([loop]).speeds() for loop in figure.to_polygons()])
 
 
 def _roof_of_part(loops: Sequence[FloatArray]) -> Solid:
@@ -68,12 +68,12 @@ def _roof_of_part(loops: Sequence[FloatArray]) -> Solid:
             " simplify its outline."
         )
         raise LimitError(message, "too_large")
-    building = _Building(loops)
+    building = _RoofBuilder(loops)
     building.raise_sides()
     return building.solid(sum(map(signed_area, loops)))
 
 
-def _first_front(loops: Sequence[FloatArray]) -> Front:
+def _first_outlines(loops: Sequence[FloatArray]) -> ShrinkingOutlines:
     points = np.concatenate(loops)
     sides = np.concatenate([np.roll(loop, -1, axis=0) - loop for loop in loops])
     directions = sides / np.linalg.norm(sides, axis=1)[:, None]
@@ -83,20 +83,20 @@ def _first_front(loops: Sequence[FloatArray]) -> Front:
     before = np.concatenate([np.roll(one, 1) for one in numbers])
     following = np.concatenate([np.roll(one, -1) for one in numbers])
     own = np.arange(len(points))
-    return Front(own, points, np.zeros(len(points)), before, own, following, walls)
+    return ShrinkingOutlines(own, points, np.zeros(len(points)), before, own, following, walls)
 
 
-class _Building:
+class _RoofBuilder:
     """A roof under construction: its nodes (points), and the edges of each roof side."""
 
     def __init__(self, loops: Sequence[FloatArray]) -> None:
-        self._front = _first_front(loops)
-        self._points = self._front.place
+        self._front = _first_outlines(loops)
+        self._points = self._front.start_position
         self._walls = self._front.walls
         self._nearness = _NEAR * float(np.ptp(self._points, axis=0).max())
         self._nodes: list[tuple[float, float, float]] = []
         self._bounds: list[list[tuple[int, int]]] = [[] for _ in self._points]
-        self._base: list[Piece] = []
+        self._base: list[SidePart] = []
 
     def raise_sides(self) -> None:
         """Shrink the outline until it vanishes, and record the edges of the roof on the way.
@@ -116,33 +116,33 @@ class _Building:
 
     def _change(self, now: float) -> None:
         """Reconnect the shrinking outline where corners and sides meet at a time."""
-        met = meeting(self._front, now, self._nearness)
-        if not met.is_clear:
+        contacts = contacts_at(self._front, now, self._nearness)
+        if not contacts.is_clear:
             raise _unclear()
-        nodes = self._nodes_of(met)
+        nodes = self._nodes_of(contacts)
         if now == 0:
-            self._base = [(nodes[a], nodes[b], wall) for a, b, wall in met.pieces]
+            self._base = [(nodes[a], nodes[b], wall) for a, b, wall in contacts.pieces]
             for low, high, wall in self._base:
                 self._bounds[wall].append((low, high))
-        for (a, b, wall), (_, _, other) in met.ridges:
+        for (a, b, wall), (_, _, other) in contacts.ridges:
             self._bounds[wall].append((nodes[b], nodes[a]))
             self._bounds[other].append((nodes[a], nodes[b]))
-        self._front = self._next_front(met, nodes)
+        self._front = self._next_front(contacts, nodes)
 
-    def _nodes_of(self, met: Meeting) -> dict[int, int]:
+    def _nodes_of(self, contacts: Contacts) -> dict[int, int]:
         """Make a roof node at each point where the outline changes, and record the edges to it.
 
         Return the node number for each such spot of the meeting.
         """
         front, nodes = self._front, {}
-        for spot, corners in enumerate(met.corners):
-            if met.time > 0 and met.is_calm(spot, front):
+        for spot, corners in enumerate(contacts.corners):
+            if contacts.time > 0 and contacts.is_calm(spot, front):
                 continue
-            x, y = met.places[corners].mean(axis=0).tolist()
+            x, y = contacts.positions[corners].mean(axis=0).tolist()
             nodes[spot] = len(self._nodes)
-            self._nodes.append((x, y, met.time))
+            self._nodes.append((x, y, contacts.time))
             # At time 0 the corners are on the floor, and no edge leads to their nodes.
-            for corner in corners if met.time > 0 else ():
+            for corner in corners if contacts.time > 0 else ():
                 ahead, behind = int(front.before[corner]), int(front.after[corner])
                 self._trace(int(front.node[corner]), nodes[spot], ahead, behind)
         return nodes
@@ -153,23 +153,23 @@ class _Building:
             self._bounds[ahead].append((low, high))
             self._bounds[behind].append((high, low))
 
-    def _next_front(self, met: Meeting, nodes: dict[int, int]) -> Front:
+    def _next_front(self, contacts: Contacts, nodes: dict[int, int]) -> ShrinkingOutlines:
         """Return the shrinking outline after a change: unchanged corners, and new ones at nodes."""
         rows: list[tuple[int, int, int, int]] = []
         origins: list[tuple[float, float, float]] = []
         begun: dict[int, int] = {}
-        for spot, pairs in enumerate(met.pairs):
-            corner = met.corners[spot][0]
+        for spot, pairs in enumerate(contacts.pairs):
+            corner = contacts.corners[spot][0]
             node = nodes[spot] if spot in nodes else int(self._front.node[corner])
             for pair in pairs:
                 begun[pair[0]] = len(rows)
-                rows.append((node, *met.walls_of(pair), pair[1]))
+                rows.append((node, *contacts.walls_of(pair), pair[1]))
                 origins.append(self._nodes[node])
         node_of, before, after, piece = np.array(rows, dtype=np.int64).reshape(-1, 4).T
         origin = np.array(origins, dtype=np.float64).reshape(-1, 3)
         following = np.array([begun[one] for one in piece.tolist()], dtype=np.int64)
         where, since = origin[:, :2], origin[:, 2]
-        return Front(node_of, where, since, before, after, following, self._walls)
+        return ShrinkingOutlines(node_of, where, since, before, after, following, self._walls)
 
     def solid(self, area: float) -> Solid:
         """Return the finished roof over a floor of the given area.

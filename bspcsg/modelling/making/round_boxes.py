@@ -11,7 +11,7 @@ from ...mesh.weld import welded
 from ...parameters import SEGMENTS, not_negative, refuse_many_corners, sides_around, truth_value
 from ...shapes.arrays import from_arrays
 from ...shapes.primitives import box, edge_lengths
-from ...solid.counting import counted
+from ...solid.ledger import counted
 from ...solid.solid import Solid
 from .patches import patch_directions, patch_faces
 

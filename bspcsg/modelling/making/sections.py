@@ -88,7 +88,7 @@ def _loop(given: Any, place: int) -> FloatArray:
     return loop
 
 
-def aligned(low: Section, high: Section, place: int) -> Section:
+def aligned_section(low: Section, high: Section, place: int) -> Section:
     """Return the upper section with its outlines in the order of the lower section's outlines.
 
     Outlines of regions have arbitrary first corners, so they are also shifted cyclically to fit.

@@ -11,7 +11,7 @@ from ...errors import invalid_parameter
 from ...geometry.arrays import axes_of, doubles_or_none
 from ...geometry.transform import axis_vector
 from ...parameters import number, shown
-from .skeleton import Skeleton, extent, flatness
+from .plane_faces import FaceGraph, extent, flatness
 
 #: The least cosine between lines that count as parallel, for an angle of 0.001 radians: snapping to
 #: the lattice may rotate an edge of a thousand steps so much.
@@ -36,8 +36,8 @@ class Selection(ABC):
     _things: ClassVar[str]
     _sizes: ClassVar[tuple[str, ...]]
 
-    def __init__(self, skeleton: Skeleton, numbers: IndexArray) -> None:
-        self._skeleton = skeleton
+    def __init__(self, graph: FaceGraph, numbers: IndexArray) -> None:
+        self._graph = graph
         self._numbers = numbers
 
     @property
@@ -69,7 +69,7 @@ class Selection(ABC):
         """Return the number of all edges, or all faces, of the solid."""
 
     def _with(self, numbers: IndexArray) -> Self:
-        return type(self)(self._skeleton, numbers)
+        return type(self)(self._graph, numbers)
 
     def filter(self, condition: "Callable[[Self], Any] | Any") -> Self:
         """Return the selection of the items for which a condition is true.
@@ -132,9 +132,9 @@ class Selection(ABC):
             )
         normal = axis_vector(place)
         size = 1.0 if isinstance(place, str) else float(np.linalg.norm(np.asarray(place, float)))
-        away = self._skeleton.vertices @ normal - number(offset, "offset") / size
+        away = self._graph.vertices @ normal - number(offset, "offset") / size
         low, high = self._between(away)
-        return self.filter(np.maximum(-low, high) <= flatness(self._skeleton.vertices))
+        return self.filter(np.maximum(-low, high) <= flatness(self._graph.vertices))
 
     def _with_faces_of(self, other: "Selection", offset: Scalar | None) -> Self:
         if offset is not None:
@@ -198,7 +198,7 @@ class Selection(ABC):
                     f"Unknown key {shown(key)}; known are {names}, a vector or a function."
                 )
             values = self.middle @ axis_vector(key)
-            return values, extent(self._skeleton.vertices)
+            return values, extent(self._graph.vertices)
         if values is None or values.shape != (len(self),) or not np.isfinite(values).all():
             raise invalid_parameter(
                 f"A key must give one finite number for each of the {len(self)} {self._things}."
@@ -206,7 +206,7 @@ class Selection(ABC):
         return values, float(np.abs(values).max(initial=0))
 
     def _refuse_another_solid(self, other: "Selection") -> None:
-        mine, theirs = self._skeleton.vertices, other._skeleton.vertices
+        mine, theirs = self._graph.vertices, other._graph.vertices
         if mine is not theirs and not np.array_equal(mine, theirs):
             raise invalid_parameter(
                 "The two selections belong to different solids, so they cannot be combined;"
@@ -268,7 +268,7 @@ def as_bend(angle: Scalar, every: bool) -> float:
     return -np.inf if every else bend
 
 
-def bends(skeleton: Skeleton, least: float) -> BoolArray:
+def bends(graph: FaceGraph, least: float) -> BoolArray:
     """Return a mask, (e,), of edges whose face normals differ by more than `least` degrees."""
     # Add a tolerance: a 12-gon bends by the common limit of 30 degrees, up to rounding.
-    return np.asarray(np.abs(180 - skeleton.angles) > least + _SAME)
+    return np.asarray(np.abs(180 - graph.angles) > least + _SAME)

@@ -10,7 +10,7 @@ import numpy as np
 from ..._types import FloatArray
 from ...errors import LimitError, invalid_parameter
 from ...geometry.arrays import doubles
-from ...parameters import word
+from ...parameters import one_of
 
 #: The rule by which a profile rotates along a path.
 Frame: TypeAlias = Literal["parallel", "fixed"]
@@ -99,7 +99,7 @@ def path_points(path: Any) -> tuple[FloatArray, bool]:
     return (points[:-1] if closed else points), closed
 
 
-def divided(points: FloatArray, closed: bool, slices: int) -> FloatArray:
+def divided_path(points: FloatArray, closed: bool, slices: int) -> FloatArray:
     """Return the path with additional points, so that it has about `slices` equal parts."""
     ends = np.roll(points, -1, axis=0) if closed else points[1:]
     starts = points[: len(ends)]
@@ -130,16 +130,16 @@ def spine_of(points: FloatArray, closed: bool, frame: Any) -> Spine:
     bend = after - before
     width = np.linalg.norm(bend, axis=1, keepdims=True)
     bend = bend / np.where(width > 0, width, 1)
-    if word(("fixed", "parallel"), frame, "frame") == "fixed":
-        right = _level(points, middle)
+    if one_of(("fixed", "parallel"), frame, "frame") == "fixed":
+        right = _horizontal_axes(points, middle)
     else:
-        right = _carried(middle, directions, closed)
+        right = _rotation_free_axes(middle, directions, closed)
     shares = np.concatenate([[0.0], np.cumsum(lengths)])[: len(points)] / lengths.sum()
     up = np.cross(middle, right)
     return Spine(points, shares, right, up, bend, 1 / half[:, 0], closed)
 
 
-def slipped(spine: Spine) -> float:
+def frame_rotation(spine: Spine) -> float:
     """Return the angle in radians by which a closed path rotates its frame; 0 if it is open."""
     if not spine.closed:
         return 0.0
@@ -164,7 +164,7 @@ def _refuse_turning_back(points: FloatArray, before: FloatArray, after: FloatArr
         raise invalid_parameter(message, sharp.tolist())
 
 
-def _level(points: FloatArray, middle: FloatArray) -> FloatArray:
+def _horizontal_axes(points: FloatArray, middle: FloatArray) -> FloatArray:
     """Return horizontal unit vectors perpendicular to the path directions `middle`, (n, 3).
 
     They are the z axis times the direction (vector product), normalized.
@@ -182,7 +182,7 @@ def _level(points: FloatArray, middle: FloatArray) -> FloatArray:
     return np.column_stack([x / size, y / size, np.zeros(len(x))])
 
 
-def _carried(middle: FloatArray, directions: FloatArray, closed: bool) -> FloatArray:
+def _rotation_free_axes(middle: FloatArray, directions: FloatArray, closed: bool) -> FloatArray:
     """Return unit vectors perpendicular to the path, (n, 3), that do not rotate about it."""
     right = np.empty_like(middle)
     right[0] = _first(middle[0])

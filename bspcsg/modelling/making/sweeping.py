@@ -16,15 +16,15 @@ from ...parameters import (
     not_negative,
     number,
     positive,
-    radius,
+    radius_or_half_diameter,
     refuse_many_corners,
     sides_around,
 )
 from ...shapes.sweep import unit_circle
-from ...solid.counting import counted
+from ...solid.ledger import counted
 from ...solid.solid import Solid
 from .rings import solid_of, walls
-from .spine import Along, Frame, Spine, divided, path_points, slipped, spine_of
+from .spine import Along, Frame, Spine, divided_path, frame_rotation, path_points, spine_of
 
 #: Corners of a rotated profile equal corners of the original profile if they differ by at most this
 #: share of its extent.
@@ -97,7 +97,7 @@ def sweep(
     slices = _slices(twist, scale, around)
     # Check before the path is divided, since dividing takes a second for very many points.
     refuse_many_corners(max(len(points), slices) * max(len(corners), 1), "This sweep")
-    points = divided(points, closed, slices)
+    points = divided_path(points, closed, slices)
     refuse_many_corners(len(points) * len(corners), "This sweep")
     spine = spine_of(points, closed, frame)
     if not contours:
@@ -105,7 +105,7 @@ def sweep(
     turns, sizes = -_along(twist, 0.0, spine, "twist"), _along(scale, 1.0, spine, "scale")
     if sizes.min() < 0:
         raise invalid_parameter(f"scale must be at least 0, not {sizes.min():g}.")
-    slip = math.degrees(slipped(spine))
+    slip = math.degrees(frame_rotation(spine))
     rings = [
         spine.ring(k, _placed(corners, turns[k] - slip * share, sizes[k]))
         for k, share in enumerate(spine.shares)
@@ -156,8 +156,8 @@ def pipe(
     >>> csg.pipe([(0, 0, 0), (0, 0, 5)], 2, inner=1, segments=4).volume
     30.0
     """
-    outer = positive(radius(r, d, "A pipe"), "r")
-    bore = not_negative(radius(inner, inner_d, "A bore", default=0.0), "inner")
+    outer = positive(radius_or_half_diameter(r, d, "A pipe"), "r")
+    bore = not_negative(radius_or_half_diameter(inner, inner_d, "A bore", default=0.0), "inner")
     if bore >= outer:
         raise invalid_parameter(
             f"the inner radius of a pipe must be smaller than its outer radius {outer:g}, but is"

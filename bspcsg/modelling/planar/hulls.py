@@ -73,7 +73,7 @@ def hull_region(points: FloatArray, pitch: int | None = None) -> Region:
     corners = sorted({(int(x), int(y)): k for k, (x, y) in enumerate(steps.tolist())}.items())
     row = [(x, y, k) for (x, y), k in corners]
     outline = _chain(row)[:-1] + _chain(row[::-1])[:-1]
-    outline = _sharp(outline, 2 * _moved_by(exact, steps))
+    outline = _without_flat_corners(outline, 2 * _moved_by(exact, steps))
     if len(outline) < 3:
         return Region.empty()
     return Region([points[[k for _, _, k in outline]]], pitch=chosen)
@@ -89,7 +89,7 @@ def _moved_by(exact: FloatArray, steps: FloatArray) -> float:
     return moved + _COMPUTED * float(np.finfo(np.float64).eps) * largest if moved else 0.0
 
 
-def _sharp(outline: list[_Corner], most: float) -> list[_Corner]:
+def _without_flat_corners(outline: list[_Corner], most: float) -> list[_Corner]:
     """Return a convex outline without corners that lie within `most` of the remaining outline.
 
     First, corners are chosen whose distance from the line through their neighbours exceeds `most`.

@@ -11,7 +11,7 @@ import pyclipper
 from ..._types import FloatArray, Scalar
 from ...bsp import Region
 from ...errors import InvalidMeshError, LimitError, invalid_parameter
-from ...parameters import SEGMENTS, number, refuse_many_corners, sides_around, word
+from ...parameters import SEGMENTS, number, one_of, refuse_many_corners, sides_around
 
 #: The shape of an offset outline around a corner from which it moves away.
 Join: TypeAlias = Literal["round", "miter", "square", "bevel"]
@@ -20,11 +20,11 @@ Join: TypeAlias = Literal["round", "miter", "square", "bevel"]
 _MITER_LIMIT = 1e6
 
 #: The bound to which coordinates are scaled for pyclipper, which computes in 64-bit integers.
-_REACH = 2.0**40
+_CLIPPER_BOUND = 2.0**40
 
 #: The bound to which coordinates are scaled for manifold3d, which computes in 64-bit multiples of
 #: 1e-8 and so represents values up to 2**36.
-_MANIFOLD_REACH = 2.0**30
+_MANIFOLD_BOUND = 2.0**30
 
 #: The largest distance of an offset, as a multiple of the figure's largest coordinate. The figure
 #: then still extends over 2**20 integer steps of Clipper.
@@ -37,11 +37,11 @@ _GRID = 2.0**16
 _GRID_REACH = 2.0**62 / _GRID
 
 #: Steps per model unit in which strokes are computed. Their arcs deviate by a quarter of a step.
-_PEN = 10_000.0
+_STROKE_STEPS = 10_000.0
 
 #: OpenSCAD merges corners of a result that are closer than this, in model units, and removes
 #: corners that are as close to the line through their neighbours.
-_CLEANED = 0.001
+_MERGE_DISTANCE = 0.001
 
 
 def offset_region(
@@ -53,7 +53,7 @@ def offset_region(
     miter_limit: Scalar = _MITER_LIMIT,
 ) -> Region:
     """Return a region with its outline moved outwards by `delta`, or inwards if it is negative."""
-    word(get_args(Join), join, "join")
+    one_of(get_args(Join), join, "join")
     distance, limit = number(delta, "delta"), number(miter_limit, "miter_limit")
     sides = sides_around(3, segments, "segments")
     if limit < 1:
@@ -65,7 +65,7 @@ def offset_region(
     refuse_far(figure, distance)
     if join == "bevel":
         return _bevelled(figure, distance)
-    return grown(figure, distance, join, sides, limit)
+    return offset_outline(figure, distance, join, sides, limit)
 
 
 def refuse_far(figure: Region, delta: float) -> None:
@@ -79,7 +79,7 @@ def refuse_far(figure: Region, delta: float) -> None:
         raise LimitError(message, "too_large")
 
 
-def grown(
+def offset_outline(
     figure: Region, delta: float, join: str, sides: int, miter_limit: float = _MITER_LIMIT
 ) -> Region:
     """Return a figure with its outline moved outwards by `delta`, or inwards if it is negative.
@@ -125,7 +125,7 @@ def _arc_corners(loops: Sequence[FloatArray], delta: float, sides: int) -> int:
 def _bevelled(figure: Region, delta: float) -> Region:
     """Return the offset of a figure with bevelled corners, computed by manifold3d."""
     loops = figure.to_polygons()
-    scale = _scale(loops, delta, _MANIFOLD_REACH)
+    scale = _scale(loops, delta, _MANIFOLD_BOUND)
     scaled = [loop * scale for loop in loops]
     body = manifold3d.CrossSection(scaled, manifold3d.FillRule.Positive)
     grown_body = body.offset(delta * scale, manifold3d.JoinType.Bevel)
@@ -133,7 +133,7 @@ def _bevelled(figure: Region, delta: float) -> Region:
     return Region([np.asarray(path) / scale for path in paths], pitch=figure.pitch)
 
 
-def cleaned(figures: Sequence[Region]) -> Region:
+def openscad_union(figures: Sequence[Region]) -> Region:
     """Return the union of figures, without tiny gaps and overlaps, as OpenSCAD computes it.
 
     With six digits, the sides of rotated shapes may have tiny gaps or overlaps. A negative offset
@@ -160,7 +160,7 @@ def cleaned(figures: Sequence[Region]) -> Region:
     pen = pyclipper.Pyclipper()
     pen.AddPaths(rounded, pyclipper.PT_SUBJECT)
     paths = pen.Execute(pyclipper.CT_UNION, pyclipper.PFT_NONZERO, pyclipper.PFT_NONZERO)
-    kept = [pyclipper.CleanPolygon(path, _CLEANED * _GRID) for path in paths]
+    kept = [pyclipper.CleanPolygon(path, _MERGE_DISTANCE * _GRID) for path in paths]
     loops = [np.array(path) / _GRID for path in kept if len(path) >= 3]
     return Region(loops, pitch=min(figure.pitch for figure in figures))
 
@@ -172,7 +172,7 @@ def _has_area(path: list[list[int]]) -> bool:
     return any(arms[0][0] * v != arms[0][1] * u for u, v in arms[1:])
 
 
-def stroked(line: FloatArray, width: float, cap: str, join: str = "miter") -> Region:
+def stroke_area(line: FloatArray, width: float, cap: str, join: str = "miter") -> Region:
     """Return the area that a stroke of a given width covers along a polyline.
 
     Parameters
@@ -187,7 +187,7 @@ def stroked(line: FloatArray, width: float, cap: str, join: str = "miter") -> Re
         The shape of the stroke's corners. Bevelled corners are cut off at half the width from the
         polyline's corner.
     """
-    scale = min(_PEN, _scale([line], width))
+    scale = min(_STROKE_STEPS, _scale([line], width))
     pen = pyclipper.PyclipperOffset()
     ends = getattr(pyclipper, f"ET_OPEN{cap.upper()}")
     kinds = {"round": pyclipper.JT_ROUND, "bevel": pyclipper.JT_SQUARE}
@@ -203,7 +203,7 @@ def _whole_numbers(loops: list[FloatArray], scale: float) -> list[Any]:
     return [np.trunc(loop * scale).astype(int).tolist() for loop in loops]
 
 
-def _scale(loops: list[FloatArray], delta: float, reach: float = _REACH) -> float:
+def _scale(loops: list[FloatArray], delta: float, reach: float = _CLIPPER_BOUND) -> float:
     """Return the largest power of two that scales loops, grown by `delta`, to at most `reach`."""
     largest = max(float(np.abs(loop).max()) for loop in loops) + abs(delta)
     return float(2.0 ** np.floor(np.log2(reach / largest)))

@@ -78,7 +78,7 @@ class Layer:
             self,
             vertices=low + np.column_stack(sums) / counts,
             faces=faces[kept],
-            paints=tuple(paint.taken(kept) for paint in self.paints),
+            paints=tuple(paint.for_faces(kept) for paint in self.paints),
             lines=same[self.lines],
         )
 

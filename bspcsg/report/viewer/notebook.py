@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from html import escape
 from typing import TYPE_CHECKING
 
-from ...errors import BspcsgError, MissingPartError, held
+from ...errors import BspcsgError, MissingPartError, not_none
 from .layer import Layer
-from .sharing import NOTEBOOK, is_notebook, running_cell, viewer_name
-from .still import rough_picture
-from .view import view_page
+from .shared_script import NOTEBOOK, is_notebook, running_cell, viewer_name
+from .still_pictures import rough_picture
+from .view_page import view_page
 
 if TYPE_CHECKING:
     from ...bsp import Picture, Region
@@ -102,7 +102,7 @@ def _picture(solid: "Solid") -> "Picture":
 
 def slab(region: "Region") -> Layer:
     """Return a layer with a region extruded to a slab, whose top has the region's shape."""
-    low, high = held(region.bounds, "the bounds of a region")
+    low, high = not_none(region.bounds, "the bounds of a region")
     mesh = region.extrude(float((high - low).max())).to_mesh()
     return Layer("region", mesh.vertices, mesh.faces)
 

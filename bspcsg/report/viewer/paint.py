@@ -10,7 +10,7 @@ import numpy.typing as npt
 from ..._types import FloatArray, IndexArray
 
 #: The elements of a mesh that have a value each.
-At: TypeAlias = Literal["face", "corner"]
+PaintedElements: TypeAlias = Literal["face", "corner"]
 
 #: Colours of labels in order; after the last colour, the first one is used again.
 PALETTE = (
@@ -53,7 +53,7 @@ class Labels:
     uv: FloatArray | None = None
     images: Sequence[bytes | None] = ()
 
-    def taken(self, faces: IndexArray) -> "Labels":
+    def for_faces(self, faces: IndexArray) -> "Labels":
         """Return the paint for the given faces only, in the given order."""
         uv = None if self.uv is None else self.uv[faces]
         return replace(self, numbers=self.numbers[faces], uv=uv)
@@ -77,7 +77,7 @@ class Scale:
     stops: Sequence[str]
 
     @property
-    def at(self) -> At:
+    def at(self) -> PaintedElements:
         """The elements of the mesh that have a number: faces or corners."""
         return "face" if self.values.ndim == 1 else "corner"
 
@@ -111,7 +111,7 @@ class Scale:
         numbers = 1 + np.rint(np.clip(share, 0, 1) * (most - 1))
         return np.where(known, numbers, 0).astype(np.uint16)
 
-    def taken(self, faces: IndexArray) -> "Scale":
+    def for_faces(self, faces: IndexArray) -> "Scale":
         """Return the paint for the given faces only, in the given order."""
         return replace(self, values=self.values[faces])
 
@@ -131,11 +131,11 @@ class Colours:
     values: npt.NDArray[np.uint8]
 
     @property
-    def at(self) -> At:
+    def at(self) -> PaintedElements:
         """The elements of the mesh that have a colour: faces or corners."""
         return "face" if self.values.ndim == 2 else "corner"
 
-    def taken(self, faces: IndexArray) -> "Colours":
+    def for_faces(self, faces: IndexArray) -> "Colours":
         """Return the paint for the given faces only, in the given order."""
         return replace(self, values=self.values[faces])
 

@@ -86,14 +86,14 @@ def unknown_font(name: str) -> InvalidParameterError:
     return InvalidParameterError(message, "unknown_font")
 
 
-def stand_in(name: str) -> FontFile:
+def substitute_font(name: str) -> FontFile:
     """Return the bundled font to use in place of a missing font: bold if the name says bold."""
     _, style = _family_and_style(name)
     return _own_file("bold" if "bold" in style else "regular")
 
 
 @lru_cache(maxsize=16)
-def opened(file: FontFile) -> uharfbuzz.Font:
+def harfbuzz_font(file: FontFile) -> uharfbuzz.Font:
     """Return the HarfBuzz font of a file, with measures in design units.
 
     Raises
@@ -114,7 +114,7 @@ def opened(file: FontFile) -> uharfbuzz.Font:
 
 def wants_whole_pixels(file: FontFile) -> bool:
     """Return True if a font asks for an em of a whole number of pixels (bit 3 of its flags)."""
-    head = opened(file).face.reference_table("head").data or b""
+    head = harfbuzz_font(file).face.reference_table("head").data or b""
     # Byte 1 of the big-endian flags has the lower 8 bits.
     return len(head) >= _HEAD_FLAGS.stop and bool(head[_HEAD_FLAGS][1] & 8)
 
@@ -145,7 +145,7 @@ def _fontconfig(name: str) -> FontFile | None:
 
     None means that there is no such font, or that fontconfig is not installed.
     """
-    told = _answer("fc-match", "-f", "%{index}\n%{file}\n%{family}", "--", name)
+    told = _program_output("fc-match", "-f", "%{index}\n%{file}\n%{family}", "--", name)
     index, path, families = [*told.split("\n", 2), "", "", ""][:3]
     there = {family.strip().lower() for family in families.split(",")}
     family, style = _family_and_style(name)
@@ -164,12 +164,12 @@ def _equals(name: str) -> list[str]:
 
     They are the families with strong binding ("s"), whose metrics equal the named family's.
     """
-    lines = _answer("fc-pattern", "-c", "--", name).splitlines()
+    lines = _program_output("fc-pattern", "-c", "--", name).splitlines()
     families = [line for line in lines if line.strip().startswith("family:")]
     return [found.lower() for line in families for found in re.findall(r'"([^"]*)"\(s\)', line)]
 
 
-def _answer(program: str, *arguments: str) -> str:
+def _program_output(program: str, *arguments: str) -> str:
     """Return the output of a fontconfig program.
 
     It is empty if the program is not installed or fails, or for an unprintable or long font name.

@@ -49,7 +49,9 @@ class PlacedGlyph(NamedTuple):
     advance: FloatArray
 
 
-def shaped(font: uharfbuzz.Font, text: str, writing: Writing) -> tuple[list[PlacedGlyph], bool]:
+def shaped_glyphs(
+    font: uharfbuzz.Font, text: str, writing: Writing
+) -> tuple[list[PlacedGlyph], bool]:
     """Return the glyphs of a line of text, and True if the line is horizontal."""
     buffer = uharfbuzz.Buffer()
     buffer.add_str(text)

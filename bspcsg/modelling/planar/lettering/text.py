@@ -13,8 +13,8 @@ from ...._types import FloatArray, Scalar
 from ....bsp import Region
 from ....errors import InvalidParameterError, invalid_parameter
 from ....parameters import SEGMENTS, positive, refuse_many_corners, shown, sides_around
-from .fonts import FAMILY, FontFile, font_file, opened
-from .shaping import Glyph, PlacedGlyph, Writing, shaped
+from .fonts import FAMILY, FontFile, font_file, harfbuzz_font
+from .shaping import Glyph, PlacedGlyph, Writing, shaped_glyphs
 
 HorizontalAlignment: TypeAlias = Literal["left", "center", "right"]
 VerticalAlignment: TypeAlias = Literal["baseline", "bottom", "center", "top"]
@@ -146,7 +146,7 @@ def text(
         _writing(direction, language, script),
         steps_of(sides_around(3, segments, "segments")),
     )
-    region, missing = lettered(line, font_file(font), look)
+    region, missing = text_region(line, font_file(font), look)
     if missing:
         letters = " ".join(f"{letter} (U+{ord(letter):04X})" for letter in missing[:8])
         message = (
@@ -157,23 +157,23 @@ def text(
     return region
 
 
-def lettered(string: str, file: FontFile, look: Lettering) -> tuple[Region, list[str]]:
+def text_region(string: str, file: FontFile, lettering: Lettering) -> tuple[Region, list[str]]:
     """Return a line of text in the font of a file, and the letters that the font lacks.
 
     Missing glyphs get the font's substitute, usually a box.
     """
-    font = opened(file)
-    placed, is_horizontal = shaped(font, string, look.writing)
+    font = harfbuzz_font(file)
+    placed, is_horizontal = shaped_glyphs(font, string, lettering.writing)
     glyphs = {one.glyph: Glyph(font, one.glyph) for one in placed}
-    unit = look.em / font.face.upem
+    unit = lettering.em / font.face.upem
     loops = {
-        key: [loop * (unit * look.ink) for loop in glyph.loops(look.steps)]
+        key: [loop * (unit * lettering.ink) for loop in glyph.loops(lettering.steps)]
         for key, glyph in glyphs.items()
     }
     refuse_many_corners(sum(len(p) for one in placed for p in loops[one.glyph]), "This text")
-    places = _places(placed, unit * look.tightness, look.spacing)
+    places = _places(placed, unit * lettering.tightness, lettering.spacing)
     boxes = np.array([glyphs[one.glyph].bounds for one in placed]).reshape(-1, 2, 2)
-    anchor = _anchor(places[-1], boxes * (unit * look.ink), look, is_horizontal)
+    anchor = _anchor(places[-1], boxes * (unit * lettering.ink), lettering, is_horizontal)
     parts = [
         Region([loop + (place + anchor) for loop in loops[one.glyph]], winding="nonzero")
         for one, place in zip(placed, places, strict=False)
@@ -194,7 +194,9 @@ def _places(placed: Sequence[PlacedGlyph], unit: float, spacing: float) -> list[
     return [*places, pen]
 
 
-def _anchor(end: FloatArray, boxes: FloatArray, look: Lettering, is_horizontal: bool) -> FloatArray:
+def _anchor(
+    end: FloatArray, boxes: FloatArray, lettering: Lettering, is_horizontal: bool
+) -> FloatArray:
     """Return the start position of the pen, (2,), that aligns a line by OpenSCAD's rules.
 
     The width of a horizontal line is the sum of its advances, and its height is the extent of the
@@ -203,14 +205,14 @@ def _anchor(end: FloatArray, boxes: FloatArray, look: Lettering, is_horizontal: 
     """
     low, high = boxes[:, 0], boxes[:, 1]
     if is_horizontal:
-        width, ascent = float(end[0]), look.reach(float(high[:, 1].max(initial=0.0)))
-        descent = look.reach(float((-low[:, 1]).max(initial=0.0)))
+        width, ascent = float(end[0]), lettering.reach(float(high[:, 1].max(initial=0.0)))
+        descent = lettering.reach(float((-low[:, 1]).max(initial=0.0)))
     else:
-        width, ascent = look.reach(float((high - low)[:, 0].max(initial=0.0))), float(end[1])
+        width, ascent = lettering.reach(float((high - low)[:, 0].max(initial=0.0))), float(end[1])
         descent = 0.0
-    x = {"left": 0.0, "center": -width / 2, "right": -width}[look.halign]
+    x = {"left": 0.0, "center": -width / 2, "right": -width}[lettering.halign]
     y = {"baseline": 0.0, "bottom": descent, "center": (descent - ascent) / 2, "top": -ascent}
-    return np.array([x, y[look.valign]])
+    return np.array([x, y[lettering.valign]])
 
 
 def _line(string: Any) -> str:
