@@ -196,7 +196,7 @@ def answer(name: str, question: str) -> str:
 
 
 def answers(name: str) -> Iterator[tuple[str, str]]:
-    """Yield an engine's answer to each question, from a process of its own."""
+    """Yield the name and the answer of each test question; a child process asks the engine."""
     for question in QUESTIONS:
         command = [sys.executable, __file__, "--ask", name, question]
         try:

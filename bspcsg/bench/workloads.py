@@ -105,7 +105,7 @@ class Pair(Work):
         return Outcome(engine.boolean(self.first, self.second, self.operation))
 
     def counted(self, engine: Engine, outcome: Outcome) -> dict[str, int]:
-        """Return the counters of the same work on solids, since arrays have no counters."""
+        """Return the counters of the core, counted while the same work runs on solids."""
         if not engine.counts:
             return {}
         operands = [engine.solid(self.first), engine.solid(self.second)]
@@ -312,7 +312,10 @@ def stepwise(
 def wrong_points(
     first: MeshArrays, second: MeshArrays, answer: MeshArrays, samples: int
 ) -> tuple[int, int]:
-    """Return at how many random points the difference `answer` is wrong, and the decided points."""
+    """Return the numbers of tested points where the difference `answer` is wrong, and of all.
+
+    The points are random; one so near a surface that its side is uncertain is not tested.
+    """
     meshes = [RayClassifier(_mesh(arrays)) for arrays in (first, second, answer)]
     low, high = first[0].min(axis=0), first[0].max(axis=0)
     points = generator().uniform(low, high, (samples, 3))

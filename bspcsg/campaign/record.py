@@ -114,7 +114,7 @@ class HausdorffRecord(TypedDict):
     samples: int
 
 
-class BoundsRecord(TypedDict):
+class ThicknessBoundsRecord(TypedDict):
     """The thicknesses up to which sets count as equal, and as equal within rounding."""
 
     same_set: float
@@ -156,7 +156,7 @@ class CaseRecord(TypedDict):
     oracles: list[OracleRecord]
     set_difference: DifferenceRecord | None
     hausdorff: HausdorffRecord | None
-    bounds: BoundsRecord | None
+    bounds: ThicknessBoundsRecord | None
     identity: NotRequired[IdentityRecord | None]
     seconds: SecondsRecord
     memory_mb: float | None

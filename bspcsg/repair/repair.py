@@ -163,7 +163,9 @@ def _run_child(folder: Path, timeout: float | None) -> dict[str, Any]:
     said: dict[str, Any] = json.loads(path.read_text("utf-8")) if path.exists() else {}
     if done.returncode == _MISSING and "missing" in said:
         raise missing_part(
-            "pymeshlab", f"for repairs ({said['missing']})", install_command(said["missing"])
+            "pymeshlab",
+            f"for repairs: {said['missing']} cannot be imported",
+            install_command(said["missing"]),
         )
     if done.returncode != 0:
         last = done.stderr.strip().splitlines()[-1:] or ["no message"]

@@ -193,7 +193,7 @@ def _map(
         return turned
 
     bands = _bands(pixels(ends))
-    marker = _arrow(viewpoint) if parallel else pixels(viewpoint) + _dot()
+    marker = _arrow_outline(viewpoint) if parallel else pixels(viewpoint) + _dot()
     marks = _quads(marker[None])
     source = np.concatenate([fragments.source, np.array([-1])])
     return _joined(bands, marks), source
@@ -216,7 +216,7 @@ def _dot() -> FloatArray:
     return 5 * np.column_stack([np.cos(angles), np.sin(angles)])
 
 
-def _arrow(direction: FloatArray) -> FloatArray:
+def _arrow_outline(direction: FloatArray) -> FloatArray:
     scaled = direction / np.abs(direction).max()
     x, y = scaled / np.hypot(*scaled)
     # Pixel coordinates grow downwards.

@@ -65,7 +65,7 @@ class ObjectNames:
         names = [self._name(part, sources, silent) for part in parts]
         if not any(names):
             return None
-        settled = [_settled(part) if in_single else (part, ()) for part in parts]
+        settled = [_in_single_precision(part) if in_single else (part, ()) for part in parts]
         meshes = [_raw(part, name) for (part, _), name in zip(settled, names, strict=True)]
         return joined(meshes), tuple(finding for _, found in settled for finding in found)
 
@@ -91,7 +91,7 @@ def _raw(part: "Mesh", name: str) -> "RawMesh":
     return RawMesh(part.vertices, part.faces, name, attributes=said)
 
 
-def _settled(part: "Mesh") -> "tuple[Mesh, tuple[Finding, ...]]":
+def _in_single_precision(part: "Mesh") -> "tuple[Mesh, tuple[Finding, ...]]":
     from ...formats.single_precision import in_single_precision
 
     try:

@@ -50,12 +50,12 @@ class Intermediate:
         message = (
             f"{error.message}\n  line {number} of the .csg: {line.strip()[:_MAX_QUOTED_CHARACTERS]}"
         )
-        own = self._own_line(line[column - 1 :])
+        own = self._line_in_script(line[column - 1 :])
         if own is not None:
             message = f"{message}\n  from {self.script}:{own}"
         return type(error)(message, error.code, error.where)
 
-    def _own_line(self, text: str) -> int | None:
+    def _line_in_script(self, text: str) -> int | None:
         """Return the number of the script's only line that uses the node with which a text begins.
 
         None means that there is no such line or several, or that the script includes other files.

@@ -139,7 +139,12 @@ class ChainTools:
         If rounding may move its ends off their faces, the section extends past the faces, so that
         no thin skin remains. None means that it would extend far, as the blend is nearly tangent.
         """
-        sides = np.array([self._sides(edge, vertex, -1), self._sides(after, vertex, 1)])
+        sides = np.array(
+            [
+                self._left_and_right_faces(edge, vertex, -1),
+                self._left_and_right_faces(after, vertex, 1),
+            ]
+        )
         ends = []
         for side, corner, inner in ((0, ring[0], ring[1]), (1, ring[-1], ring[-2])):
             normals, steps = self._outward(edge, after, vertex, sides[:, side], corner)
@@ -153,7 +158,7 @@ class ChainTools:
         tip = self.graph.vertices[vertex] + np.linalg.lstsq(normals, steps, rcond=None)[0]
         return np.array([tip, ends[0][0], *ring[1:-1], ends[1][0]])
 
-    def _sides(self, edge: int, vertex: int, sign: int) -> IndexArray:
+    def _left_and_right_faces(self, edge: int, vertex: int, sign: int) -> IndexArray:
         """Return the faces on the left and the right of an edge, in the chain's direction."""
         sides: IndexArray = self.graph.sides[edge]
         is_forth = self._along(edge, vertex, sign) @ self.graph.directions[edge] > 0

@@ -25,7 +25,7 @@ from ...solid.solid import Solid, from_leaf
 from .blend_chains import ChainTools, closed_chains
 from .blend_fit import has_room, no_room, refuse_no_room
 from .blend_order import corner_error, corresponding_edges, next_edges
-from .caps import cap_tool, is_cap
+from .caps import face_blend_tool, is_cap
 from .edges import EdgeSelection, selection
 from .patches import arc_directions, patch_directions, patch_faces
 from .plane_faces import FaceGraph, face_graph_of, flatness
@@ -110,12 +110,12 @@ class _Blend:
             if is_cap(self.graph, face, self.chosen) and not has_room(self.graph, face, self.widths)
         ]
 
-    def cap_tool(self, face: int, sign: int) -> Solid:
+    def face_blend_tool(self, face: int, sign: int) -> Solid:
         """Return the tool that blends all edges of a face: to remove, or to add if sign is -1."""
         angles = np.arange(self.profile.steps + 1) / self.profile.steps
         cosines, sines = np.array([cos_sin(90 * angle) for angle in angles]).T
         profile = self.profile.size * np.column_stack([1 - cosines, sines])
-        return cap_tool(self.graph, face, sign, profile, self.pitch)
+        return face_blend_tool(self.graph, face, sign, profile, self.pitch)
 
     def sign(self, edge: int) -> int:
         """Return 1 for a convex edge and -1 for a concave edge."""
@@ -478,7 +478,7 @@ def _parts(blend: _Blend) -> tuple[Sequence[Solid], Sequence[Solid]]:
     for face in blend.caps:
         own = np.flatnonzero((blend.graph.sides == face).any(axis=1)).tolist()
         sign = blend.sign(own[0])
-        cutters[sign < 0].append(blend.cap_tool(face, sign))
+        cutters[sign < 0].append(blend.face_blend_tool(face, sign))
         done.update(own)
     for chain in closed_chains(blend.graph, blend.chosen - done):
         tool = tools.tool(chain)

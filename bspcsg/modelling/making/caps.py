@@ -43,7 +43,9 @@ def is_cap(graph: FaceGraph, face: int, chosen: Set[int]) -> bool:
     return len(there & chosen) == len(own) and bool((np.abs(bends - 90) < _SQUARE).all())
 
 
-def cap_tool(graph: FaceGraph, face: int, sign: int, profile: FloatArray, pitch: int) -> Solid:
+def face_blend_tool(
+    graph: FaceGraph, face: int, sign: int, profile: FloatArray, pitch: int
+) -> Solid:
     """Return the solid to remove below a face, or to add above it if the sign is -1.
 
     Parameters

@@ -7,8 +7,9 @@ use crate::geometry::doubles::vector::{difference, dot, normal};
 use crate::geometry::doubles::Point;
 use crate::interrupt::poll;
 
-/// The error of a tetrahedron's volume, as a fraction of the product of three edges' lengths in the sum norm:
-/// each of the six products in six volumes has three rounded differences, two products and three sums.
+/// The rounding error of a tetrahedron's volume, as a fraction of the product of the sum norms of three
+/// edges. Six times the volume is a determinant, a sum of six products; each product has three rounded
+/// differences, two multiplications and three additions.
 const VOLUME_ROUNDING: f64 = 8.0 / 6.0 * f64::EPSILON;
 
 /// The largest fraction of a volume that may be rounding error: 2^-32. For a body that fills its box it is

@@ -92,9 +92,10 @@ pub fn is_needle(triangle: &Triangle) -> bool {
 struct Search<'a> {
     faces: &'a Faces<'a>,
     needles: &'a [u32],
-    /// The needle of each directed edge.
+    /// The needle (long thin triangle) of each directed edge.
     owners: HashMap<[VertexId; 2], u32>,
-    /// The number of the piece (smooth connected part of the surface) to which each needle belongs, or
+    /// The number of the piece (smooth connected part of the surface) to which each needle (long thin
+    /// triangle) belongs, or
     /// `NONE`.
     pieces: Vec<u32>,
 }

@@ -256,7 +256,8 @@ impl Rim {
         alone
     }
 
-    /// Maps the two ends of a half-edge to its number, for whole faces with a corner at which fates differ.
+    /// Maps the two ends of a half-edge to its number, for whole faces that share a corner with a cut or
+    /// removed face.
     fn by_ends(&self, mesh: &TriangleMesh) -> HashMap<[VertexId; 2], u32> {
         let halves = self.near.iter().flat_map(|face| face.half_edges());
         let mut by_ends = HashMap::default();

@@ -303,7 +303,7 @@ fn is_left(triangle: &[VertexId; 3]) -> bool {
 fn tell_moved(mesh: &mut Mesh, moved: &[VertexId]) {
     if !moved.is_empty() {
         let places: Vec<u64> = moved.iter().map(|v| u64::from(*v)).collect();
-        let finding = Finding::about("moved", Severity::Note, &places, MOVED);
+        let finding = Finding::about("moved", Severity::Note, &places, MOVED_MESSAGE);
         mesh.findings.push(finding);
     }
 }
@@ -320,8 +320,8 @@ fn tell_touching(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources, is_mende
     };
     let found = touching(&mesh.vertices, &exact.vertices, is_used, is_given);
     for (code, places, text) in [
-        ("rounded_contact", found.rounded, TOUCHING),
-        ("given_contact", found.given, GIVEN),
+        ("rounded_contact", found.rounded, TOUCHING_MESSAGE),
+        ("given_contact", found.given, GIVEN_MESSAGE),
     ] {
         if !places.is_empty() {
             let finding = Finding::about(code, Severity::Note, &places, text);
@@ -350,12 +350,17 @@ fn report(mesh: &mut Mesh, swapped: &[u64], turned: &[u64], settled: &Settled, n
         faulty.iter().partition(|t| is_collapsed(mesh, **t));
     let mended: Vec<u64> = wide(&mut settled.mended.iter());
     for (code, severity, places, text) in [
-        ("swapped", Severity::Note, &numbered(swapped), SWAPPED),
-        ("mended", Severity::Note, &mended, MENDED),
-        ("collapsed", Severity::Note, &collapsed, COLLAPSED),
-        ("turned", Severity::Warning, &over, TURNED),
-        ("crossing", Severity::Warning, &crossing, CROSSING),
-        ("self_overlap", Severity::Warning, &own, OWN),
+        (
+            "swapped",
+            Severity::Note,
+            &numbered(swapped),
+            SWAPPED_MESSAGE,
+        ),
+        ("mended", Severity::Note, &mended, MENDED_MESSAGE),
+        ("collapsed", Severity::Note, &collapsed, COLLAPSED_MESSAGE),
+        ("turned", Severity::Warning, &over, TURNED_MESSAGE),
+        ("crossing", Severity::Warning, &crossing, CROSSING_MESSAGE),
+        ("self_overlap", Severity::Warning, &own, OWN_MESSAGE),
     ] {
         if !places.is_empty() {
             let finding = Finding::about(code, severity, places, text);
@@ -364,22 +369,26 @@ fn report(mesh: &mut Mesh, swapped: &[u64], turned: &[u64], settled: &Settled, n
     }
 }
 
-const SWAPPED: &str = "rounding to doubles turned these triangles over, so an edge was flipped";
-const MOVED: &str =
+const SWAPPED_MESSAGE: &str =
+    "rounding to doubles turned these triangles over, so an edge was flipped";
+const MOVED_MESSAGE: &str =
     "surfaces would cross with the given coordinates of these corners; the corners \
     were moved to the lattice, by less than a step";
-const TOUCHING: &str =
+const TOUCHING_MESSAGE: &str =
     "rounding to doubles, or its repair, gave these vertices the coordinates of \
     others, so the mesh touches itself there";
-const GIVEN: &str = "an input has these vertices twice, so the mesh touches itself there";
-const MENDED: &str =
+const GIVEN_MESSAGE: &str = "an input has these vertices twice, so the mesh touches itself there";
+const MENDED_MESSAGE: &str =
     "rounding to doubles made surfaces cross or triangles lose their area; to repair \
     this, these triangles were changed within the rounding error";
-const COLLAPSED: &str = "rounding to doubles gave two corners of these triangles equal coordinates";
-const TURNED: &str = "rounding to doubles turned these triangles over or removed their area";
-const CROSSING: &str = "rounding to doubles makes these triangles cross or overlap others, which \
+const COLLAPSED_MESSAGE: &str =
+    "rounding to doubles gave two corners of these triangles equal coordinates";
+const TURNED_MESSAGE: &str =
+    "rounding to doubles turned these triangles over or removed their area";
+const CROSSING_MESSAGE: &str =
+    "rounding to doubles makes these triangles cross or overlap others, which \
     could not be repaired";
-const OWN: &str = "an operand crosses itself, so these triangles cross or overlap others; \
+const OWN_MESSAGE: &str = "an operand crosses itself, so these triangles cross or overlap others; \
     `normalized()` resolves the overlaps";
 
 /// Returns true if two corners of a triangle have equal doubles.

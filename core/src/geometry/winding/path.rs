@@ -77,8 +77,8 @@ impl PaddedPath {
     }
 }
 
-/// The change of the winding number across a lattice triangle, along a path from the corner of a cell, in
-/// half steps, to a lattice point; doubtful if the path meets an edge or ends in the plane.
+/// The change of the winding number across a lattice triangle, along a path from the corner of a cell, given
+/// in half lattice steps, to a lattice point; doubtful if the path meets an edge or ends in the plane.
 pub fn triangle_change_on_path(
     corners: &[Lattice; 3],
     from: &Lattice,
@@ -182,8 +182,9 @@ fn exact_determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> Sign {
     (term(0, minor(1, 2)) + term(1, minor(2, 0)) + term(2, minor(0, 1))).sign()
 }
 
-/// The change of the winding number across a convex polygon, along a path from the corner of a cell, in half
-/// steps, to an exact point; doubtful if the path meets an edge or ends in the polygon's plane.
+/// The change of the winding number across a convex polygon, along a path from the corner of a cell, given
+/// in half lattice steps, to an exact point; doubtful if the path meets an edge or ends in the polygon's
+/// plane.
 ///
 /// `support` is the polygon's plane, and `rims` are planes through its edges with the polygon on their minus
 /// sides.

@@ -65,7 +65,8 @@ impl<'a> Surfaces<'a> {
         self.operand(face).mesh.corners(self.id(face))
     }
 
-    /// Returns one corner, as a lattice point, of the face with this joint number.
+    /// Returns one corner, as a lattice point, of the face with this joint number (faces of both operands are
+    /// numbered together).
     pub(super) fn corner(&self, face: u32, corner: usize) -> Lattice {
         self.operand(face).mesh.vertices[self.vertices(face)[corner].index()]
     }

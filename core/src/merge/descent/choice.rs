@@ -127,9 +127,11 @@ impl Round {
         }
     }
 
-    /// Returns the progress after a halving of `cell`, with `total` elements (faces or parts of faces), that
-    /// only cut off empty space. The halving counts only if the elements' box, whose longest side is
-    /// `extent`, spans half of the cell or is a point: otherwise smaller cells may still separate them.
+    /// Returns the progress of halving after a step in which one half of `cell` is empty and the other has
+    /// all
+    /// `total` elements (faces or parts of faces). The step counts as one that separates nothing only if the
+    /// elements' box, whose longest side is `extent`, spans half of the cell or is a point: otherwise smaller
+    /// cells may still separate the elements.
     #[must_use]
     pub fn next_with_empty_sibling(self, cell: &Cell, extent: i64, total: usize) -> Self {
         let round = if fills_half_of(extent, cell) {

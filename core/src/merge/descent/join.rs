@@ -143,13 +143,13 @@ fn corner_of(branch: &Branch, leaf: &DeferredLeaf, cell: &Cell) -> i32 {
 ///
 /// An operand's unchanged boundary may have winding numbers above 1 where a kernel's result has 1. Leaves
 /// that disagree across the cut must not be joined.
-fn change_along_edge(faces: &[ListedFace], cell: &Cell, cut: Cut) -> i32 {
+fn change_along_edge(faces: &[OrientedListedFace], cell: &Cell, cut: Cut) -> i32 {
     let segment = Segment {
         from: cell.corner(),
         axis: cut.axis,
         to: 2 * cut.at - 1,
     };
-    let across = |f: &ListedFace| match f.source.shape() {
+    let across = |f: &OrientedListedFace| match f.source.shape() {
         Shape::Mesh(mesh) => triangle_change(&mesh.corners(f.face), &segment),
         Shape::HalfSpace(plane) => plane_change(plane, &segment),
     };
@@ -165,15 +165,15 @@ fn small_leaf(branch: &Branch) -> Option<&DeferredLeaf> {
     }
 }
 
-struct ListedFace {
+struct OrientedListedFace {
     touching: bool,
     source: Arc<Source>,
     orientation: Orientation,
     face: FaceId,
 }
 
-fn listed_faces(branch: &Branch, leaf: &DeferredLeaf) -> Vec<ListedFace> {
-    let entry = |g: &FaceGroup, face: &FaceId| ListedFace {
+fn listed_faces(branch: &Branch, leaf: &DeferredLeaf) -> Vec<OrientedListedFace> {
+    let entry = |g: &FaceGroup, face: &FaceId| OrientedListedFace {
         touching: g.touching,
         source: Arc::clone(&g.source),
         orientation: g.orientation.turned_if(branch.complement),
@@ -185,7 +185,7 @@ fn listed_faces(branch: &Branch, leaf: &DeferredLeaf) -> Vec<ListedFace> {
         .collect()
 }
 
-impl ListedFace {
+impl OrientedListedFace {
     fn same_as(&self, other: &Self) -> bool {
         self.face == other.face
             && self.orientation == other.orientation
@@ -238,7 +238,7 @@ enum ShareInCell {
     Nothing,
 }
 
-fn grouped(faces: Vec<ListedFace>) -> Vec<FaceGroup> {
+fn grouped(faces: Vec<OrientedListedFace>) -> Vec<FaceGroup> {
     let mut groups: Vec<FaceGroup> = Vec::new();
     for f in faces {
         poll();

@@ -2,7 +2,8 @@
 //!
 //! The box of a long thin triangle (a needle) overlaps the boxes of many elements around it, so halving space
 //! does not separate them. But a needle crosses few of the cells in its box, and its fragment in a cell has a
-//! small box. Cells are turned with the needles, because boxes along a needle are smaller than boxes across it.
+//! small box. Cells are turned with the needles, because boxes along a needle are smaller than boxes across
+//! it.
 
 use super::boxes::{BoxedElement, HalfOpenBox};
 use super::clip::part_within;
@@ -39,7 +40,8 @@ const MAX_VAIN_DIVISIONS: u32 = 2;
 
 /// The triangles to be separated, and the cells still to be divided.
 pub struct Crowd {
-    /// For each element (a triangle or part of a face) the corners of its triangle, if known, turned and scaled.
+    /// For each element (a triangle or part of a face) the corners of its triangle, if known, turned and
+    /// scaled.
     corners: Vec<Option<Triangle>>,
     /// A bound on the error of clipping.
     slack: f64,
@@ -158,8 +160,9 @@ impl Crowd {
 }
 
 impl Frame {
-    /// The frame along the longest edge of all elements and along the plane of this edge and the one that is
-    /// most across it; the scale of the boxes' coordinates fills 31 bits.
+    /// The frame whose first direction is that of the longest edge of all elements (triangles or parts of
+    /// faces). Its third direction is perpendicular to this edge and to the edge that makes the largest
+    /// product with it. The scale makes turned coordinates fit into 31 bits.
     fn along(elements: &[BoundedElement]) -> Self {
         let corners = elements.iter().filter_map(|e| e.corners.as_ref());
         let edges: Vec<Point> = corners.map(longest_edge).collect();

@@ -384,8 +384,12 @@ fn pieces<S: Affine>(facets: &[Facet]) -> Result<Vec<Piece<S>>> {
     let piece = |(number, facet): (usize, &Facet)| {
         let flat = || Error::internal(format!("piece {number} has no extent"));
         let fragment = S::fragment(&facet.corners).ok_or_else(flat)?;
-        let number = u32::try_from(number)
-            .map_err(|_| Error::new(ErrorKind::TooLarge, "there are more than 2^32 pieces"))?;
+        let number = u32::try_from(number).map_err(|_| {
+            Error::new(
+                ErrorKind::TooLarge,
+                "the facets are divided into more than 2^32 pieces, the largest number allowed",
+            )
+        })?;
         Ok(Piece { fragment, number })
     };
     facets.iter().enumerate().map(piece).collect()

@@ -20,14 +20,14 @@ const MAX_LEVELS_OF_CUTS: u32 = 64;
 
 /// A facet and its box.
 #[derive(Clone, Copy, Debug)]
-pub struct Item {
+pub struct BoxedFacet {
     /// The facet's index in the scene.
     pub facet: u32,
     /// The box of the facet.
     pub span: Span,
 }
 
-impl Item {
+impl BoxedFacet {
     /// Makes an entry of a facet and its box.
     pub fn new(facet: u32, span: Span) -> Self {
         Self { facet, span }
@@ -41,7 +41,11 @@ impl Item {
 }
 
 /// Divides a list into two nonempty parts; returns the length of the first part and the boxes of both.
-pub fn divide<const D: usize>(items: &mut [Item], whole: &Span, level: u32) -> (usize, [Span; 2]) {
+pub fn divide<const D: usize>(
+    items: &mut [BoxedFacet],
+    whole: &Span,
+    level: u32,
+) -> (usize, [Span; 2]) {
     let cut = match items.len() {
         ..=MAX_FACETS_OF_TWO_BLOCKS => None,
         _ if level >= MAX_LEVELS_OF_CUTS => None,
@@ -72,8 +76,8 @@ enum Way {
 
 impl<const D: usize> Cuts<D> {
     /// Chooses, by a sample, cuts that divide a long list into up to `parts` parts; `None` if there is none.
-    pub fn of(items: &[Item], parts: usize) -> Option<Self> {
-        let mut sample: Vec<Item> = sample(items).copied().collect();
+    pub fn of(items: &[BoxedFacet], parts: usize) -> Option<Self> {
+        let mut sample: Vec<BoxedFacet> = sample(items).copied().collect();
         let mut open = vec![(0..sample.len(), around(&sample).surface::<D>(), None)];
         let mut cuts: Vec<(Cut, [Way; 2])> = Vec::new();
         while open.len() < parts {
@@ -103,7 +107,7 @@ impl<const D: usize> Cuts<D> {
     }
 
     /// Returns the facets of each part of the list, with the box around them.
-    pub fn divided(&self, items: &[Item]) -> Vec<(Vec<Item>, Span)> {
+    pub fn divided(&self, items: &[BoxedFacet]) -> Vec<(Vec<BoxedFacet>, Span)> {
         let mut parts = vec![(Vec::new(), Span::NOTHING); self.cuts.len() + 1];
         for item in items {
             let (part, span) = &mut parts[self.part(item)];
@@ -114,7 +118,7 @@ impl<const D: usize> Cuts<D> {
     }
 
     #[inline]
-    fn part(&self, item: &Item) -> usize {
+    fn part(&self, item: &BoxedFacet) -> usize {
         let mut at = 0;
         loop {
             let (cut, ways) = &self.cuts[at];
@@ -126,12 +130,12 @@ impl<const D: usize> Cuts<D> {
     }
 }
 
-fn around(items: &[Item]) -> Span {
+fn around(items: &[BoxedFacet]) -> Span {
     Span::around(items.iter().map(|item| &item.span))
 }
 
 /// Moves the facets for which `below` is true to the start of the list; returns their number.
-fn partition(items: &mut [Item], below: impl Fn(&Item) -> bool) -> usize {
+fn partition(items: &mut [BoxedFacet], below: impl Fn(&BoxedFacet) -> bool) -> usize {
     let mut count = 0;
     for at in 0..items.len() {
         if below(&items[at]) {
@@ -143,10 +147,10 @@ fn partition(items: &mut [Item], below: impl Fn(&Item) -> bool) -> usize {
 }
 
 /// Halves a list by the centres of its boxes on the longest axis of the box `whole`.
-fn halve<const D: usize>(items: &mut [Item], whole: &Span) -> (usize, [Span; 2]) {
+fn halve<const D: usize>(items: &mut [BoxedFacet], whole: &Span) -> (usize, [Span; 2]) {
     let middle = items.len().div_ceil(2);
     let order = |axis: usize| {
-        move |a: &Item, b: &Item| {
+        move |a: &BoxedFacet, b: &BoxedFacet| {
             let centres = a.centre(axis).total_cmp(&b.centre(axis));
             centres.then_with(|| a.facet.cmp(&b.facet))
         }
@@ -169,7 +173,7 @@ struct Cut {
 }
 
 impl Cut {
-    fn below(&self, item: &Item) -> bool {
+    fn below(&self, item: &BoxedFacet) -> bool {
         self.bins.of(item.centre(self.axis)) < self.at
     }
 }
@@ -213,12 +217,12 @@ impl Bin {
     }
 }
 
-fn sample(items: &[Item]) -> impl Iterator<Item = &Item> {
+fn sample(items: &[BoxedFacet]) -> impl Iterator<Item = &BoxedFacet> {
     items.iter().step_by((items.len() / FACETS_SAMPLED).max(1))
 }
 
 /// Returns the cut of least cost for a sample of a list; `None` if all its centres are equal.
-fn best<const D: usize>(items: &[Item]) -> Option<Cut> {
+fn best<const D: usize>(items: &[BoxedFacet]) -> Option<Cut> {
     let sample = || sample(items);
     let (mut low, mut high) = ([f32::INFINITY; D], [f32::NEG_INFINITY; D]);
     for item in sample() {

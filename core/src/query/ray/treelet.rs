@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use super::block::{Block, LANES};
 use super::cell::{Frame, Span};
-use super::divide::{divide, Cuts, Item};
+use super::divide::{divide, BoxedFacet, Cuts};
 use super::facet::Facet;
 use crate::interrupt::{poll, spend, Task};
 use crate::mesh::handle::NodeId;
@@ -102,17 +102,17 @@ pub struct Treelet<const D: usize> {
 #[derive(Debug)]
 pub struct Deferred<const D: usize> {
     treelet: OnceLock<Treelet<D>>,
-    pending: Mutex<Vec<Item>>,
+    pending: Mutex<Vec<BoxedFacet>>,
 }
 
 impl<const D: usize> Deferred<D> {
     /// Makes the tree over facets, without dividing it yet.
     pub fn over(facets: &[Facet<D>], frame: &Frame<D>) -> Self {
-        let item = |(facet, corners): (u32, _)| Item::new(facet, frame.span(corners));
+        let item = |(facet, corners): (u32, _)| BoxedFacet::new(facet, frame.span(corners));
         Self::pending((0..).zip(facets).map(item).collect())
     }
 
-    fn pending(items: Vec<Item>) -> Self {
+    fn pending(items: Vec<BoxedFacet>) -> Self {
         Self {
             treelet: OnceLock::new(),
             pending: Mutex::new(items),
@@ -195,8 +195,10 @@ impl<const D: usize> Deferred<D> {
 
     fn moved(&self, facets: &[Facet<D>], frame: &Frame<D>) -> (Self, Span) {
         let slot = self.pending.lock().unwrap_or_else(PoisonError::into_inner);
-        let again = |item: &Item| Item::new(item.facet, frame.span(&facets[item.facet as usize]));
-        let items: Vec<Item> = slot.iter().map(again).collect();
+        let again = |item: &BoxedFacet| {
+            BoxedFacet::new(item.facet, frame.span(&facets[item.facet as usize]))
+        };
+        let items: Vec<BoxedFacet> = slot.iter().map(again).collect();
         let span = Span::around(items.iter().map(|item| &item.span));
         (Self::pending(items), span)
     }
@@ -205,7 +207,7 @@ impl<const D: usize> Deferred<D> {
 impl<const D: usize> Treelet<D> {
     /// Makes the root over a long list, with all below it deferred; `None` if the list is short or has no
     /// cut.
-    fn begun(facets: &[Facet<D>], items: &[Item]) -> Option<Self> {
+    fn begun(facets: &[Facet<D>], items: &[BoxedFacet]) -> Option<Self> {
         if items.len() < SAMPLED_FROM {
             return None;
         }
@@ -283,7 +285,7 @@ fn room(facets: usize) -> usize {
 /// A treelet that is being made.
 struct Making<'a, const D: usize> {
     facets: &'a [Facet<D>],
-    items: Vec<Item>,
+    items: Vec<BoxedFacet>,
     treelet: Treelet<D>,
     /// True if only the root is made, and long children are deferred.
     begun: bool,
@@ -305,7 +307,7 @@ impl Part {
 }
 
 impl<'a, const D: usize> Making<'a, D> {
-    fn new(facets: &'a [Facet<D>], items: Vec<Item>) -> Self {
+    fn new(facets: &'a [Facet<D>], items: Vec<BoxedFacet>) -> Self {
         let begun = items.len() > MAX_FACETS_PER_TREELET;
         Self {
             facets,
