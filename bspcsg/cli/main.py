@@ -17,11 +17,11 @@ from .console import clock, output, standard_streams, status_line, terminal
 _EPILOG = """\b
 Exit codes:
   0    done, nothing found
-  1    done, but: not a solid, files differ, manifold3d disagrees, or a loss that was not allowed
+  1    done, but: not a solid, files differ, manifold3d disagrees, or data lost with --fail-on-loss
   2    wrong usage
   3    a file is missing, unreadable or of an unknown format
   4    geometry refused: not closed, too large, or an empty result
-  5    the output could not be written, or is not the mesh
+  5    the output could not be written, or a mesh read back from it differs
   6    an optional part is missing; bspcsg doctor says which
   70   a defect of bspcsg
   124  a time limit was hit
