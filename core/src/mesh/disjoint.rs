@@ -31,10 +31,10 @@ impl DisjointSets {
         }
     }
 
-    /// The numbers of `count` vertices; those that triangles connect are in one set.
+    /// Disjoint sets of the vertex numbers below `count`; vertices that triangles connect are in one set.
     ///
-    /// A first pass gives each vertex the least number found around it. Usually that is the name of its set
-    /// already, so that the second pass has to join few sets.
+    /// A first pass links each vertex to a small vertex number of its triangles. Usually this already leads
+    /// to the least number of the set, so that the second pass joins few sets.
     ///
     /// # Example
     /// ```
@@ -67,28 +67,29 @@ impl DisjointSets {
         sets
     }
 
-    /// The least number to which the three vertices of a triangle point.
+    /// The least of the numbers to which the three vertices of a triangle are linked.
     #[inline]
     fn least_of_corners(&self, [a, b, c]: &[VertexId; 3]) -> u32 {
         let lower = |v: &VertexId| self.lower[v.index()];
         lower(a).min(lower(b)).min(lower(c))
     }
 
-    /// Points each number to the name of its set. Numbers point to lower ones, which this pass handles first.
+    /// Links each number directly to the least number of its set. Numbers are linked to lower numbers, which
+    /// this pass handles first.
     fn flatten(&mut self) {
         for at in 0..self.lower.len() {
             self.lower[at] = self.lower[self.lower[at] as usize];
         }
     }
 
-    /// An empty collection of sets with room for `count` integers.
+    /// An empty collection of sets, with memory reserved for `count` integers.
     pub fn with_capacity(count: usize) -> Self {
         Self {
             lower: Vec::with_capacity(count),
         }
     }
 
-    /// The number of integers in all sets, which is also the next one to add.
+    /// The number of integers in all sets, which is also the next integer to add.
     pub fn end(&self) -> u32 {
         as_number(self.lower.len())
     }

@@ -14,7 +14,7 @@ pub struct Facet {
     /// The corners: one point, the two ends of a segment, or the corners of a convex polygon; unused
     /// coordinates are zero.
     pub corners: Vec<Lattice>,
-    /// For each corner, whether the edge that leaves it is a diagonal of the input facet.
+    /// For each corner, whether the edge that begins there is a diagonal of the input facet.
     pub seams: Vec<bool>,
     /// The number of the input facet.
     pub source: u32,
@@ -229,8 +229,8 @@ fn part_of_facet(corners: &[Lattice], triangle: &[usize; 3], source: u32) -> Fac
     }
 }
 
-/// The corners of a polygon without repeated ones and without those on the line through their neighbours; at
-/// least three remain.
+/// The corners of a polygon without repeated corners and without corners on the line through their
+/// neighbours; at least three remain.
 fn without_flat_corners(given: &[Lattice]) -> Vec<Lattice> {
     let mut corners = given.to_vec();
     loop {

@@ -14,12 +14,12 @@ use crate::geometry::side::Orientation;
 pub struct Slot(pub u32);
 
 impl Slot {
-    /// All slots in order, from 0 on.
+    /// All slots (indices in a table of sources) in order, from 0 on.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..).map(Self)
     }
 
-    /// The slot at this index of a table.
+    /// The slot for an index in a table of sources.
     ///
     /// # Panics
     /// Never for tables: none has 2³² sources.
@@ -151,10 +151,11 @@ impl From<NodeId> for i64 {
     }
 }
 
-/// A face of one of several sources: the source's slot and the number of the face in it.
+/// A face of one of several sources, by the slot (index in a table of sources) of the source and the number
+/// of the face in the source.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SourceFace {
-    /// The slot of the source.
+    /// The slot of the source: its index in a table of sources.
     pub slot: Slot,
     /// The number of the face in the source.
     pub id: FaceId,
@@ -166,7 +167,7 @@ impl SourceFace {
         Self { slot, id }
     }
 
-    /// The face with this orientation relative to its source.
+    /// The face, together with this orientation relative to its source.
     pub fn oriented(self, orientation: Orientation) -> OrientedFace {
         OrientedFace {
             face: self,
@@ -185,7 +186,7 @@ pub struct OrientedFace {
 }
 
 impl OrientedFace {
-    /// The slot of the face's source.
+    /// The slot of the face's source: the index in a table of sources.
     pub fn slot(self) -> Slot {
         self.face.slot
     }

@@ -22,7 +22,8 @@ pub struct Hull {
     pub vertices: Vec<Point>,
     /// The triangles of the hull, counterclockwise from outside, as indices of the corners.
     pub triangles: Vec<[VertexId; 3]>,
-    /// True if the faces are also a convex hull after snapping to the lattice, where they then do not cross.
+    /// True if the faces are still a convex hull, and so do not cross, after the corners are snapped to the
+    /// lattice.
     pub is_convex_there: bool,
 }
 
@@ -34,10 +35,10 @@ const MAX_FOLD_SINE: f64 = 1e-7;
 /// The convex hull of points, exact for the lattice points nearest to them; empty if they lie in one plane up
 /// to rounding.
 ///
-/// Rounding moves points by up to some largest distance. So a point is no corner if it lies within twice that
-/// distance of the hull of the other points. Where faces of the exact hull would face inwards between the
-/// given coordinates, the coordinates are snapped. Where that does not help, as on a lattice no coarser than
-/// the doubles, the faces are those of the hull of the given points.
+/// Rounding moves each point by at most a known distance, so a point is no corner if it lies within twice
+/// this distance of the hull of the other points. If a face of the hull would face inwards with the given
+/// coordinates, the corners are the lattice points instead. If a face still faces inwards, as on a lattice no
+/// coarser than the doubles, the result is the exact hull of the corners as given.
 ///
 /// # Errors
 /// As [`Pitch::snap`].

@@ -21,8 +21,9 @@ struct ImageTable<T> {
     full: usize,
 }
 
-/// The number of yields after which the lock counts as lost. A thread owns the lock while it looks up an
-/// image, and at times while it drops unused images; in a process forked meanwhile nobody releases it.
+/// The number of times that a thread yields to other threads before it gives up waiting for the lock. A
+/// thread owns the lock while it looks up an image or drops unused images; in a process forked meanwhile,
+/// nobody releases the lock.
 const MAX_YIELDS: usize = 1000;
 
 impl<T> Default for Images<T> {

@@ -285,8 +285,9 @@ fn are_surely_not_parallel(u: &[f64; 3], v: &[f64; 3]) -> bool {
     certain(0, 1) || certain(1, 2) || certain(2, 0)
 }
 
-/// The vertices at edges without an opposite by index. If the faces do not close by index, welds vertices at
-/// one lattice point and then cancels edges along lines; an error if edges remain.
+/// Returns the end vertices of edges that have no opposite edge between the same vertex numbers. If there are
+/// such edges, welds vertices at one lattice point, and then cancels opposite edges along common lines; an
+/// error if edges remain.
 fn closed_or_welded(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) -> Result<Vec<VertexId>> {
     if is_closed(&mesh.faces) {
         return Ok(Vec::new());

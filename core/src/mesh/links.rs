@@ -11,19 +11,23 @@ use crate::interrupt::poll;
 /// The largest number of edges in a [`ShortLink`]; around most vertices of ordinary meshes there are six.
 const MAX_SHORT_LINK_EDGES: usize = 8;
 
-/// The labels of the start points of a link's edges, then of their end points; zero after the last edge.
+/// The link of a vertex (an edge for each face around it, from the corner after the vertex to the corner
+/// before it) as labels: first of the edges' start points, then of their end points; zero after the last
+/// edge.
 ///
 /// The label of a vertex is the low fifteen bits of its number under a set top bit.
 type ShortLink = [u16; 2 * MAX_SHORT_LINK_EDGES];
 
-/// The vertices of a closed surface whose link is not one cycle, in ascending order.
+/// The vertices of a closed surface whose link (the edges opposite to the vertex in its faces) is not one
+/// cycle, in ascending order.
 pub fn irregular(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<VertexId> {
     let doubtful = vertices_with_doubtful_links(faces, vertex_count, |vertex| Some(vertex.index()));
     let vertices = doubtful.into_iter().map(VertexId).collect();
     without_cycle(&VertexSubset::new(vertices, vertex_count), faces)
 }
 
-/// Those of the given vertices of a closed surface whose link is not one cycle, in ascending order.
+/// The given vertices of a closed surface whose link (the edges opposite to the vertex in its faces) is not
+/// one cycle, in ascending order.
 ///
 /// `vertices` must ascend. Costs one pass over the faces, and memory for the links of these vertices only.
 pub fn irregular_among(
@@ -85,7 +89,8 @@ impl VertexSubset {
     }
 }
 
-/// The vertices of a subset whose link is not one cycle, ascending; sorts the face corners at them.
+/// The vertices of a subset whose link (the edges opposite to the vertex in its faces) is not one cycle,
+/// ascending; sorts the face corners at these vertices.
 fn without_cycle(subset: &VertexSubset, faces: &[[VertexId; 3]]) -> Vec<VertexId> {
     if subset.vertices.is_empty() {
         return Vec::new();
@@ -105,7 +110,8 @@ fn without_cycle(subset: &VertexSubset, faces: &[[VertexId; 3]]) -> Vec<VertexId
         .collect()
 }
 
-/// The indices of vertices whose short link does not prove that it is one cycle.
+/// The indices of vertices whose [`ShortLink`] does not prove that the edges opposite to the vertex in its
+/// faces are one cycle.
 ///
 /// `index` maps the vertices to examine to `0..count`, and all others to `None`.
 fn vertices_with_doubtful_links(
@@ -146,8 +152,8 @@ fn label(vertex: VertexId) -> u16 {
     vertex.0 as u16 | 1 << 15
 }
 
-/// Return whether a short link is certainly one cycle; the labels of its start points must be those of its
-/// end points in another order.
+/// Return whether the edges of a short link certainly form one cycle; the labels of the start points must be
+/// the labels of the end points in another order.
 ///
 /// The walk goes from label to label. If it first returns after `count` steps, it visited `count` different
 /// labels. All are labels of start points, since the walk stays at zero once it leaves these. So the labels
@@ -175,8 +181,8 @@ fn label_after(link: &ShortLink, label: u16) -> u16 {
     })
 }
 
-/// Return whether the link of a vertex is one cycle; its rows, of the vertex and an edge's start and end, are
-/// sorted and not empty.
+/// Return whether the link of a vertex (the edges opposite to the vertex in its faces) is one cycle. Each row
+/// has the vertex and the start and end of an edge; rows are sorted, and there is at least one.
 fn is_cycle(link: &[[VertexId; 3]]) -> bool {
     if link.windows(2).any(|pair| pair[0][1] == pair[1][1]) {
         return false;

@@ -12,8 +12,9 @@ use crate::interrupt::poll;
 /// differences, two multiplications and three additions.
 const VOLUME_ROUNDING: f64 = 8.0 / 6.0 * f64::EPSILON;
 
-/// The largest fraction of a volume that may be rounding error: 2^-32. For a body that fills its box it is
-/// about 2^-48, for a sheet more by the factor by which the sheet is thinner.
+/// The largest fraction of a volume that may be rounding error: 2^-32. For a body that fills its box the
+/// rounding error is about 2^-48 of the volume; for a thin sheet it is larger by the factor by which the
+/// sheet is thinner.
 const MAX_ROUNDING_SHARE: f64 = f64::EPSILON * 1_048_576.0;
 
 /// The volume and the area of a mesh.
@@ -27,7 +28,7 @@ pub struct Measures {
 
 /// Measures the volume and area of a closed mesh; each sum is rounded only once.
 ///
-/// `middle` is a point near the mesh. Where rounding errors are too large for the volume, as for a needle far
+/// `middle` is a point near the mesh. Where rounding errors are too large for the volume, as for a rod far
 /// longer than thick, the volume is computed in double-doubles.
 pub fn measures(vertices: &[[f64; 3]], faces: &[[VertexId; 3]], middle: [f64; 3]) -> Measures {
     let (mut volume, mut area) = (Sum::default(), Sum::default());

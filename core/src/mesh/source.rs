@@ -44,8 +44,8 @@ pub enum Shape {
     HalfSpace(Arc<Plane>),
 }
 
-/// If fewer than one in this many vertices are used, only the used ones are examined. Otherwise all are
-/// examined, and the result is stored for the next operation.
+/// If fewer than one in this many vertices of a mesh are used, only the used vertices are examined for
+/// irregular ones. Otherwise all are examined, and the result is stored for the next operation.
 const USED_ONLY_IF_ONE_IN: usize = 4;
 
 /// The code of the finding that vertices were welded at import.
@@ -200,7 +200,7 @@ impl Source {
         })
     }
 
-    /// Those of the [`Self::irregular_vertices`] for which `is_used` is true; `used` is the number of used
+    /// The vertices in [`Self::irregular_vertices`] for which `is_used` is true; `used` is the number of used
     /// vertices.
     pub fn irregular_among(
         &self,
@@ -221,8 +221,8 @@ impl Source {
         }
     }
 
-    /// Return whether each edge cancels with opposite ones, by index or along lines; true for all imported
-    /// meshes.
+    /// Return whether the surface is closed: each edge cancels with opposite edges between the same vertices
+    /// or along the same line. True for all imported meshes.
     pub fn is_closed(&self) -> bool {
         let Some(mesh) = self.mesh() else {
             return true;
@@ -257,8 +257,8 @@ impl Source {
         }
     }
 
-    /// Whether the mesh crosses itself when its coordinates along these axes are replaced by those of the
-    /// lattice; empty if not yet computed.
+    /// The cached answer whether the mesh crosses itself once its coordinates on the axes marked true are
+    /// snapped to the lattice; empty if not yet computed.
     pub fn crosses_once_snapped(&self, axes: [bool; 3]) -> &Cached<bool> {
         let [x, y, z] = axes.map(usize::from);
         &self.snapped[x + 2 * y + 4 * z]

@@ -42,7 +42,8 @@ pub fn counts(faces: &[[VertexId; 3]], vertex_count: usize) -> Counts {
     }
 }
 
-/// Returns the number of open directions of an edge; a loop from a vertex to itself counts as one.
+/// Returns how many of an edge's two directions are open: they occur several times, or the opposite direction
+/// does not occur. A loop from a vertex to itself counts as one.
 fn open_directions(uses: &[(VertexId, bool)], is_loop: bool) -> usize {
     let forth = uses.iter().filter(|(_, forth)| *forth).count();
     match (forth, uses.len() - forth) {

@@ -90,7 +90,7 @@ pub enum WorkSize {
 }
 
 impl WorkSize {
-    /// `Pool` if `pays`, else `Nothing`.
+    /// The work size `Pool` if it pays to wake the threads of a pool (`pays`), else `Nothing`.
     #[must_use]
     pub const fn pool_if(pays: bool) -> Self {
         if pays {

@@ -22,22 +22,23 @@ use crate::mesh::faces::{edges, Faces};
 use crate::mesh::handle::VertexId;
 use crate::mesh::topology::NONE;
 
-/// The least ratio of length to height of a needle. The boxes of other triangles overlap only a small number
-/// of boxes, and comparing these is faster than finding terrains.
+/// The least ratio of length to height of a needle (a long thin triangle). The boxes of other triangles
+/// overlap only a small number of boxes, and comparing these triangles is faster than finding terrains.
 const MIN_NEEDLE_RATIO: f64 = 16.0;
 
-/// The largest number of needles that are compared pairwise, without looking for terrains.
+/// The largest number of needles (long thin triangles) that are compared pairwise, without a search for
+/// terrains (sets of triangles proved not to overlap).
 const MAX_NEEDLES_COMPARED: usize = 256;
 
 /// The least number of triangles in a piece (a smooth connected part of the surface) for which a sweep pays.
 const MIN_TRIANGLES_SWEPT: usize = 4;
 
-/// The tangent of the largest angle between normals of adjoining triangles in one piece: more than in any
-/// round body, less than at an intended corner.
+/// The tangent of the largest angle between normals of adjoining triangles in one piece (smooth connected
+/// part of the surface): more than on any round body, less than at an intended corner.
 const MAX_FOLD_TANGENT: f64 = 0.5;
 
-/// For each of the given triangles, the number of its terrain; `NONE` if none is proved, and for all
-/// triangles but needles.
+/// For each triangle in `subset`, the number of its terrain (a set of triangles proved not to overlap each
+/// other), or `NONE`. Only needles (long thin triangles) belong to terrains.
 ///
 /// # Cost
 /// One test of each triangle, a sort of the needles, and a sweep over the outline of each piece.
@@ -88,7 +89,8 @@ pub fn is_needle(triangle: &Triangle) -> bool {
     longest * longest > MIN_NEEDLE_RATIO * MIN_NEEDLE_RATIO * dot(&n, &n)
 }
 
-/// The search for pieces among needles, which it numbers by their index in `needles`.
+/// The search for pieces (smooth connected parts of the surface) among needles (long thin triangles); each
+/// needle is numbered by its index in `needles`.
 struct Search<'a> {
     faces: &'a Faces<'a>,
     needles: &'a [u32],
@@ -100,7 +102,8 @@ struct Search<'a> {
     pieces: Vec<u32>,
 }
 
-/// The axis along which a piece is projected, and the way its triangles turn in the projection.
+/// The axis along which a piece (smooth connected part of the surface) is projected, and the direction in
+/// which its triangles turn in the projection.
 #[derive(Clone, Copy)]
 struct Projection {
     axis: usize,
@@ -144,7 +147,8 @@ impl<'a> Search<'a> {
         self.faces.corners(self.needles[at as usize])
     }
 
-    /// The needles by area, largest first: rounding has changed the directions of their normals least.
+    /// The needles (long thin triangles) by area, largest first: rounding changes the normal of a large
+    /// triangle least.
     fn largest_first(&self) -> Vec<u32> {
         let squares = (0..as_number(self.needles.len())).map(|at| {
             let n = normal(&self.corners(at));
@@ -191,8 +195,8 @@ impl<'a> Search<'a> {
         edges(self.triangle(at)).map(|[from, to]| self.owners.get(&[to, from]).copied())
     }
 
-    /// The edges that only one needle of a piece (a smooth connected part of the surface) has, in the
-    /// projection and directed so that all needles turn left.
+    /// The outline of a piece (smooth connected part of the surface) in the projection: the edges that only
+    /// one needle (long thin triangle) has, directed so that all needles turn left.
     fn outline(&self, piece: &[u32], projection: Projection) -> Vec<[PlanarPoint; 2]> {
         let number = self.pieces[piece[0] as usize];
         let mut outline = Vec::new();

@@ -79,8 +79,8 @@ impl Topology {
     }
 }
 
-/// Returns the number of half-edges that leave a vertex in the fan of one of them; `usize::MAX` if the fan is
-/// open.
+/// Returns the number of half-edges that leave the start vertex of half-edge `start` in the fan of faces
+/// connected to it around this vertex; `usize::MAX` if the fan is open.
 fn fan_size(start: u32, mate: impl Fn(u32) -> u32) -> usize {
     let mut half = start;
     let mut count = 0;

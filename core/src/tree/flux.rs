@@ -24,7 +24,8 @@ use crate::interrupt::poll;
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::{Shape, Source};
 
-/// Return the flux through a branch's boundary, computing only the nodes without a cached share.
+/// Return the flux through a branch's boundary; computes only nodes without a cached share (the node's
+/// contribution to the flux).
 pub fn share(root: &Branch) -> VolumeShare {
     for branch in branches_without_share(root).into_iter().rev() {
         match &*branch.node {
@@ -64,7 +65,8 @@ fn cached_share(branch: &Branch) -> Option<VolumeShare> {
     }
 }
 
-/// The branches under a root without a cached share, each before its children.
+/// The branches under a root without a cached share (contribution to the solid's volume), each before its
+/// children.
 fn branches_without_share(root: &Branch) -> Vec<&Branch> {
     let mut found = Vec::new();
     let mut open = vec![root];
@@ -86,7 +88,7 @@ struct Sum {
     cell: Cell,
     /// Six times the flux through the whole faces inside the cell, in cubic steps.
     inside: Int<4>,
-    /// The share of all other faces and parts.
+    /// The contribution of all other faces, and of parts of faces, to the volume.
     rest: VolumeShare,
 }
 
@@ -134,8 +136,8 @@ impl Sum {
         }
     }
 
-    /// Adds the flux through the part of a mesh face inside the cell, for a face that walls across several
-    /// axes cut.
+    /// Adds the flux through the part of a mesh face inside the cell, for a face that is cut by cell walls
+    /// perpendicular to different axes.
     fn add_clipped(&mut self, corners: &[Lattice; 3], area: i128, orientation: Orientation) {
         let normal = [minor(corners, 1, 2), minor(corners, 2, 0), area];
         if let Some(ring) = Triangle::new(corners, normal).clipped(&self.walls) {
@@ -233,8 +235,8 @@ fn slope([x, y, z]: &[i128; 3]) -> f64 {
     }
 }
 
-/// The slope of a part's plane; `None` if the plane is parallel to z, so that the field has no flux through
-/// it.
+/// The slope |z| / max(|x|, |y|) of the normal of a part's plane; `None` if the plane is parallel to z, so
+/// that the field has no flux through it.
 fn part_slope(part: &Part) -> Option<f64> {
     let normal = match part.source.shape() {
         Shape::Mesh(mesh) => {

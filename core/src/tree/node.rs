@@ -75,8 +75,8 @@ impl Branch {
         }
     }
 
-    /// A branch with this node for a cell, and with the winding number 0 around the cell unless the node is a
-    /// leaf.
+    /// A branch with this node for a cell; the winding number around the cell is the leaf's number for a
+    /// leaf, otherwise 0.
     pub fn of_node(cell: Cell, node: Node) -> Self {
         match node {
             Node::Leaf(w) => Self::uniform(cell, w),
@@ -100,7 +100,8 @@ impl Branch {
         }
     }
 
-    /// A winding number w of the node as this branch counts it: 1 − w if the branch is complemented, else w.
+    /// Converts a winding number w stored in the branch's node to the number in the branch: 1 − w if the
+    /// branch is complemented, else w.
     pub fn oriented(&self, w: i32) -> i32 {
         if self.complement {
             1 - w
@@ -119,7 +120,7 @@ impl Branch {
         }
     }
 
-    /// A child of the node as this branch counts it: complemented if the branch is.
+    /// A child of this branch's node: complemented if this branch is complemented, else unchanged.
     #[must_use]
     pub fn child(&self, child: &Self) -> Self {
         if self.complement {

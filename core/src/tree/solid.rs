@@ -46,7 +46,8 @@ pub struct Solid {
     reduced: bool,
     /// True if stored data, which may be forged, say that the solid or an operand is reduced.
     reduced_by_claim: bool,
-    /// Solids of unchecked meshes: this solid is reduced if all of them are. `None` if not known.
+    /// Solids of unchecked meshes: this solid is reduced if all these solids are. `None` if they are not
+    /// known.
     unchecked_meshes: Option<Arc<[Solid]>>,
     simple: Arc<Cached<bool>>,
     united: Arc<Cached<Solid>>,
@@ -122,8 +123,8 @@ impl Solid {
         self
     }
 
-    /// The meshes that decide whether the solid is reduced: it is if all of them are. `None` if they are not
-    /// known.
+    /// The meshes that decide whether the solid is reduced: the solid is reduced if all these meshes are.
+    /// `None` if the meshes are not known.
     pub fn unchecked_meshes(&self) -> Option<&[Self]> {
         self.unchecked_meshes.as_deref()
     }
@@ -245,7 +246,8 @@ impl Solid {
         &self.sources
     }
 
-    /// Return whether the listed faces and parts are known to be the reduced boundary (promise G2).
+    /// Return whether the solid is known to be reduced: its faces and parts list each wall between inside and
+    /// outside once, and nothing else.
     pub fn is_reduced(&self) -> bool {
         self.reduced || self.simple.get() == Some(&true)
     }
@@ -262,7 +264,8 @@ impl Solid {
         self
     }
 
-    /// Whether the listed faces and parts are the reduced boundary, once it is checked; shared by clones.
+    /// The cached answer whether the solid is reduced (each wall between inside and outside is listed once,
+    /// and nothing else); empty until checked, shared by clones.
     pub fn simple(&self) -> &Cached<bool> {
         &self.simple
     }

@@ -208,8 +208,8 @@ fn asked_cut<S: Affine>(
     }
 }
 
-/// Of sampled hyperplanes, supporting or through corners of pieces (convex parts of facets), the one whose
-/// larger side has the fewest pieces.
+/// The hyperplane whose larger side has the fewest pieces (convex parts of facets), among sampled hyperplanes
+/// that contain a piece or pass through corners of pieces.
 fn through_ends<S: Affine>(
     lines: &Lines,
     pieces: &[Piece<S>],

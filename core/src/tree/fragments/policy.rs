@@ -25,15 +25,18 @@ pub enum Policy {
     Random(u64),
     /// The candidate whose hyperplane cuts the fewest pieces (convex parts of facets).
     LeastSplits(Sample),
-    /// The candidate with the least |n⁻ − n⁺|.
+    /// The candidate with the least |n⁻ − n⁺|, the difference between the numbers of pieces (convex parts of
+    /// facets) on the two sides of its hyperplane.
     Balanced(Sample),
-    /// The candidate with the least alpha·|n⁻ − n⁺| + (1 − alpha)·splits, where splits is the number of
-    /// pieces (convex parts of facets) that it cuts.
+    /// The candidate with the least alpha·|n⁻ − n⁺| + (1 − alpha)·splits, where n⁻ and n⁺ are the numbers of
+    /// pieces (convex parts of facets) on the two sides of its hyperplane, and splits is the number of pieces
+    /// that it cuts.
     ///
     /// With alpha = 1/2, this is the candidate whose larger side has the fewest pieces.
     Weighted(Sample, f64),
     /// The candidate with the least P⁻·n⁻ + P⁺·n⁺, the expected number of pieces (convex parts of facets) on
-    /// a random point's side; P⁻ and P⁺ are the sides' shares of the region's volume.
+    /// a random point's side: n⁻ and n⁺ are the numbers of pieces on the two sides of its hyperplane, and P⁻
+    /// and P⁺ the sides' shares of the region's volume.
     ///
     /// # Source
     /// Naylor 1993, "Constructing good partitioning trees", with the number of pieces instead of the unknown

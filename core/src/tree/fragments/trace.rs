@@ -40,10 +40,9 @@ pub struct Division {
 /// The reason why a hyperplane divides a region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Reason {
-    /// The piece of the hyperplane (a convex part of a facet) is the first in the given list.
+    /// The hyperplane contains the first piece (convex part of a facet) in the given list.
     First,
-    /// The piece of the hyperplane (a convex part of a facet) is the first in the list, which was shuffled
-    /// once.
+    /// The hyperplane contains the first piece (convex part of a facet) in the list, which was shuffled once.
     Random,
     /// The hyperplane cuts the fewest pieces (convex parts of facets) of all candidates.
     LeastSplits,

@@ -155,9 +155,9 @@ impl<S: Space> PreorderReader<'_, S> {
     }
 }
 
-/// The side of a cut on which a region lies that the cut misses.
+/// For a cut that misses a region: the side of the cut on which the region lies.
 ///
-/// The parent's sub-hyperplane bounds the region, and so lies on that side as well.
+/// The sub-hyperplane of the region's parent bounds the region, and so lies on the same side of the cut.
 fn side_of_region<S: Space>(
     cut: &S::Hyperplane,
     above: Option<&(Arc<SubHyperplane<S>>, Half, usize)>,

@@ -46,7 +46,7 @@ pub fn winding_tree<S: Space>(
 }
 
 /// Two leaves on the sides of a piece of a cut, and by how much the winding number on the minus side exceeds
-/// that on the plus side.
+/// the winding number on the plus side.
 struct WindingChange {
     minus: NodeId,
     plus: NodeId,

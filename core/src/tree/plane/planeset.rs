@@ -27,7 +27,8 @@ pub struct PlaneSet {
     size: usize,
     /// The work of the operations that made this set.
     pub spent: WorkSinceRebuild,
-    /// The number of times that sweeps over all edges answered questions about a small number of points.
+    /// The number of requests to locate fewer points than the set has edges that were answered by sweeps over
+    /// all edges.
     queried_points: Arc<AtomicUsize>,
 }
 
@@ -114,8 +115,8 @@ impl PlaneSet {
         }
     }
 
-    /// Return whether to find points by the tree: it exists, or small numbers of points were asked for so
-    /// often that sweeps have cost more. Counts each such question.
+    /// Return whether to locate this number of points by the tree: true if the tree exists, or if there are
+    /// fewer points than edges and at least `SWEEPS_PER_TREE` such requests came before. Counts the request.
     pub fn should_build_tree(&self, points: usize) -> bool {
         if self.known_tree().is_some() {
             return true;
