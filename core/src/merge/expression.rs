@@ -78,8 +78,8 @@ impl SplitExpression {
         self.halves.each_ref().map(Expression::operands)
     }
 
-    /// Divides entries by their operand index into those for operands of `halves[0]` and those for operands
-    /// of `halves[1]`.
+    /// Divides pairs of an operand index and a value into the pairs for operands of `halves[0]` and the pairs
+    /// for operands of `halves[1]`.
     pub fn divide<T>(&self, entries: Vec<(u32, T)>) -> [Vec<(u32, T)>; 2] {
         let [ours, _] = self.operands();
         let is_ours = |entry: &(u32, T)| ours.binary_search(&entry.0).is_ok();

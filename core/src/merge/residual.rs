@@ -117,17 +117,18 @@ impl Expression {
     }
 }
 
-/// The first operand that is the same set as a given one.
+/// The first operand of an expression that is the same set as a given operand.
 #[derive(Clone, Copy, Debug)]
 pub struct Twin {
-    /// The index of this first operand.
+    /// The index of the first operand that is the same set.
     pub first: u32,
     /// True if both operands list the same face numbers of one source; false if their faces only coincide.
     pub is_same_source: bool,
 }
 
 impl Twin {
-    /// Names the first operand equal to one whose faces come from another source.
+    /// Makes a twin (the first operand that is the same set as a given operand) whose faces come from another
+    /// source.
     pub fn of(first: u32) -> Self {
         Self {
             first,

@@ -1,5 +1,6 @@
-//! Terrains in a mesh in doubles: pieces that each line along an axis meets in at most one triangle, such as
-//! the needles between a hole and the border of a face, or those of a cone.
+//! Terrains in a mesh in doubles: smooth connected parts of the surface (pieces) that each line along an axis
+//! meets in at most one triangle, such as the triangles between a hole and the border of a face, or the
+//! needles (long thin triangles) of a cone.
 //!
 //! A piece is found by a heuristic and proved exactly: in the projection along the axis, all its triangles
 //! turn the same way, and its outline winds at most once around each point. So its triangles can cross only

@@ -71,7 +71,8 @@ impl TriangleMesh {
         first_equal_vertices(&self.vertices)
     }
 
-    /// The first vertex at each lattice point where another vertex has other doubles, ascending.
+    /// For each lattice point at which vertices have different original doubles, the first of these vertices;
+    /// ascending.
     pub fn blurred(&self) -> Vec<VertexId> {
         let first_equal_vertices = VertexId::all().zip(self.first_equal_vertices());
         let bits = |v: VertexId| self.doubles[v.index()].map(f64::to_bits);

@@ -129,7 +129,7 @@ impl SourceTable {
         Slot::all().take(self.len()).map(|slot| self.get(slot))
     }
 
-    /// This table, followed by those sources of the other table that it lacks.
+    /// This table, followed by the sources of the other table that it lacks.
     #[must_use]
     pub fn joined(&self, other: &Self) -> Self {
         if let (Entries::Many(own), Entries::Many(others)) = (&self.0, &other.0)
@@ -140,7 +140,7 @@ impl SourceTable {
         self.extended(other.iter())
     }
 
-    /// This table, followed by those of the given sources that it lacks.
+    /// This table, followed by the given sources that it lacks.
     fn extended<'a>(&self, sources: impl IntoIterator<Item = &'a Arc<Source>>) -> Self {
         let entries = self.0.clone();
         Self(sources.into_iter().fold(entries, Entries::with))

@@ -6,7 +6,8 @@
 
 /// Receives the events that a traced algorithm reports.
 pub trait Watcher<E> {
-    /// True if the watcher uses events; if false, the algorithm computes no data that only events need.
+    /// True if the watcher uses events; if false, the algorithm skips computing data that only events
+    /// contain.
     const LISTENS: bool;
 
     /// Receives an event, by a function that makes it; a watcher that ignores events does not call the

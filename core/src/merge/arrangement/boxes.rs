@@ -233,8 +233,8 @@ impl BoxTree {
         Ok(found?.into_iter().flatten().collect())
     }
 
-    /// Returns pairs of nodes that contain all pairs of triangles to be found: at least `MIN_TASKS`, if there
-    /// are so many.
+    /// Returns pairs of nodes that contain all pairs of triangles to be found: at least `MIN_TASKS`, if the
+    /// trees have so many pairs.
     fn start_pairs(&self, other: &Self) -> Vec<[Node; 2]> {
         let mut open = vec![[self.root(), other.root()]];
         while open.len() < MIN_TASKS && open.iter().any(|p| p[0].level + p[1].level > 0) {

@@ -27,11 +27,11 @@ pub(super) struct SharedGeometry<'a> {
     pub(super) points: &'a [MeetingPoint],
     /// For each point its exact position.
     pub(super) vertices: Vec<Arc<Vertex>>,
-    /// The planes of the divided faces, by joint number.
+    /// The planes of the divided faces, by face number (faces of both operands are numbered together).
     pub(super) planes: Planes,
 }
 
-/// Planes of faces, by the faces' joint numbers.
+/// Planes of faces, by face number (faces of both operands are numbered together).
 pub(super) type Planes = HashMap<u32, Arc<Plane>>;
 
 /// A face to be divided, with the segments that divide it and the coplanar faces that cover it.
@@ -64,7 +64,8 @@ pub(super) struct CellNumbers {
     pub(super) behind: i32,
     /// The number of other faces of the same plane that cover the triangular cell.
     pub(super) covers: u32,
-    /// Whether a covering face has a lower joint number than the face.
+    /// Whether a covering face has a lower number than the divided face (faces of both operands are numbered
+    /// together).
     pub(super) is_of_earlier: bool,
 }
 

@@ -18,8 +18,8 @@ use crate::interrupt::poll;
 use crate::merge::profile::Declined;
 use crate::mesh::handle::{FaceId, VertexId};
 
-/// The known winding numbers around the vertices of one mesh, as classes of vertices between which the
-/// differences of numbers are known (disjoint sets).
+/// The known winding numbers of one operand at the vertices of a mesh. Vertices are in one class (disjoint
+/// set) if the differences between their winding numbers are known.
 #[derive(Debug)]
 pub(super) struct Labels<'a> {
     of: Operand<'a>,
@@ -27,7 +27,8 @@ pub(super) struct Labels<'a> {
     around: usize,
     windings: Windings<'a>,
     parents: Vec<u32>,
-    /// For each vertex, the winding number at it minus the number at its parent.
+    /// For each vertex, the winding number at the vertex minus the number at its parent in the disjoint-set
+    /// forest.
     above: Vec<i32>,
     /// For each vertex that is the root of a class, the winding number at it, if known.
     known: Vec<Option<i32>>,
@@ -36,8 +37,8 @@ pub(super) struct Labels<'a> {
 }
 
 impl<'a> Labels<'a> {
-    /// Starts with no known winding number: numbers of the operand `operand`, whose index is `around`, around
-    /// the vertices of the mesh `of`.
+    /// Makes labels without a known number, for winding numbers of `operand`, whose index is `around`, at the
+    /// vertices of the mesh `of`.
     pub(super) fn new(
         of: Operand<'a>,
         (around, operand): (usize, Operand<'a>),
@@ -151,8 +152,9 @@ impl<'a> Labels<'a> {
         free.map(|vertex| self.number_at(vertex))
     }
 
-    /// Joins the classes of two vertices, each given by its root and the difference to it; `more` is the
-    /// difference of their numbers. Returns the root and the difference of the first vertex.
+    /// Joins the classes of two vertices, each given by the root of its class and its winding number minus
+    /// the root's; `more` is the first vertex's number minus the second's. Returns the new root, and the
+    /// first vertex's number minus this root's.
     fn join_roots(
         &mut self,
         (a, above_a): (usize, i32),

@@ -121,8 +121,8 @@ impl PreparedMesh<'_> {
         PreparedFace::at(self.mesh, face, self.irregular, terrain)
     }
 
-    /// Returns a number that is equal for two faces only if they belong to one terrain, so that they need not
-    /// be compared.
+    /// Returns a number that is equal for two faces only if they belong to one terrain (a set of faces known
+    /// not to overlap each other), so that they need not be compared.
     fn group_of(&self, face: FaceId) -> usize {
         match self.terrains[face.index()] {
             NONE => self.mesh.faces.len() + face.index(),

@@ -138,7 +138,7 @@ impl Occupancy {
         (low <= high).then_some([low, high])
     }
 
-    /// Returns true if a box may reach into a marked cell.
+    /// Returns true if a box may reach into a marked cell (a cell that the mesh's faces may reach into).
     pub(super) fn meets(&self, bounds: &RoundedBox) -> bool {
         if self.rows.is_empty() {
             return true;

@@ -1,7 +1,7 @@
 //! Samples faces, to detect pairs of meshes that touch nearly everywhere or whose boxes separate little.
 //!
-//! Copies and revisions of a mesh touch it nearly everywhere, and in bundles of needles nearly all boxes
-//! meet. Without the sample the arrangement would detect this only after most of its work.
+//! Copies and revisions of a mesh touch it nearly everywhere, and in bundles of needles (long thin triangles)
+//! nearly all boxes meet. Without the sample the arrangement would detect this only after most of its work.
 
 use super::candidates::{FacesInWindow, Operand};
 use super::contact::{contact, Contact};

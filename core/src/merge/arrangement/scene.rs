@@ -35,11 +35,11 @@ pub(super) struct Scene<'a> {
     pub(super) work_size: WorkSize,
 }
 
-/// Whether a face is absent, whole or cut in the result.
+/// The form of an operand's face in the result: absent, whole or cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
     Gone,
-    /// It stays whole in this orientation; true if other faces may touch it anywhere.
+    /// The face stays whole in this orientation; the flag is true if other faces may touch it anywhere.
     Whole(Orientation, bool),
     Cut,
 }
@@ -49,7 +49,7 @@ impl Fate {
         stays.map_or(Self::Gone, |orientation| Self::Whole(orientation, touches))
     }
 
-    /// Records that other faces may touch the face, if it stays whole.
+    /// Records, for a face that stays whole, that other faces may touch it.
     fn touch(&mut self) {
         if let Self::Whole(_, touches) = self {
             *touches = true;
@@ -129,7 +129,7 @@ impl<'a> Scene<'a> {
     }
 
     /// Returns the faces that other faces divide or cover, and the faces whose corners all lie on other
-    /// faces; ascending joint numbers.
+    /// faces, by ascending number (faces of both operands are numbered together).
     fn arranged_faces(&self, found: &Contacts) -> Vec<u32> {
         let segments = found.segments.iter().map(|s| s.face);
         let covered = found.covers.iter().map(|c| c.face);
@@ -244,8 +244,9 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// Relates the winding numbers around all vertices of an operand, and counts those from which all others
-    /// follow, as far as they must be counted in advance.
+    /// Prepares the winding numbers at an operand's vertices (of the other operand, or of the mesh itself if
+    /// there is only one): relates the numbers of vertices connected by faces, and counts the numbers that
+    /// must be known in advance.
     fn labels<'b>(
         &self,
         operand: usize,
@@ -377,7 +378,8 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Returns the rows of a table, sorted by face, that belong to one face; `of` returns the face of a row.
+/// Returns the rows that belong to one face, from a table sorted by face number; `of` returns the face number
+/// of a row.
 fn rows_of_face<T>(rows: &[T], face: u32, of: impl Fn(&T) -> u32) -> &[T] {
     let first = rows.partition_point(|row| of(row) < face);
     let count = rows[first..]

@@ -28,7 +28,8 @@ pub(super) type Edge = (usize, [VertexId; 2]);
 pub(super) enum MeetingPoint {
     /// A corner of a face, at this lattice point.
     Corner(Lattice),
-    /// The point in which an edge passes through the inside of a face, given by its joint number.
+    /// The point in which an edge passes through the inside of a face; the face is given by its number (faces
+    /// of both operands are numbered together).
     Through(Edge, u32),
     /// The point in which two edges cross.
     Edges([Edge; 2]),
@@ -37,13 +38,14 @@ pub(super) enum MeetingPoint {
 /// A segment in which a face meets another face.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Segment {
-    /// The joint number of the face that the segment divides.
+    /// The number of the face that the segment divides (faces of both operands are numbered together).
     pub(super) face: u32,
-    /// The joint number of the face that it meets.
+    /// The number of the face that meets the divided face in the segment (faces of both operands are numbered
+    /// together).
     pub(super) other: u32,
     /// The indices of the points at the ends of the segment.
     pub(super) ends: [u32; 2],
-    /// The line that contains the segment, and how the other face lies to it.
+    /// The line that contains the segment, and the position of the other face relative to this line.
     pub(super) line: Line,
 }
 
@@ -70,9 +72,9 @@ pub(super) enum Line {
 /// A pair of faces in one plane that have an area in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Cover {
-    /// The joint number of the first face.
+    /// The number of the first face of the pair (faces of both operands are numbered together).
     pub(super) face: u32,
-    /// The joint number of the second face.
+    /// The number of the second face of the pair (faces of both operands are numbered together).
     pub(super) other: u32,
 }
 
@@ -85,7 +87,8 @@ pub(super) struct Contacts {
     pub(super) segments: Vec<Segment>,
     /// The pairs of coplanar faces with a common area, ascending, each in both orders.
     pub(super) covers: Vec<Cover>,
-    /// The joint numbers of the faces that touch others without simply crossing them; ascending.
+    /// The numbers of the faces that touch others without simply crossing them, ascending; faces of both
+    /// operands are numbered together.
     pub(super) touched: Vec<u32>,
     /// For each operand and each of its vertices, whether a face without this vertex may reach its point;
     /// empty if no vertex is reached.
@@ -93,7 +96,7 @@ pub(super) struct Contacts {
     numbers: HashMap<MeetingPoint, u32>,
 }
 
-/// Two faces that meet, by their joint numbers, and how they meet.
+/// Two faces that meet, by their numbers (faces of both operands are numbered together), and how they meet.
 struct MeetingFaces {
     pair: [u32; 2],
     kind: MeetingKind,

@@ -33,8 +33,8 @@ pub enum United {
 }
 
 /// Unites a mesh as it was imported with itself: the result bounds the points that `rule` calls inside.
-/// `None` if the solid is no such mesh, if too many boxes of faces overlap, or if faces are too thin to count
-/// winding numbers at them.
+/// `None` if the solid is not a mesh as it was imported, if too many boxes of faces overlap, or if faces are
+/// too thin to count winding numbers at them.
 ///
 /// # Example
 /// ```

@@ -51,15 +51,15 @@ const MAX_EIGHTHS_LEFT: usize = 5;
 
 /// The most elements (faces or parts of faces) of a cell that kernels solve because halving no longer
 /// separates them. The kernel's memory grows with the square of their number, to a gigabyte for two fans of
-/// needles around one corner.
+/// needles (long thin triangles) around one corner.
 ///
 /// Nearly all of many needles near a line run through each of the small cells along it, so halving costs far
 /// more than the kernel.
 pub const MAX_ELEMENTS_STUCK: usize = 1 << 14;
 
-/// After the kernel for general position refused a cell, it is asked again when one in this many of the
-/// elements (faces or parts of faces) is left. So from `MAX_ELEMENTS_FRESH` down to `MAX_ELEMENTS_PER_LEAF`
-/// elements at most three requests are in vain.
+/// After the kernel for general position refused a cell, it is asked again about a smaller cell only when at
+/// most one in this many of the elements (faces or parts of faces) is left. So from `MAX_ELEMENTS_FRESH` down
+/// to `MAX_ELEMENTS_PER_LEAF` elements at most three requests are in vain.
 const RETRIED_IF_ONE_IN: usize = 8;
 
 /// The least number of operands that can be evaluated in groups, if no kernel solves all of them at once.
@@ -73,7 +73,7 @@ pub const MAX_OPERANDS_AT_ONCE: usize = 8;
 /// the boundary of a group's result is smaller than the operands' boundaries, which all cross each other.
 const GROUPS_FROM: usize = 16;
 
-/// The progress of halving cells: how well the current and the last round of three halvings separate elements
+/// A record of halving a cell: how well the current and the last round of three halvings separate elements
 /// (faces or parts of faces), and which kernels have refused.
 #[derive(Clone, Copy)]
 pub struct Round {
@@ -91,7 +91,7 @@ pub struct Round {
 }
 
 impl Round {
-    /// The state before the first halving.
+    /// The record before the first halving.
     pub const START: Self = Self {
         depth: 0,
         start: usize::MAX / 8,
@@ -101,13 +101,13 @@ impl Round {
         empty_sibling: false,
     };
 
-    /// The state before the first halving if the operands are results of groups of overlapping operands.
+    /// The record before the first halving if the operands are results of groups of overlapping operands.
     pub const OF_GROUPS: Self = Self {
         groups: true,
         ..Self::START
     };
 
-    /// Returns the progress after one more halving, of a cell with `total` elements (faces or parts of
+    /// Returns this record, updated for one more halving, of a cell with `total` elements (faces or parts of
     /// faces).
     #[must_use]
     pub fn next(self, total: usize) -> Self {
@@ -127,9 +127,8 @@ impl Round {
         }
     }
 
-    /// Returns the progress of halving after a step in which one half of `cell` is empty and the other has
-    /// all
-    /// `total` elements (faces or parts of faces). The step counts as one that separates nothing only if the
+    /// Returns this record, updated for a halving in which one half of `cell` is empty and the other half has
+    /// all `total` elements (faces or parts of faces). The halving counts as separating nothing only if the
     /// elements' box, whose longest side is `extent`, spans half of the cell or is a point: otherwise smaller
     /// cells may still separate the elements.
     #[must_use]
@@ -157,8 +156,8 @@ impl Round {
     }
 
     /// Performs the halvings from `cell` to `inner`, which contains all elements (faces or parts of faces),
-    /// and ends early at a cell in which halving seems stuck. Returns the last cell and the progress. The
-    /// cell has `total` elements in a box whose longest side is `extent`.
+    /// and ends early at a cell in which halving seems stuck. Returns the last cell and the updated record of
+    /// halvings. The cell has `total` elements in a box whose longest side is `extent`.
     pub fn halved_to(self, cell: Cell, inner: &Cell, extent: i64, total: usize) -> (Cell, Self) {
         let (mut cell, mut round) = (cell, self);
         while let Some(cut) = cell.cut().filter(|_| cell != *inner) {
@@ -207,7 +206,7 @@ impl Round {
     /// Returns true if the kernel for general position should be asked about a cell with `total` elements
     /// (faces or parts of faces): it has at most `MAX_OPERANDS` operands, at most `MAX_ELEMENTS_FRESH`,
     /// `MAX_ELEMENTS_OF_GROUPS` or `MAX_ELEMENTS_GENERAL` elements, depending on where the operands come
-    /// from, and few enough since the kernel last refused.
+    /// from, and at most 1/`RETRIED_IF_ONE_IN` of the elements of the cell that the kernel last refused.
     pub fn suits_general_position(&self, states: &States, total: usize) -> bool {
         if states.len() > MAX_OPERANDS || total > self.refused / RETRIED_IF_ONE_IN {
             return false;

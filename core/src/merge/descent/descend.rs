@@ -94,7 +94,8 @@ pub struct Descent<'a> {
     /// The indices of the operands not known to be free of self-overlaps. If one overlaps itself, the caller
     /// unites it with itself and evaluates the expression again.
     pub doubted: Vec<usize>,
-    /// True if the first doubted operand that turns out to overlap itself ends the descent.
+    /// True if the descent ends as soon as an operand not known to be free of self-overlaps turns out to
+    /// overlap itself.
     ends_at_first: bool,
 }
 
@@ -124,8 +125,8 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Returns true if all doubted operands are known to overlap themselves, so that the result will not be
-    /// used; always false if the descent is impatient.
+    /// Returns true if all operands that were not known to be free of self-overlaps now are known to overlap
+    /// themselves, so that the result will not be used; always false if the first of them ends the descent.
     fn is_moot(&self) -> bool {
         let seen = |k: &usize| self.overlaps[*k].load(Ordering::Relaxed);
         // An impatient descent needs the first such operand in the order of cells, whatever other threads
@@ -176,8 +177,8 @@ impl<'a> Descent<'a> {
         })
     }
 
-    /// Returns a placeholder for the result of a descent that `operand` ended; marks only this operand as
-    /// overlapping, because what other threads found depends on timing.
+    /// Returns a placeholder for the result of a descent that ended because `operand` overlaps itself; marks
+    /// only this operand as overlapping, because what other threads found depends on timing.
     fn placeholder_for(&self, operand: u32, cell: Cell) -> Branch {
         for (k, seen) in (0..).zip(&self.overlaps) {
             seen.store(k == operand, Ordering::Relaxed);
@@ -352,7 +353,8 @@ impl<'a> Descent<'a> {
         expression.value(outside, &mut Vec::new())
     }
 
-    /// Records that operands overlap themselves; if the descent is impatient, the first doubted one ends it.
+    /// Records that operands overlap themselves. If `ends_at_first` is set and one of these operands was
+    /// doubted (not known to be free of self-overlaps), returns the error that ends the descent.
     pub(super) fn record_overlaps(&self, operands: &[u32]) -> std::result::Result<(), DescentEnd> {
         for k in operands {
             self.overlaps[*k as usize].store(true, Ordering::Relaxed);

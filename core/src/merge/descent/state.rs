@@ -34,7 +34,7 @@ pub const fn work_size(elements: usize) -> WorkSize {
 /// The number of faces from which a deferred leaf is sorted into bins instead of being halved.
 pub const BINS_FROM: usize = 1024;
 
-/// The most entries of bins in a cell for which a list replaces the bins.
+/// The largest number of faces in a cell, as counted by bins, for which a list replaces the bins.
 const MAX_ENTRIES_LISTED: usize = 64;
 
 /// The form in which the descent stores one operand in a cell.

@@ -42,8 +42,8 @@ pub struct Division {
 }
 
 impl Division {
-    /// Makes an undivided polygon of its plane and its counterclockwise corners, each with the carrier of the
-    /// side that begins there.
+    /// Makes an undivided polygon of its plane and its counterclockwise corners, each with the carrier (the
+    /// edge or plane that contains it) of the side that begins there.
     ///
     /// # Errors
     /// If the polygon has more than three corners and is not strictly convex.
@@ -155,8 +155,8 @@ impl Division {
         &mut self.triangulation
     }
 
-    /// Returns for each neighbour of a triangle of the division the edge across which it lies, and its
-    /// number.
+    /// Returns for each neighbour of a triangle of the division the index of the triangle's edge between
+    /// them, and the neighbour's number.
     pub fn neighbours(&self, cell: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         let neighbours = self.triangulation.cells()[cell]
             .neighbours

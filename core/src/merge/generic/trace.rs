@@ -63,7 +63,7 @@ pub enum MergeEvent<S: Space> {
     },
     /// The two combined subtrees of a node of the first operand have been joined under it.
     Join {
-        /// The sub-hyperplane of that node.
+        /// The sub-hyperplane of the node under which the subtrees are joined.
         sub_hyperplane: Arc<SubHyperplane<S>>,
         /// The form that the node has in the result.
         joined: Joined,
@@ -104,7 +104,7 @@ pub enum DecisionReason {
 /// The form that a node of the first operand has in the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Joined {
-    /// The node itself, because nothing below it changed.
+    /// The first operand's node itself, because nothing below it changed.
     Shared,
     /// A new node with the same hyperplane.
     Rebuilt,
@@ -153,7 +153,7 @@ pub enum MergeStep {
     },
     /// The two combined subtrees of a node of the first operand have been joined under it.
     Join {
-        /// The number of that node in the first operand.
+        /// The number, in the first operand, of the node under which the subtrees are joined.
         node: NodeName,
         /// The form that the node has in the result.
         joined: Joined,

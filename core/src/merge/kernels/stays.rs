@@ -12,11 +12,11 @@ use crate::tree::node::Part;
 
 /// The part of a face, or of a convex piece of a cut face, that bounds the result in one orientation.
 pub enum StayingRegion {
-    /// Nothing of the face.
+    /// No part of the face bounds the result.
     Nothing,
-    /// All of the face in the cell.
+    /// All of the face inside the cell bounds the result.
     All,
-    /// These convex pieces of the face.
+    /// These convex pieces of the face bound the result.
     Pieces(Vec<Polygon>),
     /// The region of the face inside an outline; no two consecutive edges lie on one line.
     Outline(Vec<BareEdge>),

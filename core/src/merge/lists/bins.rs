@@ -26,10 +26,10 @@ use crate::tree::node::{Branch, DeferredLeaf, FaceGroup, Node};
 /// The least average number of faces in a cell into which faces are sorted.
 const MIN_FACES_PER_CELL: usize = 4;
 
-/// The largest average number of cells in which a face is entered; if it is exceeded, larger cells are used.
+/// The largest average number of cells in which a face is listed; if it is exceeded, larger cells are used.
 const MAX_ENTRIES_PER_FACE: usize = 2;
 
-/// The number of faces sampled to estimate in how many cells a face is entered.
+/// The number of faces sampled to estimate in how many cells a face is listed.
 const FACES_SAMPLED: usize = 1024;
 
 /// The least number of cells for which it pays to sort faces into them.
@@ -43,12 +43,13 @@ pub struct Bins {
     /// numbered consecutively over all groups.
     firsts: Vec<u32>,
     window: Window,
-    /// For each cell the index of its first entry in `entries`; the last number is the end of the last cell's
-    /// entries.
+    /// For each cell the index in `entries` of the first face in the cell; the last number is the end of the
+    /// last cell's faces.
     starts: Vec<u32>,
     /// The numbers of the faces in each cell, cell after cell.
     entries: Vec<u32>,
-    /// For each corner of the window's cells, the number of entries in the cells below it on all three axes.
+    /// For each corner of the window's cells, the number of faces in the cells below it on all three axes; a
+    /// face counts once for each cell.
     below: Vec<u32>,
     crossings: Crossings,
 }
@@ -122,8 +123,8 @@ impl Bins {
         self.window.is_divided_in(cell)
     }
 
-    /// Returns the number of entries of faces in a cell of the sorted leaf: zero if no face meets the cell; a
-    /// face may be counted several times.
+    /// Returns the number of faces of the sorted leaf that reach into a cell, zero if none does; a face
+    /// counts once for each of the smaller cells (bins) that it was sorted into.
     pub fn len_in(&self, cell: &Cell) -> usize {
         let [x, y, z] = self.window.cells_in(cell);
         let [_, ny, nz] = self.window.count();
@@ -293,8 +294,9 @@ fn bounds(runs: &[GroupFaces], home: &Cell) -> Option<(Lattice, Lattice)> {
     (0..3).all(|i| low[i] <= high[i]).then_some((low, high))
 }
 
-/// Returns the window of the smallest cells with enough faces in each cell and with each face in few enough
-/// cells, on average; `None` if there is none, or if its cells are fewer than `MIN_CELLS`.
+/// Returns the window (box of equally large cells) of the smallest cells with enough faces in each cell and
+/// with each face in few enough cells, on average; `None` if there is none, or if its cells are fewer than
+/// `MIN_CELLS`.
 fn plan_window(runs: &[GroupFaces], home: &Cell, total: usize) -> Option<Window> {
     let (low, high) = bounds(runs, home)?;
     let step = total.div_ceil(FACES_SAMPLED);
@@ -469,8 +471,8 @@ fn distribute(window: &Window, cells: &[u32], rows: &[(u32, u32)]) -> (Vec<u32>,
     (starts, entries)
 }
 
-/// Returns for each corner of the window's cells the number of entries in the cells below it on all three
-/// axes.
+/// Returns for each corner of the window's cells the number of faces in the cells below it on all three axes;
+/// a face counts once for each cell.
 fn entries_below_corners(window: &Window, starts: &[u32]) -> Vec<u32> {
     let [nx, ny, nz] = window.count().map(|c| c.cast_unsigned() as usize);
     let (row, slab) = (nz + 1, (ny + 1) * (nz + 1));

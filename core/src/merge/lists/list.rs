@@ -378,7 +378,7 @@ impl List {
     }
 
     /// Returns the list as a deferred leaf, complemented if `complement` is true; an empty list becomes a
-    /// leaf.
+    /// leaf with one winding number.
     pub fn close(self, complement: bool, sources: &Sources) -> Node {
         let corner = if complement {
             1 - self.corner

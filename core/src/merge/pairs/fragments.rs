@@ -32,13 +32,13 @@ const INTERVALS_PER_AXIS: usize = 16;
 const MAX_SHARE_OF_PAIRS: f64 = 7.0 / 8.0;
 
 /// The number of consecutive divisions that may separate nothing; a part with at most half of the pairs
-/// starts the count again. Near the corner of a fan, one axis leaves all needles on both sides, and another
-/// axis then separates them from walls.
+/// starts the count again. Near the corner of a fan of needles (long thin triangles), dividing on one axis
+/// leaves all needles on both sides, and dividing on another axis then separates them from other elements.
 ///
 /// No division increases the number of pairs, so there are never more fragments than pairs.
 const MAX_VAIN_DIVISIONS: u32 = 2;
 
-/// The triangles to be separated, and the cells still to be divided.
+/// The elements (triangles or parts of faces) that cells are to separate, and the cells still to be divided.
 pub struct Crowd {
     /// For each element (a triangle or part of a face) the corners of its triangle, if known, turned and
     /// scaled.
@@ -308,21 +308,21 @@ impl Fragments {
     }
 }
 
-/// Counts of the elements (triangles or parts of faces) up to each candidate coordinate, from which the
-/// numbers of pairs follow.
+/// Counts of the elements (triangles or parts of faces) between one end of a cell's axis and each coordinate
+/// at which the cell may be divided, from which the numbers of pairs follow.
 #[derive(Default)]
 struct Tally {
-    /// For each candidate, the increase of the number of elements (triangles or parts of faces) over the
-    /// previous candidate.
+    /// For each coordinate at which a cell may be divided, the increase of the number of elements (triangles
+    /// or parts of faces) from the previous coordinate to this one.
     more: [f64; INTERVALS_PER_AXIS + 1],
-    /// For each candidate, the increase of the sum of the squares of the operands' numbers of elements
-    /// (triangles or parts of faces).
+    /// For each coordinate at which a cell may be divided, the increase, from the previous coordinate, of the
+    /// sum of the squares of the operands' numbers of elements (triangles or parts of faces).
     more_squares: [f64; INTERVALS_PER_AXIS + 1],
 }
 
 impl Tally {
-    /// Adds the elements (triangles or parts of faces) of one operand, given the index of the candidate at
-    /// which each begins.
+    /// Adds the elements (triangles or parts of faces) of one operand, given for each the index of the
+    /// coordinate at which it begins.
     fn add(&mut self, candidates: impl Iterator<Item = usize>) {
         let mut own = [0.0; INTERVALS_PER_AXIS + 1];
         candidates.for_each(|place| own[place] += 1.0);
@@ -334,8 +334,8 @@ impl Tally {
         }
     }
 
-    /// Returns for each candidate the number of pairs of elements (triangles or parts of faces) of different
-    /// operands up to it.
+    /// Returns for each coordinate at which a cell may be divided the number of pairs of elements (triangles
+    /// or parts of faces) of different operands between it and the end of the axis at which counting began.
     fn pairs(&self) -> [f64; INTERVALS_PER_AXIS + 1] {
         let (mut count, mut squares) = (0.0, 0.0);
         std::array::from_fn(|k| {

@@ -11,9 +11,9 @@ use crate::tree::plane::Corner;
 /// The distinct points among the given corners, ordered by x, then y.
 #[derive(Debug)]
 pub(super) struct Stops {
-    /// For each stop, the index of a given corner at its point.
+    /// For each stop (distinct point), the index of a given corner at this point.
     pub corners: Vec<u32>,
-    /// For each given corner, the index of the stop at its point.
+    /// For each given corner, the index of the stop (distinct point) at its position.
     pub stop_of: Vec<u32>,
 }
 

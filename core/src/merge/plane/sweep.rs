@@ -60,7 +60,7 @@ struct SweptStrand {
 pub(super) struct Event {
     /// The point of the stop.
     pub corner: Corner,
-    /// The index of the stop, if an input segment begins or ends there; `None` at a crossing.
+    /// The index of the point among the distinct end points of input segments; `None` at a crossing.
     pub stop: Option<u32>,
 }
 
@@ -126,7 +126,8 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         (self.inside)(segment.below) != (self.inside)(segment.above())
     }
 
-    /// Processes a stop: ends the segments that reach it, and begins the segments that leave it to the right.
+    /// Processes a stop of the sweep (an end point or crossing of segments): ends the segments that reach it,
+    /// and begins the segments that leave it to the right.
     pub(super) fn process(&mut self, event: &Event) -> Result<()> {
         let range = self.status.range_at(&event.corner.point, event.stop);
         let (winding, face) = self.winding_and_face_below(range.first);
@@ -254,8 +255,9 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         leaving
     }
 
-    /// Extends the one boundary edge that reaches a stop if exactly one leaves it, in the same line and with
-    /// the same side inside; returns true if it did.
+    /// Extends the boundary edge that reaches a stop of the sweep instead of ending it there; returns false,
+    /// without a change, unless exactly one edge reaches the stop and one leaves it, in the same line and
+    /// with the same side inside.
     fn extend_edge(&self, arriving: &[usize], leaving: &mut [ActiveSegment], walls: usize) -> bool {
         let ([before], 1) = (arriving, walls) else {
             return false;

@@ -23,7 +23,7 @@ pub enum Location {
 /// Out, and else on the boundary.
 ///
 /// # Exactness
-/// The answer is exact.
+/// The location is exact.
 ///
 /// # Cost
 /// One path from the root to a leaf, unless the point lies in a cut.

@@ -140,7 +140,7 @@ impl Anchor {
         })
     }
 
-    /// Returns true if a corner is at this point.
+    /// Returns true if `corner` is the point of this anchor.
     pub(super) fn is_at(&self, corner: &Arc<Vertex>) -> bool {
         match &self.position {
             AnchorPosition::Lattice(p) => corner.as_lattice() == Some(p),

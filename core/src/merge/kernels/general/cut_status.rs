@@ -63,8 +63,8 @@ pub(super) struct CutElement {
 }
 
 impl Scene<'_> {
-    /// Returns how other operands affect each face, or convex piece of a cut face, in the cell; `None` if two
-    /// of different operands touch without crossing.
+    /// Returns how other operands affect each face, or convex piece of a cut face, in the cell; `None` if
+    /// faces of different operands touch without crossing.
     pub(super) fn cut_statuses(&self) -> Option<Vec<CutStatus>> {
         let near = self.neighbours()?.into_iter().enumerate();
         // A cell with a degenerate position is refused before any element is divided.
@@ -114,8 +114,8 @@ impl Scene<'_> {
         }
     }
 
-    /// Returns for each face, or piece of a cut face, the numbers of those of other operands that may meet it
-    /// inside the cell; `None` if a sampled pair touches without crossing.
+    /// Returns for each face, or piece of a cut face, the numbers of the faces and pieces of other operands
+    /// that may meet it inside the cell; `None` if a sampled pair touches without crossing.
     fn neighbours(&self) -> Option<Vec<Neighbours>> {
         let size = self.cell.size().into_iter().max().unwrap_or(0);
         let shift = shift_of(1 << size);

@@ -75,12 +75,13 @@ impl Element<'_> {
     }
 }
 
-/// A cache of an expression's values for labels, each of which has a bit for every operand: whether a point
-/// is inside it.
+/// A cache of an expression's values for labels. A label has a bit for each operand: whether a point is
+/// inside the operand.
 struct Values<F> {
     value: F,
     known: HashMap<Labels, bool>,
-    /// The last request and its result: consecutive faces mostly ask for the same.
+    /// The last pair of arguments of `values_on_sides` and its result: consecutive faces mostly need the
+    /// same.
     last: Option<((Labels, Labels), [bool; 2])>,
 }
 
@@ -108,7 +109,8 @@ impl<F: FnMut(Labels) -> bool> Values<F> {
     }
 }
 
-/// Returns that all of a face stays in the orientation `side`, and nothing in the other one.
+/// Returns the regions of a face that stays whole: all of it in the orientation `side`, nothing in the other
+/// orientation.
 fn all_on(side: usize) -> [StayingRegion; 2] {
     let mut stays = [StayingRegion::Nothing, StayingRegion::Nothing];
     stays[side] = StayingRegion::All;

@@ -156,8 +156,9 @@ impl<'a> Scene<'a> {
         !others.map(|(_, other)| other).any(meets) && corners.any(|c| is_well_inside(c, self.cell))
     }
 
-    /// Returns a triangle that contains the face or piece, for quick tests: what is apart from a face is
-    /// apart from the pieces of this face, too. The face of a half-space is never known to be apart.
+    /// Returns, for quick tests, a triangle that contains the face or piece: the whole face that a piece was
+    /// cut from. For the face of a half-space returns a value that no quick test finds to be apart from
+    /// another face.
     pub(super) fn near_triangle(&self, element: &Element) -> NearTriangle {
         let corners = match &element.kind {
             ElementKind::Face(triangle) => Some(triangle.corners),

@@ -210,13 +210,14 @@ impl<'a> Facet<'a> {
         }
     }
 
-    /// Returns true if the point just above `corner` in both coordinates, given in half lattice steps, is
-    /// inside all slanted edges.
+    /// Returns true if the point just above `corner` in both coordinates, given in half lattice steps, is on
+    /// the inner side of all slanted edges of the facet.
     pub(super) fn contains(&self, corner: [i64; 2]) -> bool {
         self.slanted_edges.iter().all(|s| s.is_left(corner))
     }
 
-    /// Returns true if a part of a rectangle is inside all slanted edges.
+    /// Returns true if a part of the rectangle from `low` to `high` is on the inner side of all slanted edges
+    /// of the facet.
     pub(super) fn touches(&self, low: [i64; 2], high: [i64; 2]) -> bool {
         self.slanted_edges.iter().all(|s| s.reaches(low, high))
     }
@@ -268,7 +269,7 @@ impl SlantedEdge {
         }
     }
 
-    /// Returns true if a part of a rectangle is on the left of the edge.
+    /// Returns true if a part of the rectangle from `low` to `high` is on the left of the edge.
     fn reaches(&self, low: [i64; 2], high: [i64; 2]) -> bool {
         // If the edge rises along the bits, its left has smaller row coordinates.
         let row = if self.to[1] > self.from[1] {

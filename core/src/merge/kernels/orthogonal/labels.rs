@@ -71,8 +71,9 @@ impl<'a> OperandGrid<'a> {
         first..starts.partition_point(|s| *s < range.end)
     }
 
-    /// Records the change of the winding number across a facet. A facet across z changes all its boxes, a
-    /// facet across y only boxes at the lowest z, and a facet across x only the box at the lowest y and z.
+    /// Records the change of the winding number across a facet in boxes just above it, from where
+    /// [`Self::add_up`] spreads it: if the facet is perpendicular to z, in all boxes that it bounds; if to y,
+    /// only in boxes at the lowest z; if to x, only in the box at the lowest y and z.
     fn enter(&mut self, facet: &Facet, position: &FacetPosition) {
         let axis = facet.axis;
         let at = self.starts[axis].partition_point(|s| *s < position.line);

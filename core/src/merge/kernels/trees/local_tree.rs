@@ -32,7 +32,7 @@ pub struct WeightedPolygon {
 /// A part of a polygon, and the winding numbers of an operand on the minus and the plus side of its plane.
 #[derive(Debug)]
 pub struct LabelledPolygon {
-    /// The polygon of the piece.
+    /// The polygon of the labelled part.
     pub polygon: Polygon,
     /// The winding number on the minus side of the polygon's plane.
     pub minus: i32,
