@@ -344,7 +344,7 @@ class _Blend:
         return np.array([first, *arc[1:-1], last, self._snapped(tip)])
 
     def _reach(self, edge: int, rings: FloatArray, place: int) -> int:
-        """Return by how many of its lengths the prism must extend past the planes at end 0 or 1."""
+        """Return by how many of its lengths a prism along an edge must extend past end 0 or 1."""
         vertex, along = int(self.graph.ends[edge, place]), self.graph.directions[edge]
         others = self.graph.faces_at(vertex) - set(self.graph.sides[edge].tolist())
         sines = np.abs(self.graph.normals[sorted(others)] @ along)
