@@ -366,7 +366,7 @@ class TreeLeaf:
         return _crosses_there(self.result, motion)
 
     def without_record(self) -> "TreeLeaf":
-        """Return the leaf without its record, unless a later transform would need the record.
+        """Return the leaf without the record of its operands, unless later transforms need that.
 
         If a solid and its complement are both unbounded, as results of half-spaces may be, there is
         no mesh to transform.

@@ -22,7 +22,7 @@ _Result = TypeVar("_Result")
 
 
 class Ledger:
-    """The solids that one block combines at its end, in order.
+    """The solids that one block, a ``with`` statement, combines at its end, in order.
 
     Parameters
     ----------

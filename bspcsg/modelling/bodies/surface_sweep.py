@@ -43,7 +43,7 @@ class _Sums:
 
 
 def swept_mesh(solid: Polyhedron, tool: Polyhedron) -> tuple[IndexArray, IndexArray]:
-    """Return the points and faces of a mesh whose winding number is positive in a Minkowski sum.
+    """Return points and faces of a mesh whose winding number is positive inside a Minkowski sum.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ _SAME = 1e-6
 
 
 def refuse_no_room(graph: FaceGraph, widths: FloatArray, apart: Iterable[int] = ()) -> None:
-    """Raise an error if the strips that blends remove along edges overlap on a face.
+    """Raise an error if strips that chamfers or fillets remove along edges overlap on a face.
 
     Parameters
     ----------
