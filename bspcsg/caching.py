@@ -42,9 +42,9 @@ class LastValueCache(Generic[_Key, _Value]):
         return self._kept.get(key)
 
     def keep(self, key: _Key, value: _Value) -> _Value:
-        """Store a value as the only entry, and return the stored value of its key.
+        """Store a value as the only entry, and return it.
 
-        That is another value if another thread stored one for the same key first.
+        If another thread has already stored a value for this key, return that value instead.
         """
         kept = self._kept.setdefault(key, value)
         for other in list(self._kept):

@@ -36,7 +36,7 @@ class Steps:
 
     @property
     def share(self) -> float | None:
-        """The share of the steps that are done, from 0 to 1; None if the total is unknown."""
+        """The fraction of all steps that are done, from 0 to 1; None if their number is unknown."""
         return None if not self.of else min(self.done / self.of, 1.0)
 
     def told_to(self, tell: Callable[[], object]) -> None:
@@ -144,7 +144,7 @@ def progress(
 
 
 class _PacedCall:
-    """A function that calls another one at intervals, but never while that is still running."""
+    """A wrapper that drops calls within `pause` seconds of the last call, or during a call."""
 
     def __init__(self, told: Callable[[float], object], pause: float, began: float) -> None:
         self._told, self._pause, self._began = told, pause, began

@@ -117,7 +117,7 @@ def boolean(
 
 
 def _refuse_surfaces(meshes: list[Any]) -> None:
-    """Raise an error if `is_volume` of a mesh is false; other objects are accepted."""
+    """Raise an error if `is_volume` of a mesh is false; accept objects without `is_volume`."""
     bad = [number for number, mesh in enumerate(meshes) if not getattr(mesh, "is_volume", True)]
     if bad:
         which = ", ".join(map(str, bad))

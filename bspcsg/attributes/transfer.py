@@ -202,7 +202,7 @@ _NO_ARRAYS: SourceArrays = (
 
 
 def _triangles_by_source(source: IndexArray) -> Iterator[tuple[int, IndexArray]]:
-    """Yield each slot and the ascending numbers of the triangles from its source."""
+    """Yield the index of each source and the ascending numbers of the triangles in it."""
     order = np.argsort(source[:, 0], kind="stable")
     slots, starts = np.unique(source[order, 0], return_index=True)
     yield from zip(slots.tolist(), np.split(order, starts[1:]), strict=False)

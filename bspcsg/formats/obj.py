@@ -266,8 +266,8 @@ def _statements(source: Source) -> Iterator[tuple[int, list[bytes]]]:
 def _is_statement(words: list[bytes], is_after_word: bool) -> bool:
     """Say whether the words after a line of names and a backslash begin a statement of their own.
 
-    If the backslash ended a word, any known keyword begins one; if it stood alone, only a keyword
-    of numbers with at least two words does.
+    If the backslash ended a word, any known keyword begins a statement; if it stood alone, only a
+    keyword for numbers, such as “v”, with at least two words after it.
     """
     if is_after_word:
         return words[0] in _FOLLOWING

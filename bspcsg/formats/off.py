@@ -114,7 +114,7 @@ def _more_than_a_shape(
 
 
 def _colors(rows: Sequence[Sequence[bytes]]) -> Values | None:
-    """Return rows of text as colours, (k, 3) or (k, 4), uint8 or float64; None if any is none."""
+    """Return rows of text as colours, (k, 3) or (k, 4), uint8 or float64; None for other text."""
     widths = {len(row) for row in rows}
     if len(widths) != 1 or not widths <= {3, 4}:
         return None

@@ -66,7 +66,7 @@ def _same(one: RawMesh, other: RawMesh) -> bool:
 
 
 def have_equal_attributes(one: SceneNode, other: SceneNode) -> bool:
-    """Say whether the meshes of two trees of one structure have equal attributes.
+    """Say whether the meshes of two trees of equal structure have equal attributes.
 
     Meshes of nodes with a colour are not compared.
     """

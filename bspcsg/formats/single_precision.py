@@ -221,7 +221,7 @@ def _merged(vertices: FloatArray, rounded: FloatArray, moved: BoolArray) -> tupl
 
 
 def _beside_moved(rounded: FloatArray, moved: BoolArray) -> BoolArray:
-    """Say for each vertex whether its x equals that of a moved vertex: only then it can merge."""
+    """Say for each vertex whether its x equals that of a moved vertex; others cannot merge."""
     x = rounded[:, 0]
     taken = np.sort(x[moved])
     place = np.minimum(np.searchsorted(taken, x), len(taken) - 1)

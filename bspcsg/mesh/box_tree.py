@@ -123,9 +123,10 @@ class NearPairSearch:
         return squared_gaps(low[i], high[i], low_b[j], high_b[j])
 
     def _divided(self, level: tuple[int, int], pairs: BoxPairs) -> tuple[tuple[int, int], BoxPairs]:
-        """Replace boxes by their children, in the tree with more levels below, or in both.
+        """Replace the boxes of pairs by their children, in the tree with more levels below them.
 
-        Return the new levels, and all pairs of children.
+        If both trees have equally many levels below, replace both boxes. Return the new levels,
+        and all pairs of boxes.
         """
         deepest = max(level)
         cut = [own == deepest for own in level]

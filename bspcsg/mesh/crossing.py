@@ -32,7 +32,7 @@ class Crossings:
 
 
 def crossings(vertices: FloatArray, faces: IndexArray, deep: float) -> Crossings:
-    """Return the pairs of faces that cross or overlap; only pairs of a sample if one is deep.
+    """Return the pairs of faces that cross or overlap; stop early if a deep crossing is found.
 
     Parameters
     ----------

@@ -43,7 +43,7 @@ def trimesh_of(mesh: Mesh) -> "trimesh.Trimesh":
 
 
 def _consistent_attributes(mesh: Mesh, library: str) -> Attributes | None:
-    """Return the attributes of a mesh, or None; inconsistent ones give None and a warning."""
+    """Return a mesh's attributes; None if it has none, or with a warning if they are invalid."""
     if mesh.carried is None:
         return None
     try:
@@ -228,7 +228,7 @@ _MAX_LAYOUTS = 1 << 16
 
 
 def layout_of(ids: Iterable[int]) -> tuple[Column, ...] | None:
-    """Return the columns of the original meshes with these ids; None unless all have the same."""
+    """Return the columns of original meshes, given their ids; None if the columns differ."""
     found = {_LAYOUTS.get(int(number)) for number in ids}
     return found.pop() if len(found) == 1 else None
 

@@ -116,7 +116,7 @@ def _below(
 def _measures(mesh: Mesh, surfaces: IndexArray, film: float) -> tuple[FloatArray, FloatArray]:
     """Return volume and area of each surface, computed relative to a point of the surface.
 
-    The rounding errors of a long needle's volume may exceed the volume. If they could make the
+    For a long thin piece, the rounding errors of the volume may exceed it. If they could make the
     piece appear thicker than `film`, the volume is computed exactly.
     """
     _, first = np.unique(surfaces, return_index=True)

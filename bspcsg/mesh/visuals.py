@@ -152,7 +152,7 @@ def _take_metadata(
 ) -> None:
     """Add the materials, and the attributes of corners if the faces are unchanged, to `found`.
 
-    `metadata` is the metadata that `leaving.trimesh_of` has stored in a trimesh.
+    `metadata` is the metadata that `library_export.trimesh_of` has stored in a trimesh.
     """
     materials, corners = metadata.get(MATERIALS), metadata.get(CORNERS)
     if isinstance(materials, Mapping):

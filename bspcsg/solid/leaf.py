@@ -45,12 +45,12 @@ def _crosses_there(tree: Tree, motion: transform.LatticeMotion) -> bool:
 
 
 class Pitches(LastValueCache[int, Tree]):
-    """A cache of one tree on a finer lattice, the last one used, so that its users share it."""
+    """A cache of a solid's tree on the last finer lattice for which it was computed."""
 
     __slots__ = ()
 
     def of(self, tree: Tree, pitch: int) -> Tree:
-        """Return the tree of the same solid on the lattice of a pitch that is not coarser."""
+        """Return the tree of the same solid on a lattice at least as fine, given its pitch."""
         if tree.pitch == pitch:
             return tree
         known = self.get(pitch)
@@ -127,7 +127,7 @@ class MeshLeaf:
         return self.own_tree().given_arrays() if arrays is None else arrays
 
     def release_arrays(self) -> None:
-        """Release the caller's arrays: their data are read from the tree, or else copied."""
+        """Release the caller's arrays; copy them unless the tree stores the same data."""
         vertices, faces = self.arrays()
         held = self.own_tree().holds_given
         arrays = None if held else (vertices.copy(), faces.copy())
@@ -366,7 +366,7 @@ class TreeLeaf:
         return _crosses_there(self.result, motion)
 
     def without_record(self) -> "TreeLeaf":
-        """Return the leaf without its record, unless a later transform would need the record.
+        """Return the leaf without the record of its operands, unless later transforms need that.
 
         If a solid and its complement are both unbounded, as results of half-spaces may be, there is
         no mesh to transform.
@@ -544,14 +544,14 @@ def evaluated_record(record: Record) -> TreeLeaf:
 
 
 def bounded_on_one_lattice(leaves: Sequence[ExpressionLeaf]) -> list[Tree]:
-    """Return the trees of bounded solids on the finest of their lattices with range for all."""
+    """Return the trees of bounded solids on the finest lattice whose range contains them all."""
     return _on_one_lattice(leaves, True)[1]
 
 
 def _on_one_lattice(
     leaves: Sequence[ExpressionLeaf], extent: Extent
 ) -> tuple[Sequence[ExpressionLeaf], list[Tree]]:
-    """Return leaves and their trees on the finest of their lattices with range for all of them.
+    """Return leaves and their trees on the finest lattice whose range contains all of them.
 
     Parameters
     ----------
@@ -573,7 +573,7 @@ def _on_one_lattice(
 
 
 def _finest_for_all(leaves: Sequence[ExpressionLeaf], extent: Extent) -> int:
-    """Return the finest pitch whose lattice has the range for every leaf of a coarser pitch."""
+    """Return the finest pitch whose lattice range contains every leaf."""
     finest = _common_pitch(leaves)
     coarser = range(finest, MAX_PITCH)
     fitting = (

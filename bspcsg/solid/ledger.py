@@ -22,7 +22,7 @@ _Result = TypeVar("_Result")
 
 
 class Ledger:
-    """The solids that one block combines at its end, in order.
+    """The solids that one block, a ``with`` statement, combines at its end, in order.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Ledger:
         return tuple(solid for _, solid in ranked)
 
     def discard(self, solids: Iterable["Solid"]) -> int | None:
-        """Remove solids; return the lowest of their positions, or None if none was there."""
+        """Remove solids; return the first of their positions, or None if none is in the ledger."""
         with self._lock:
             gone = [self._kept.pop(id(solid), None) for solid in solids]
         return min((entry[0] for entry in gone if entry is not None), default=None)

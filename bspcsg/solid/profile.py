@@ -55,12 +55,12 @@ class Profile:
         return cls(tuple(Stage(*stage) for stage in stages), handed_on)
 
     def lines(self) -> list[str]:
-        """Return a line of text for each stage, and one for the reason `handed_on`, if any."""
+        """Return a line for each stage; last, if there is one, the reason against the fast path."""
         lines = [f"{s.name}: {s.seconds:.4f} s, {s.count} {COUNTED[s.name]}" for s in self.stages]
         if self.handed_on is None:
             return lines
         return [*lines, f"left to the descent: {self.handed_on}"]
 
     def __str__(self) -> str:
-        """Return the lines of `lines` as one text."""
+        """Return the stages as text, one line for each."""
         return "\n".join(self.lines())

@@ -355,7 +355,7 @@ class Solid(Movable, PointSet):
         )
 
     def normalized(self) -> "Solid":
-        """Return the same set of points, with every wall between inside and outside once as mesh.
+        """Return the same set with a reduced mesh: each wall between inside and outside once.
 
         Inputs that are not trusted are checked once, and united with themselves if their faces
         overlap. Measures, comparisons, checks and file output use the normalized solid.
@@ -1327,7 +1327,7 @@ class Solid(Movable, PointSet):
         return warp(self, f, winding)
 
     def smooth(self, n: int, *, sharp_angle: Scalar = 60.0) -> "Solid":
-        """Return the solid with a smooth surface through its corners, n² triangles for each one.
+        """Return the solid with a smooth surface through its corners, n² triangles for each face.
 
         Parameters
         ----------
@@ -1733,9 +1733,9 @@ def surfaces_meet(first: Solid, second: Solid) -> bool:
 
 
 def with_record(last: LastOperation, factors: FactorChain) -> Solid:
-    """Return the result of an operation after a transform.
+    """Return the result of an operation after a transform, with its `last_operation` restored.
 
-    The operation is its `last_operation`, which pickling drops.
+    Pickling drops the last operation of a solid.
     """
     leaves = tuple(evaluate(operand._node) for operand in last.operands)
     record = Record(last.program, leaves)

@@ -51,7 +51,7 @@ class TwistAndScale(NamedTuple):
 
 
 def divided_outline(outline: FloatArray, segments: int, stretch: TwistAndScale) -> FloatArray:
-    """Divide the edges of an outline evenly, until there are up to `segments`, as in OpenSCAD.
+    """Divide the edges of an outline evenly into up to `segments` parts in total, as in OpenSCAD.
 
     In each step, the edge with the longest parts gets one more part. Edges of about the same length
     are divided together or not at all, which preserves symmetry.

@@ -88,7 +88,7 @@ def polished_pitch(kinds: Sequence[Sequence[FloatArray]], finest: int) -> int | 
 
 
 def _lattice_score(parts: Sequence[FloatArray], pitch: int) -> int:
-    """Return a score of a lattice: the number of features that parts share, less those they lose.
+    """Return a score of a lattice: features common to parts, minus features lost within parts.
 
     Features are the rows of the arrays; only differences of scores are meaningful.
     """

@@ -106,7 +106,7 @@ class Evaluation:
         return self.united[id(figure)][1] if id(figure) in self.united else [figure]
 
     def corners_or(self, solid: Solid) -> Solid | FloatArray:
-        """Return the corners of the open mesh that an empty solid represents, else the solid."""
+        """Return the solid, or if it is a placeholder for an open mesh, the mesh's corners."""
         return self.open_meshes[id(solid)][1] if id(solid) in self.open_meshes else solid
 
     def warn(self, node: Node, message: str) -> None:
@@ -126,7 +126,7 @@ class Evaluation:
         """Return the solid of a mesh from the script, whatever its orientation.
 
         If the mesh is not closed, raise an error, or repair it or return None with a warning, as
-        `on_invalid` says. In a hull, return an empty solid that represents its corners.
+        `on_invalid` says. In a hull, return an empty solid as a placeholder for the mesh.
         """
         try:
             solid = Solid(vertices, faces, winding="nonzero")

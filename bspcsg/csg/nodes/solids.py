@@ -92,7 +92,7 @@ _POLYHEDRON = Signature(
 
 @node("polyhedron", takes=_POLYHEDRON)
 def polyhedron(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Make the solid that polygons bound; seen from outside, all are clockwise or all counter."""
+    """Make the solid that polygons bound, all clockwise or all counter-clockwise from outside."""
     del children
     arguments = run.arguments(owner)
     points = np.array(arguments.points("points", 3)).reshape(-1, 3)

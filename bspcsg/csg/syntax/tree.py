@@ -256,7 +256,7 @@ def _distinct(root: Node) -> list[Node]:
 
 
 def _planted(rows: list[_Row]) -> Node:
-    """Return the root node, which is in the last row; each row refers to earlier rows."""
+    """Return the tree of pickled rows: the last row is the root, rows refer to earlier ones."""
     made: list[Node] = []
     for name, arguments, children, modifiers, place in rows:
         made.append(Node(name, arguments, tuple(made[k] for k in children), modifiers, place))

@@ -154,7 +154,7 @@ def _counted_faces(text: bytes) -> npt.NDArray[Any]:
 
 
 def _complete(stored: StoredRows) -> StoredRows:
-    """Return an object; one without faces is read in full first, as it will not be compared."""
+    """Return an object; if it has no faces, which are not compared later, read it in full now."""
     if not stored.count:
         stored.loaded()
     return stored

@@ -110,9 +110,9 @@ def _settings_of(package: Package, slicing: Slicing) -> _SlicerSettings:
 
 
 def _kind(slicing: Slicing, word: str) -> str:
-    """Return the kind of part that a slicer's word names, empty for material; count it.
+    """Return the kind of part that a slicer's word names, empty for material; count the kind.
 
-    An unknown word means material, with a finding.
+    An unknown word means material, and adds a finding.
     """
     if word not in _KINDS:
         message = f"a part of the unknown kind “{word}” was read as an ordinary solid part."

@@ -149,7 +149,7 @@ def mesh_object(
 ) -> Iterator[str]:
     """Yield the XML of a mesh object, with XML attributes for its properties.
 
-    `painted` are those of the object, and `words` are those of each triangle.
+    `painted` has the XML attributes of the object, `words` the XML attributes of each triangle.
     """
     is_proper = ~_repeats_corner(mesh.faces)
     own = None if words is None else words[is_proper]

@@ -22,7 +22,7 @@ _SHARES = {"min": Fraction(0), "center": Fraction(1, 2), "max": Fraction(1)}
 
 
 def align(solid: Solid, places: dict[str, Anchor | None], to: "Solid | Vector") -> Solid:
-    """Return the solid translated so that positions of its bounding box equal a target's.
+    """Return the solid translated so that chosen coordinates of its bounding box match a target.
 
     Parameters
     ----------

@@ -44,7 +44,7 @@ def _swept_mesh(
 
 
 def _common_pitch(solid: Solid, tool: Solid) -> int:
-    """Return the smaller pitch of two solids, or a pitch whose lattice reaches their sum's box."""
+    """Return the smaller pitch of two solids; a larger one if its lattice cannot hold their sum."""
     boxes = [_box(one) for one in (solid, tool)]
     return lattice_for(np.concatenate([*boxes, boxes[0] + boxes[1]]), min(solid.pitch, tool.pitch))
 

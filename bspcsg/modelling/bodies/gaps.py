@@ -114,7 +114,7 @@ def _corners(solid: Solid) -> FloatArray:
 
 
 def _candidates(first: FloatArray, second: FloatArray) -> tuple[IndexArray, IndexArray]:
-    """Return the pairs of triangles, one of each list, that doubles cannot tell from the nearest.
+    """Return the pairs of triangles, one of each list, that may be nearest, up to rounding.
 
     A pair is a row of `first` and a row of `second`. The pairs, at most `_MAX_EXACT_PAIRS`, are
     sorted by computed distance.
@@ -146,7 +146,7 @@ def _candidates(first: FloatArray, second: FloatArray) -> tuple[IndexArray, Inde
 
 
 def _bounded(gap: float, scale: float) -> float:
-    """Return the largest squared distance that doubles cannot tell from the squared distance `gap`.
+    """Return the squared distance `gap`, enlarged by the largest rounding error of doubles.
 
     `scale` is the largest absolute coordinate.
     """

@@ -123,7 +123,7 @@ def _is_flat(given: Any) -> bool:
 
 
 def _entries(given: Iterable[Any]) -> Iterator[Any]:
-    """Yield each solid, region and array of points; replace lists that contain solids by entries.
+    """Yield each solid, region and array of points, also those in lists that contain solids.
 
     Raise `InvalidParameterError` for an argument that is none of these.
     """

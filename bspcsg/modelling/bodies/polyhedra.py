@@ -233,7 +233,7 @@ def positive_products(first: Vectors, second: Vectors) -> Mask:
 
 
 def positive_pair_products(first: Vectors, second: Vectors) -> Mask:
-    """Return a mask, (n,) bool, that is True where first[k] and second[k] have a positive product.
+    """Return a mask, (n,) bool: whether the dot product of first[k] and second[k] is positive.
 
     The second vectors are rotated by an infinitesimal angle, so that no dot product is zero.
     """
@@ -246,7 +246,7 @@ def positive_pair_products(first: Vectors, second: Vectors) -> Mask:
 
 
 def _is_positive(first: LongArray, second: LongArray) -> Mask:
-    """Return where the dot product of first[k] and the slightly rotated second[k] is positive.
+    """Return a mask: whether the dot product of first[k] and the rotated second[k] is positive.
 
     The rotation is infinitesimal, and its axis has a large x, a smaller y and a much smaller z. So
     a dot product of zero gets the sign of the first nonzero component of second[k] x first[k].

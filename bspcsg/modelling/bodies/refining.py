@@ -113,7 +113,7 @@ def _grid(
 
 
 def _between(low: FloatArray, high: FloatArray, shares: FloatArray) -> FloatArray:
-    """Return points on the segments from low[k] to high[k], (n, shares, 3); share 0 is `low`."""
+    """Return points on the segments from low[k] to high[k], at fractions from 0 to 1 of each."""
     weights = shares[:, None]
     points: FloatArray = low[:, None] + (high - low)[:, None] * weights
     return points

@@ -196,7 +196,7 @@ def _corners(solid: Solid) -> FloatArray:
 
 
 def _eroded(solid: Solid, tool: Solid) -> Solid:
-    """Return the points at which a tool fits into a solid, after it is mirrored at the origin."""
+    """Return the points at which a tool, mirrored at the origin, fits into a solid."""
     if not solid.is_bounded:
         raise UnboundedError(
             "This solid and its complement both reach to infinity, so its Minkowski sum"

@@ -24,7 +24,7 @@ _ORIGIN = -1
 
 
 class _Sums:
-    """Numbers for all sums of a solid's corner and a tool's corner, or the origin."""
+    """The numbering of all sums p + q: p is a corner of a solid, q a corner of a tool or 0."""
 
     def __init__(self, solid: Polyhedron, tool: Polyhedron) -> None:
         self._points = solid.points
@@ -43,7 +43,7 @@ class _Sums:
 
 
 def swept_mesh(solid: Polyhedron, tool: Polyhedron) -> tuple[IndexArray, IndexArray]:
-    """Return the points and faces of a mesh whose winding number is positive in a Minkowski sum.
+    """Return points and faces of a mesh whose winding number is positive inside a Minkowski sum.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def _tops_over_faces(solid: Polyhedron, tool: Polyhedron) -> IndexArray:
 
 
 def _walls_of_faces(solid: Polyhedron, tops: IndexArray, sums: _Sums) -> Iterator[IndexArray]:
-    """Yield the walls of the prism on each face, without walls along flat edges, which cancel."""
+    """Yield the side walls of the prisms on the solid's faces; along flat edges they cancel."""
     start, end = (part[solid.sharp] for part in solid.ends)
     left, right = (side[solid.sharp] for side in solid.adjacent_faces)
     yield from _wall(start, end, tops[left], sums)
@@ -170,7 +170,7 @@ def _wedges(
 
 
 def _pyramids(corners: IndexArray, bases: IndexArray, sums: _Sums) -> Iterator[IndexArray]:
-    """Yield the faces of pyramids: each joins a solid's corner to a tool's face added to it."""
+    """Yield the faces of pyramids: a corner of the solid, and a face of the tool shifted by it."""
     yield sums.of(corners[:, None], bases)
     origins = sums.of(corners, _ORIGIN)
     for k in range(3):

@@ -205,7 +205,7 @@ class ChainTools:
 
 
 def _through(rings: FloatArray) -> Solid:
-    """Return the solid whose surface joins each ring to the next, and the last to the first."""
+    """Return the solid through consecutive polygons in space, the last one joined to the first."""
     closed = np.concatenate([rings, rings[:1]])
     count = rings.shape[1]
     around = np.column_stack([np.arange(count), np.roll(np.arange(count), -1)])

@@ -17,7 +17,7 @@ _SAME = 1e-6
 
 
 def refuse_no_room(graph: FaceGraph, widths: FloatArray, apart: Iterable[int] = ()) -> None:
-    """Raise an error if the strips that blends remove along edges overlap on a face.
+    """Raise an error if strips that chamfers or fillets remove along edges overlap on a face.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def face_loops(graph: FaceGraph, face: int) -> list[FloatArray]:
 
 
 def no_room(graph: FaceGraph, place: FloatArray, faces: Iterable[int]) -> InvalidParameterError:
-    """Return the error that says that faces leave no room at a point."""
+    """Return the error that the faces at a point are too small for a blend or an offset."""
     point = ", ".join(f"{value:.6g}" for value in place)
     triangles = np.flatnonzero(np.isin(graph.face, list(faces)))
     message = (

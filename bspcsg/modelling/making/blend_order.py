@@ -81,9 +81,9 @@ def _between_two(graph: FaceGraph, chosen: set[int], vertex: int) -> int | None:
 
 
 def _with_their_like(graph: FaceGraph, chosen: set[int], waiting: set[int]) -> set[int]:
-    """Return the waiting edges, and all chosen edges connected to them of the same kind.
+    """Return edges that must wait, and all chosen edges connected to them of the same kind.
 
-    The kinds are convex and concave.
+    The kinds are convex and concave. An edge waits if another edge must be blended before it.
     """
     found, ahead = set(waiting), list(waiting)
     while ahead:

@@ -90,7 +90,7 @@ class _Blend:
 
     @cached_property
     def widths(self) -> FloatArray:
-        """The distance from each edge to the border of its blend, (e,); 0 for unselected edges."""
+        """The width of each edge's chamfer or fillet on its faces, (e,); 0 for unselected edges."""
         own = sorted(self.chosen)
         widths = np.zeros(len(self.graph.ends))
         widths[own] = self.profile.size
@@ -102,7 +102,7 @@ class _Blend:
 
     @cached_property
     def caps(self) -> list[int]:
-        """The faces whose edges are all selected, and which are too narrow for separate blends."""
+        """The faces with all edges selected that are too narrow to blend the edges one by one."""
         faces = np.unique(self.graph.sides[sorted(self.chosen)]).tolist()
         return [
             face
@@ -270,7 +270,7 @@ class _Blend:
         return np.round(points, -self.pitch) if self.pitch < 0 else points
 
     def prism(self, edge: int) -> Solid:
-        """Return the prism between an edge and its blend, extended past both ends of the edge."""
+        """Return the prism between an edge and its chamfer or fillet, extended past both ends."""
         if edge not in self._prisms:
             self._prisms[edge] = self._prism(edge)
         return self._prisms[edge]
@@ -302,14 +302,14 @@ class _Blend:
             return Solid(points, triangles)
 
     def _station(self, edge: int, place: int) -> FloatArray:
-        """Return the section of the blend at end 0 or 1 of an edge, from left to right face."""
+        """Return the points of an edge's chamfer or fillet at end 0 or 1, from left to right."""
         vertex = int(self.graph.ends[edge, place])
         if self.is_round_corner(vertex):
             return self._ball(vertex) + self._arc(edge)
         return np.asarray(self.graph.vertices[vertex] + self.section(edge))
 
     def section(self, edge: int) -> FloatArray:
-        """Return the corners of an edge's blend in cross-section, from the left to the right face.
+        """Return the points across an edge's chamfer or fillet, from the left to the right face.
 
         The (k, 3) coordinates are relative to a point of the edge.
         """
@@ -344,7 +344,7 @@ class _Blend:
         return np.array([first, *arc[1:-1], last, self._snapped(tip)])
 
     def _reach(self, edge: int, rings: FloatArray, place: int) -> int:
-        """Return by how many of its lengths the prism must extend past the planes at end 0 or 1."""
+        """Return by how many of its lengths a prism along an edge must extend past end 0 or 1."""
         vertex, along = int(self.graph.ends[edge, place]), self.graph.directions[edge]
         others = self.graph.faces_at(vertex) - set(self.graph.sides[edge].tolist())
         sines = np.abs(self.graph.normals[sorted(others)] @ along)

@@ -40,7 +40,7 @@ def patch_directions(corners: FloatArray, steps: int) -> FloatArray:
 
 
 def patch_faces(steps: int) -> IndexArray:
-    """Return the (steps², 3) triangles of a grid of `patch_directions`, oriented as its corners."""
+    """Return the (steps², 3) triangles of a grid of `patch_directions`, with its orientation."""
     faces = []
     for i in range(steps):
         low, high = i * (i + 1) // 2, (i + 1) * (i + 2) // 2
@@ -52,10 +52,11 @@ def patch_faces(steps: int) -> IndexArray:
 def _on_patch(
     corners: FloatArray, sides: list[float], shares: tuple[float, float, float]
 ) -> FloatArray:
-    """Return the unit vector of a spherical triangle with the given shares of its corners.
+    """Return a point of a spherical triangle as a unit vector, given three numbers that add to 1.
 
-    The weight of a corner is the sine of its share of an angle. On a side of the triangle, that
-    angle is the side's length in degrees, so equal shares divide the side evenly.
+    The numbers, `shares`, act as barycentric coordinates. The weight of a corner is the sine of its
+    number times an angle. On a side of the triangle that angle is the side's length in degrees, so
+    evenly spaced numbers give evenly spaced points.
     """
     weighted = []
     for k in range(3):

@@ -11,7 +11,7 @@ _EQUAL = 1e-5
 
 
 def walls(rings: FloatArray, edges: IndexArray) -> IndexArray:
-    """Return the triangles between consecutive rings; quadrilaterals have their shorter diagonal.
+    """Return triangles between consecutive rings; shorter diagonals divide the quadrilaterals.
 
     Parameters
     ----------

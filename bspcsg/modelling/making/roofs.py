@@ -132,7 +132,7 @@ class _RoofBuilder:
     def _nodes_of(self, contacts: Contacts) -> dict[int, int]:
         """Make a roof node at each point where the outline changes, and record the edges to it.
 
-        Return the node number for each such spot of the meeting.
+        Return a dictionary from the number of such a point in `contacts` to the number of its node.
         """
         front, nodes = self._front, {}
         for spot, corners in enumerate(contacts.corners):
@@ -148,7 +148,7 @@ class _RoofBuilder:
         return nodes
 
     def _trace(self, low: int, high: int, ahead: int, behind: int) -> None:
-        """Record a roof edge between two nodes: the path of a corner between two walls."""
+        """Record a roof edge between two nodes, along which two sides of the roof meet."""
         if ahead != behind:
             self._bounds[ahead].append((low, high))
             self._bounds[behind].append((high, low))

@@ -79,7 +79,7 @@ def rounded_box(
 
 
 def _rounded(lengths: FloatArray, radius: float, steps: int) -> tuple[FloatArray, IndexArray]:
-    """Return vertices and faces of a rounded box centred at the origin; orientations are mixed."""
+    """Return vertices and faces of a centred rounded box; some faces are turned inwards."""
     unit = patch_directions(np.eye(3), steps)
     signs = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
     vertices = np.concatenate([sign * (lengths / 2 - radius + radius * unit) for sign in signs])

@@ -48,7 +48,7 @@ class Selection(ABC):
     @property
     @abstractmethod
     def direction(self) -> FloatArray:
-        """The unit vector along each edge or normal to each flat face, (n, 3); zero otherwise."""
+        """The direction of each edge or normal of each flat face, (n, 3); zero for round faces."""
 
     @abstractmethod
     def _flat_faces(self) -> tuple[IndexArray, IndexArray]:
@@ -214,7 +214,7 @@ class Selection(ABC):
             )
 
     def _is_alike(self, other: object) -> bool:
-        """Return True if another selection of the same solid has equally numbered items."""
+        """Return True if another selection has items of the same kind: edges, or faces."""
         return type(other) is type(self)
 
     def __or__(self, other: object) -> Self:
@@ -222,11 +222,11 @@ class Selection(ABC):
         return self._joined(other, lambda theirs: np.union1d(self._numbers, theirs))
 
     def __and__(self, other: object) -> Self:
-        """Return the items of this selection that are also in another one of the same solid."""
+        """Return the items of this selection that are also in another selection of the solid."""
         return self._joined(other, lambda theirs: self._numbers[np.isin(self._numbers, theirs)])
 
     def __sub__(self, other: object) -> Self:
-        """Return the items of this selection that are not in another one of the same solid."""
+        """Return the items of this selection that are not in another selection of the solid."""
         return self._joined(other, lambda theirs: self._numbers[~np.isin(self._numbers, theirs)])
 
     def _joined(self, other: object, join: "Callable[[IndexArray], IndexArray]") -> Self:
@@ -249,7 +249,7 @@ class Selection(ABC):
         return len(self._numbers)
 
     def __repr__(self) -> str:
-        """Return a text with the number of items, of all in the solid, and the range of sizes."""
+        """Return a text: the counts of items here and in the solid, and their range of sizes."""
         name = self._sizes[0]
         sizes = getattr(self, name)
         told = f", {name} {sizes.min():g} to {sizes.max():g}" if len(self) else ""
@@ -259,8 +259,8 @@ class Selection(ABC):
 def as_bend(angle: Scalar, every: bool) -> float:
     """Return the angle, in degrees, above which two plane faces have an edge between them.
 
-    Minus infinity, if `every` is true, makes an edge between all plane faces. Raise
-    `InvalidParameterError` for an angle outside 0 to 180.
+    If `every` is true, return minus infinity: then all adjacent plane faces have an edge between
+    them. Raise `InvalidParameterError` for an angle outside 0 to 180.
     """
     bend = number(angle, "angle")
     if not 0 <= bend < 180:

@@ -47,7 +47,7 @@ class Walls:
 
 @dataclass(frozen=True, eq=False)
 class ShrinkingOutlines:
-    """The corners of a front, linked along their outlines.
+    """The corners of a figure's shrinking outlines (a "front"), each with its next corner.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ class ShrinkingOutlines:
         return self.walls.speeds(self.before, self.after)
 
     def next_time(self, now: float, nearness: float) -> float:
-        """Return the time after `now` at which a side vanishes or is hit; infinity if never."""
+        """Return the next time at which a side vanishes or a corner hits one; infinity if never."""
         places, speeds = self.at(now), self.speeds()
         sides = self._next_vanishing(places, speeds)
         return now + min(sides, self._next_hit(places, speeds, nearness))
@@ -115,7 +115,7 @@ class ShrinkingOutlines:
         return max(float(times.min(initial=math.inf)), 0.0)
 
     def _next_hit(self, places: FloatArray, speeds: FloatArray, nearness: float) -> float:
-        """Return the time until a reflex corner first hits a side; infinity if none does."""
+        """Return the time until a reflex corner first hits a side; infinity if none ever does."""
         reflex = np.flatnonzero(self.walls.are_reflex(self.before, self.after))
         normals, along = self.walls.normals[self.after], self.walls.directions[self.after]
         levels = (places * normals).sum(axis=1)
@@ -150,9 +150,10 @@ SidePart: TypeAlias = tuple[int, int, int]
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """The contacts of a front's corners and sides at one time.
+    """The points at which corners and sides of shrinking outlines (a "front") meet at one time.
 
-    A spot is a point at which corners have met; also a single corner has a spot.
+    A spot is the common position of corners that have met, or the position of a single corner. A
+    piece is the part of a side between two consecutive spots.
 
     Parameters
     ----------
@@ -178,23 +179,23 @@ class Contacts:
 
     @property
     def is_clear(self) -> bool:
-        """True if each piece that continues to move has a successor."""
+        """True if each part of a side that continues to move has a successor on the outline."""
         return sum(map(len, self.pairs)) == len(self.pieces)
 
     def walls_of(self, pair: tuple[int, int]) -> tuple[int, int]:
-        """Return the walls of the two pieces of a pair, which are numbers in `pieces`."""
+        """Return the walls of two parts of sides, given by their numbers in `pieces`."""
         ending, beginning = pair
         return self.pieces[ending][2], self.pieces[beginning][2]
 
     def is_calm(self, point: int, front: ShrinkingOutlines) -> bool:
-        """Return True if a spot has a single corner, whose walls stay the same."""
+        """Return True if only one corner is at a spot, and its two walls stay the same."""
         [corner, *others] = self.corners[point]
         walls = int(front.before[corner]), int(front.after[corner])
         return not others and [walls] == [self.walls_of(pair) for pair in self.pairs[point]]
 
 
 def contacts_at(front: ShrinkingOutlines, time: float, nearness: float) -> Contacts:
-    """Return the contacts of a front's corners and sides at a time.
+    """Return where corners and sides of shrinking outlines meet at a time.
 
     Distances up to `nearness` count as contact.
     """
@@ -250,9 +251,9 @@ def _near_pairs(places: FloatArray, nearness: float) -> Iterator[tuple[int, int]
 def _side_parts(
     front: ShrinkingOutlines, places: FloatArray, numbers: IndexArray, nearness: float
 ) -> list[SidePart]:
-    """Return the sides of a front, divided at corners in their interior.
+    """Return the sides of shrinking outlines, divided where a corner lies inside a side.
 
-    `numbers` are the spots of the corners.
+    `numbers` has, for each corner, the number of the point at which it is.
     """
     on_side: dict[int, list[tuple[float, int]]] = defaultdict(list)
     for corner, side in zip(*map(np.ndarray.tolist, front.touching(places, nearness)), strict=True):
@@ -269,7 +270,7 @@ def _side_parts(
 def _without_ridges(
     pieces: Sequence[SidePart],
 ) -> tuple[list[SidePart], list[tuple[SidePart, SidePart]]]:
-    """Return the pieces that continue to move, and the pairs of opposite pieces that have met."""
+    """Return the parts of sides that continue to move, and pairs of opposite parts that met."""
     left: dict[tuple[int, int], list[SidePart]] = defaultdict(list)
     ridges = []
     for piece in pieces:
@@ -282,11 +283,11 @@ def _without_ridges(
 
 
 def _joined(pieces: Sequence[SidePart], walls: Walls) -> dict[int, list[tuple[int, int]]]:
-    """Return, for each spot, pairs of a piece that ends and a piece that begins there.
+    """Return, for each point, pairs of a part of a side that ends and one that begins there.
 
-    Pieces are given by their numbers. Between the two pieces of a pair is a sector of the inside,
-    which is left of each piece: counter-clockwise, the ending piece comes next after the beginning
-    one.
+    The parts, `pieces`, are given by their numbers. Between the two parts of a pair is a sector of
+    the inside, which is left of each part: counter-clockwise around the point, the ending part
+    comes next after the beginning one.
     """
     rays: dict[int, list[tuple[float, int, int]]] = defaultdict(list)
     for number, (start, end, wall) in enumerate(pieces):

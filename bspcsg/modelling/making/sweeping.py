@@ -204,9 +204,9 @@ def _placed(corners: FloatArray, turn: float, size: float) -> FloatArray:
 
 
 def _same_corners(last: FloatArray, first: FloatArray, edges: IndexArray) -> IndexArray:
-    """Return, for each corner of the last ring of a closed sweep, the equal corner of the first.
+    """Return, for each corner of a closed sweep's last section, the equal corner of the first.
 
-    Raise `InvalidParameterError` if the rings differ.
+    Raise `InvalidParameterError` if the two sections differ.
     """
     tolerance = _SAME * float(np.abs(first - first.mean(axis=0)).max())
     same = np.arange(len(first))

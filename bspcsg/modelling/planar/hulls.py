@@ -116,9 +116,9 @@ def _without_flat_corners(outline: list[_Corner], most: float) -> list[_Corner]:
 
 
 def _bends(chain: list[_Corner], most: float) -> list[_Corner]:
-    """Return the corners of a chain, without its ends, that are needed within a distance.
+    """Return inner corners that keep a polyline, `chain`, within the distance `most`.
 
-    A chain is divided at the corner farthest from its chord while that distance exceeds `most`.
+    It is divided at the corner farthest from its chord while that distance exceeds `most`.
     """
     kept: list[_Corner] = []
     waiting = [(0, len(chain) - 1)]
