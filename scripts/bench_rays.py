@@ -2,7 +2,8 @@
 
 The engines embreex and rtree need the packages of these names; one that is missing is left out.
 Rates are rays per second of processor time; the first pass of bspcsg includes the division of its
-boxes. Then adaptive trees: the cost of a ray at first and later, under three distributions.
+boxes. Adaptive trees are measured, too: the cost of early and of late rays, for three distributions
+of rays.
 """
 
 import argparse
@@ -43,7 +44,7 @@ def camera(width: int) -> Case:
 
 
 def scattered(count: int) -> Case:
-    """Return rays from random points around through random points of the middle third."""
+    """Return rays from random points at distance 2 from the origin to random points near it."""
     rng = np.random.default_rng(0)
     origins = rng.normal(size=(count, 3))
     origins *= 2 / np.linalg.norm(origins, axis=1, keepdims=True)
@@ -100,7 +101,7 @@ def build(mesh: Arrays) -> dict[str, float]:
 
 
 def other_questions(mesh: Arrays, case: Case) -> list[dict[str, Any]]:
-    """Time first facets, occlusion and all hits of a case beside embree."""
+    """Time three queries beside embree: the first facet, occlusion, and all hits of each ray."""
     engine = embree(mesh)
     if engine is None:
         return []
@@ -177,7 +178,7 @@ def growing(mesh: Arrays, count: int) -> list[dict[str, Any]]:
 
 
 def compare(mesh: Arrays, case: Case) -> list[dict[str, Any]]:
-    """Time all engines on one case, and count the rays with another triangle than bspcsg's."""
+    """Time all engines on one case, and count the rays that hit another triangle than in bspcsg."""
     caster = bsp.RayCaster(mesh)
     rays = (case.origins, case.directions)
     first, hits = seconds(lambda: caster.first_hit(*rays, threads=1))

@@ -30,7 +30,7 @@ Measure = Callable[[Any], float]
 
 
 class Question(NamedTuple):
-    """The same computation for both libraries, and functions of the results that should agree."""
+    """A computation in bspcsg and in another library, and a function of each result to compare."""
 
     name: str
     asked: tuple[Ask, Ask]
@@ -81,7 +81,7 @@ def rough_disk(corners: int, seed: int, x: float) -> Any:
 
 
 def unions(sizes: Sizes) -> list[Question]:
-    """Return the questions of uniting circles, and of uniting two outlines with many corners."""
+    """Return two computations: the union of circles, and of two outlines with many corners."""
     loops = circles(sizes.circles)
     polygons = [shapely.Polygon(loop) for loop in loops]
     outlines = [rough_disk(sizes.corners, 1, 0.0), rough_disk(sizes.corners, 2, 30.0)]
@@ -109,7 +109,7 @@ def unions(sizes: Sizes) -> list[Question]:
 
 
 def points(sizes: Sizes) -> list[Question]:
-    """Return the questions of classifying points, and of their distances from a boundary."""
+    """Return two computations: whether points are inside, and their distances from a boundary."""
     loops, rng = circles(sizes.circles), np.random.default_rng(4)
     ours, theirs = bsp.Region(loops), shapely.union_all([shapely.Polygon(loop) for loop in loops])
     shapely.prepare(theirs)
@@ -135,7 +135,7 @@ def points(sizes: Sizes) -> list[Question]:
 
 
 def sections(sizes: Sizes) -> list[Question]:
-    """Return the question of the areas of thirty cross sections of a ball."""
+    """Return one computation: the areas of thirty cross sections of a ball."""
     mesh = icosphere(sizes.subdivisions)
     surface = trimesh.Trimesh(*mesh, process=False)
     solid = b.Solid.from_mesh(mesh)
@@ -161,7 +161,7 @@ def timed(ask: Ask) -> tuple[float, Any]:
 
 
 def row(question: Question) -> dict[str, Any]:
-    """Return the best times of both libraries for a question, and whether their results agree."""
+    """Return the best times of both libraries for a computation, and whether the results agree."""
     runs = [[timed(ask) for ask in question.asked] for _ in range(RUNS)]
     ours, theirs = (min(took for took, _ in side) for side in zip(*runs, strict=True))
     mine, other = (

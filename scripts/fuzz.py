@@ -3,8 +3,8 @@
     scripts/fuzz [--minutes N] [--seed S] [TARGET ...]
 
 Targets of the core (`fuzz/`) and of the readers are guided by coverage, with their corpora in
-`.fuzz`; scenes, scenes of sizes and files are made in rounds. Both continue where they stopped. A
-scene with a wrong result is made small and put into `tests/corpus/cases`. The code is in
+`.fuzz`; the targets scenes, sizes and files make random inputs in rounds. All continue where they
+stopped. A scene with a wrong result is made small and put into `tests/corpus/cases`. The code is in
 `tests/fuzzing`.
 """
 

@@ -2,10 +2,8 @@
 
     scripts/mutants [NUMBER ...]
 
-if a line to change is not in the source any more. +The core is copied to `.fuzz/mutants` and built
-there. `--record` updates the recorded verdicts. Ends with status 1 if the tests of a mutant pass,
-or if a line to change is no longer in the source. if a line to change is not in the source any
-more.
+The core is copied to `.fuzz/mutants` and built there. `--record` updates the recorded verdicts.
+Ends with status 1 if the tests of a mutant pass, or if a line to change is no longer in the source.
 """
 
 import argparse
@@ -148,7 +146,10 @@ def main() -> int:
 
 
 def verdict_on(mutant: Mutant, core: Path) -> str:
-    """Return "noticed" if a mutant's tests fail, "SURVIVED" if they pass, or another verdict."""
+    """Return "noticed" if a mutant's tests fail, "SURVIVED" if they pass.
+
+    Return "not there" if the line to change is missing, "not built" if the build fails.
+    """
     copy_core(core)
     path = core / "src" / mutant.file
     text = path.read_text("utf-8")

@@ -102,7 +102,10 @@ def overlapping(engine: Engine) -> tuple[float, int]:
 
 
 def put_back(engine: Engine) -> tuple[float, int]:
-    """Cut the cube by rotated cubes, and unite both parts again each time."""
+    """Cut the cube by rotated cubes in turn, and unite both parts after each cut.
+
+    Return the volume and the number of triangles at the end.
+    """
 
     def arrays(first: MeshArrays, second: MeshArrays, operation: Operation) -> MeshArrays:
         vertices, faces = engine.boolean(first, second, operation)

@@ -34,7 +34,7 @@ def command(*arguments: str, code: int = 0) -> str:
 
 
 def made() -> Iterator[str]:
-    """Make the parts of the README's first lines, and write files of all formats."""
+    """Make the README's first parts, and write files of all formats; yield a text for each step."""
     import bspcsg as b
 
     plate = b.box((0.3, 0.2, 0.1)) - b.box((0.1, 0.1, 0.1)).translate(0.1, 0.1, 0)

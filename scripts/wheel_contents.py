@@ -48,7 +48,7 @@ def package(root: Path = ROOT) -> set[str]:
 
 
 def problems_of_wheel(path: Path, root: Path) -> list[str]:
-    """Return what is wrong with a wheel, as texts."""
+    """Return the defects of a wheel, each as a text; empty if there are none."""
     with zipfile.ZipFile(path) as archive:
         names = {name for name in archive.namelist() if not name.endswith("/")}
         info = next(name.split("/")[0] for name in names if ".dist-info/" in name)
@@ -70,7 +70,7 @@ def problems_of_wheel(path: Path, root: Path) -> list[str]:
 
 
 def problems_of_core(library: bytes) -> list[str]:
-    """Return what is wrong with the compiled core, as texts."""
+    """Return the defects of the compiled core, each as a text; empty if there are none."""
     stripped = all(mark not in library for mark in _SYMBOLS)
     problems = [] if stripped else ["the native core is not stripped"]
     named = _BUILDERS.search(library)
@@ -81,7 +81,7 @@ def problems_of_core(library: bytes) -> list[str]:
 
 
 def problems_of_source(path: Path, root: Path) -> list[str]:
-    """Return what is wrong with a source distribution, as texts."""
+    """Return the defects of a source distribution, each as a text; empty if there are none."""
     with tarfile.open(path) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
     core = {f.relative_to(root).as_posix() for f in (root / "core/src").rglob("*.rs")}
@@ -103,7 +103,7 @@ def _problems_of_metadata(about: Message) -> list[str]:
 
 
 def problems_of(path: Path, root: Path = ROOT) -> list[str]:
-    """Return what is wrong with a distribution of a source tree, as texts."""
+    """Return the defects of a wheel or source distribution, each as a text; empty for none."""
     found = problems_of_wheel if path.suffix == ".whl" else problems_of_source
     return found(path, root)
 

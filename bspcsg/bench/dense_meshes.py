@@ -184,7 +184,7 @@ def combs(teeth: int) -> tuple[MeshArrays, MeshArrays]:
 
 
 def bar(sides: int) -> list[MeshArrays]:
-    """Return one long thin bar with a round end, in single precision; its caps are needle fans."""
+    """Return a thin bar with a round end, in single precision; its caps have thin triangles."""
     return [_in_single_precision(turned(_round_bar(sides), rotation((3, 1, 2), 0.7)))]
 
 

@@ -17,7 +17,7 @@ _CENTRE_DISTANCE = 0.3
 
 
 def swept_capsules(shared: Path) -> tuple[MeshArrays, list[MeshArrays]]:
-    """Return the workpiece and the tools, in order, of the chain of swept capsules."""
+    """Return a workpiece and the swept capsules that a benchmark combines with it in order."""
     with np.load(shared / "chains" / "swept-capsules-100.npz") as data:
         vertices = np.split(data["v"].astype(np.float64), np.cumsum(data["nv"])[:-1])
         faces = np.split(data["f"].astype(np.int64), np.cumsum(data["nf"])[:-1])
@@ -29,7 +29,7 @@ def swept_capsules(shared: Path) -> tuple[MeshArrays, list[MeshArrays]]:
 def posed_pair(
     shared: Path, number: int, sizes: tuple[int, int] = LARGE
 ) -> tuple[MeshArrays, MeshArrays]:
-    """Return two of the meshes, scaled to half diagonal 1, rotated and shifted at random."""
+    """Return two public meshes, scaled to half diagonal 1, rotated and shifted at random."""
     random = generator(number)
     names = solid_names(shared, sizes)
     first, second = random.choice(len(names), size=2, replace=False)
@@ -37,7 +37,7 @@ def posed_pair(
 
 
 def overlapping_pair(shared: Path, number: int) -> tuple[MeshArrays, MeshArrays]:
-    """Return two small meshes in a random pose, the first of which overlaps itself."""
+    """Return two small public meshes in a random pose, the first of which overlaps itself."""
     random = generator(number)
     overlapping = solid_names(shared, SMALL, overlapping=True)
     first = overlapping[random.integers(len(overlapping))]
@@ -56,9 +56,7 @@ def _posed(
 def solid_names(
     shared: Path, sizes: tuple[int, int] = LARGE, *, overlapping: bool = False
 ) -> list[str]:
-    """Return the names of closed meshes that every engine accepts.
-
-    Either all of them overlap themselves, or none does.
+    """Return the names of closed public meshes that every engine accepts.
 
     Parameters
     ----------
@@ -66,6 +64,7 @@ def solid_names(
     sizes : (int, int)
         The least and the greatest number of triangles.
     overlapping : bool
+        True for meshes that overlap themselves, False for meshes that do not.
     """
     with (shared / "meshes" / "MANIFEST.tsv").open(newline="") as lines:
         rows = list(csv.DictReader(lines, delimiter="\t"))

@@ -32,7 +32,7 @@ def record_of(rows: list[dict[str, Any]], runs: int, command: str) -> dict[str, 
 
 
 def other_place(record: dict[str, Any]) -> str:
-    """Return how this machine or these versions differ from a record's, or "" if they do not."""
+    """Return "another machine" or "other versions …" if a record was measured there, else ""."""
     ours = record_of([], 0, "")
     if {**ours["machine"], "load": 0} != {**record["machine"], "load": 0}:
         return "another machine"

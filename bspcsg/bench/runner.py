@@ -156,7 +156,7 @@ def _rival_at_once(task: Task, settings: Settings, progress: Progress) -> dict[s
 
 
 def _until_done(task: Task, settings: Settings, gathered: "Gathered", progress: Progress) -> None:
-    """Run workers until each engine is done or has failed, without engines that end a worker."""
+    """Run workers until each engine is done or has failed, as by crashing its worker."""
     engines = list(task.engines)
     while engines:
         culprit = _run_worker(replace(task, engines=engines), settings, gathered, progress)
@@ -200,7 +200,7 @@ def _read_reports(
     gathered: "Gathered",
     progress: Progress,
 ) -> tuple[str | None, dict[str, Any] | None]:
-    """Read a worker's output; return the engine in progress and the worker's failure, or None."""
+    """Read a worker's output; return the engine it was running and its failure, each or None."""
     lines = _LineReader(child)
     under_way, began = None, time.monotonic()
     while True:
@@ -340,7 +340,7 @@ def with_volumes_compared(row: dict[str, Any]) -> dict[str, Any]:
 def _volume_tolerance(
     row: dict[str, Any], ours: dict[str, Any], theirs: dict[str, Any], name: str
 ) -> float:
-    """Return the largest difference of two correct volumes.
+    """Return the largest difference of our and another engine's volume that rounding explains.
 
     An engine may move each vertex by its resolution. The faces of the answer are parts of the
     operands' faces, so the volume changes by at most the operands' area times that distance.

@@ -175,7 +175,7 @@ def spheres_coincident(ball: MeshArrays) -> tuple[MeshArrays, MeshArrays]:
 
 
 def needles(sides: int, length: float = 9450.0) -> tuple[MeshArrays, MeshArrays]:
-    """Return two nearly parallel rods whose walls are 4 · `sides` needle triangles.
+    """Return two nearly parallel rods whose walls are 4 · `sides` very thin triangles.
 
     The bounding boxes of all walls overlap, since each wall runs along the whole rod, so that a
     search by boxes finds every pair of walls.

@@ -104,7 +104,7 @@ def _named(names: list[str]) -> str:
 
 
 def _least_ratio(row: Row) -> bool | None:
-    """Return whether we are at least as fast as the main rival on each item; None if unknown."""
+    """Return true if bspcsg is at least as fast as the main rival on each item, None if unknown."""
     return Faster(1).reached(row["items"]).met
 
 
@@ -214,7 +214,7 @@ def _memory(row: Row) -> str:
 
 
 def _answers(row: Row) -> str:
-    """Return "agree" if all results equal ours within rounding, or which differ."""
+    """Return "agree" if all results equal ours within rounding, "not compared", or which differ."""
     words = {name for item in row["items"] for name in _differing(item)}
     compared = any("agrees" in found for item in row["items"] for found in _all_answers(item))
     if not compared:
@@ -239,6 +239,6 @@ def _differing(item: Row) -> list[str]:
 
 
 def _all_answers(item: Row) -> list[Row]:
-    """Return all parts of an item that may have the key "agrees"."""
+    """Return the results and checks of an item, dicts that may have the key "agrees"."""
     proof = item["engines"].get(OURS, {}).get("proof", {})
     return [*item["engines"].values(), item.get("at_once", {}), proof]

@@ -188,7 +188,7 @@ class _EngineRuns:
         return details
 
     def _proof(self, outcome: Outcome) -> dict[str, Any]:
-        """Return the check of our own result without another engine, if the work has one."""
+        """Return, as "proof", our result's check without another engine; empty if there is none."""
         found = self.work.proof(outcome.mesh) if self.engine.name == OURS else None
         return {} if found is None else {"proof": asdict(found)}
 

@@ -72,7 +72,7 @@ class Work(ABC):
         """Return the total extent of the operands."""
 
     def prepare(self, engine: Engine) -> Any:
-        """Return what a run needs, prepared outside the timed part."""
+        """Return the operands in the form that a run needs, made before the timed part."""
         return None
 
     @abstractmethod
@@ -105,7 +105,7 @@ class Pair(Work):
         return Outcome(engine.boolean(self.first, self.second, self.operation))
 
     def counted(self, engine: Engine, outcome: Outcome) -> dict[str, int]:
-        """Return the counters of the core, counted while the same work runs on solids."""
+        """Repeat the operation on solids, and return the engine's counters; empty if none."""
         if not engine.counts:
             return {}
         operands = [engine.solid(self.first), engine.solid(self.second)]
@@ -128,11 +128,11 @@ class PairAsBalls(Pair):
     depth: float = 0.0
 
     def counted(self, engine: Engine, outcome: Outcome) -> dict[str, int]:
-        """Return no counters, so that the work is not repeated."""
+        """Return an empty dict, since counting would repeat the operation on large meshes."""
         return {}
 
     def proof(self, answer: MeshArrays) -> Evidence:
-        """Compare the volume with the difference of two balls, at most `depth` off the meshes."""
+        """Check that the result's volume differs from `volume` by no more than `depth` explains."""
         found = mesh_volume(answer)
         apart = abs(found.value - self.volume)
         # The volume between a mesh and its ball is at most the ball's area times the depth.

@@ -137,7 +137,10 @@ class FactorChain:
         return _inner(self._head, self._rest)
 
     def outer_motion(self, pitch: int) -> LatticeMotion | None:
-        """Return the factors that `inner` omits as a lattice motion, or None if it is not exact."""
+        """Return the outermost factors that only permute, mirror and shift axes, as one motion.
+
+        Return None if this motion does not map the lattice onto itself.
+        """
         run = permuting_run(self._head)
         if self._rest is None or len(run) < len(self._head):
             return lattice_motion(run, pitch)
@@ -149,13 +152,16 @@ IDENTITY_CHAIN = FactorChain()
 
 
 class FactorBlock:
-    """A group of factors of a chain and all factors inside it, with their product.
+    """A group of consecutive factors of a chain, and the block of all factors applied before them.
+
+    It stores the product of all these factors.
 
     Parameters
     ----------
     factors : tuple of Factor
         The outermost factors of the block, `BLOCK` in number.
     rest : FactorBlock, optional
+        The factors that are applied before `factors`.
     """
 
     __slots__ = (
@@ -183,7 +189,10 @@ class FactorBlock:
         self._motions: dict[int, LatticeMotion | None] = {}
 
     def outer_motion(self, pitch: int) -> LatticeMotion | None:
-        """Return the factors that `inner` omits as a lattice motion, or None if it is not exact."""
+        """Return the outermost factors that only permute, mirror and shift axes, as one motion.
+
+        Return None if this motion does not map the lattice onto itself.
+        """
         waiting: list[FactorBlock] = []
         block: FactorBlock | None = self
         while block is not None and pitch not in block._motions:

@@ -145,8 +145,9 @@ class Hyperplane:
     def pitch(self) -> int:
         """The coarsest pitch, from -9 to -12, at which the hyperplane contains lattice points.
 
-        If the hyperplane is outside the range of the lattice of pitch -9, the step grows by powers
-        of 1000, as for meshes. Without such a pitch it is the coarsest one in range.
+        If the hyperplane is outside the range of the lattice of pitch -9, the search starts at the
+        first of -6, -3, … whose range it crosses. If no pitch is found, it is the pitch at which
+        the search started.
         """
         within = range(DEFAULT_PITCH, MAX_PITCH, 3)
         coarsest = next((p for p in within if self.is_above_lattice(p) is None), DEFAULT_PITCH)
@@ -156,9 +157,9 @@ class Hyperplane:
         return coarsest
 
     def _as_a_coordinate(self, pitch: int) -> Fraction:
-        """Return the offset in lattice steps as its double, which decides how ties are rounded.
+        """Return the offset, rounded to a double, in lattice steps; it decides ties in rounding.
 
-        Coordinates of meshes, which are doubles, are rounded equally.
+        So ties are rounded as in meshes, whose coordinates are doubles.
         """
         near = abs(self.offset) < 2**1000
         return (Fraction(float(self.offset)) if near else self.offset) / Fraction(10) ** pitch

@@ -158,7 +158,10 @@ def _ring(points: list[Corner], row: RowOfCut, side: int) -> tuple[Corner, ...]:
 
 
 def _turned(points: list[Corner], arms: dict[Corner, tuple[Fraction, Fraction]]) -> list[Corner]:
-    """Return points within a half-plane by angle, sorted by the signs of exact cross products."""
+    """Return points sorted counterclockwise by the angles of their vectors `arms`, exactly.
+
+    All vectors must lie within a half-plane.
+    """
     ordered: list[Corner] = []
     for point in points:
         x, y = arms[point]

@@ -76,9 +76,9 @@ def _keys(first: Any, second: Any) -> Any:
 
 
 def _counts(bits: Any, things: Any, size: int = 0) -> Any:
-    """Return the number of distinct things in each piece, given pairs of a piece and a thing.
+    """Return for each piece its number of distinct things: piece ``bits[k]`` has ``things[k]``.
 
-    The result has at least `size` entries.
+    Pieces and things are given by index; the result has at least `size` entries.
     """
     pairs = np.unique(_keys(bits, things))
     return np.bincount(pairs // (things.max(initial=0) + 1), minlength=size)

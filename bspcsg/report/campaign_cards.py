@@ -55,7 +55,7 @@ class Card:
         The id of the card's element in the page.
     case : CaseRecord
     tone : str
-        The tone of the verdict, see `wording.tone`.
+        The tone of the verdict, which gives its colour: good, near, warn, mute or bad.
     figures : list of Figure
     model : dict or None
         The data of the 3D view, which the viewer unpacks.

@@ -20,7 +20,7 @@ _OPERAND_OPACITY = 0.4
 class StoredMeshes(NamedTuple):
     """The stored meshes of one case: the operands in order, the result and the difference.
 
-    `difference` is the symmetric difference of our result and the oracle's; empty if both are
+    `difference` is the symmetric difference of our result and manifold3d's; empty if both are
     equal.
     """
 

@@ -245,7 +245,7 @@ class _Check:
         return ""
 
     def _film(self, *meshes: Mesh) -> float:
-        """Return the thickness that rounding may leave between our set and meshes of it."""
+        """Return the thickness up to which rounding explains that meshes differ from our set."""
         snapped_by = self.result.tree.snapped_by
         return same_set_bound(self.result.pitch, *meshes, snapped_by=snapped_by)
 

@@ -148,7 +148,10 @@ def distances(mesh: Mesh, points: FloatArray) -> FloatArray:
 
 
 class _Surface:
-    """Triangles, (m, 3, 3), in a box tree, to which distances are computed within a slack."""
+    """Triangles, (m, 3, 3), in a tree of boxes, to compute the distances of points from them.
+
+    A box is skipped only if it is more than `slack` farther than the nearest triangle found.
+    """
 
     def __init__(self, corners: FloatArray, slack: float) -> None:
         self._corners, self._slack = corners, slack
@@ -172,7 +175,7 @@ class _Surface:
         return (found + self._slack) ** 2
 
     def _lower(self, found: FloatArray, points: FloatArray, pairs: BoxPairs) -> None:
-        """Replace distances in `found` by smaller ones to triangles of the paired leaves."""
+        """Replace distances in `found` by smaller ones to triangles; `pairs` are (point, leaf)."""
         numbers, rows = self._tree.members(pairs[:, 1])
         owners = pairs[rows, 0]
         for at in range(0, len(owners), _PAIRS_PER_BATCH):

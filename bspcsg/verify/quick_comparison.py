@@ -60,7 +60,7 @@ def volume_of_film(ours: Facts, theirs: Facts, film: float) -> float:
 
 
 def areas_differ(ours: Facts, theirs: Facts, mesh: Mesh, film: float) -> bool:
-    """Return true if the areas differ by more than `film` times the length of all our edges."""
+    """Return true if the areas differ by more than `film` times the length of `mesh`'s edges."""
     gap = abs(ours.area - theirs.area) - SUM_ERROR * ours.area
     return gap > 0 and gap > film * _edge_length(mesh)
 

@@ -17,7 +17,7 @@ from ..solid.program import TRUTH
 
 
 class Ruling(Enum):
-    """Which engine the exact counts of crossings support, at all points that they decide."""
+    """The engine that is right at all points that exact counts of crossings decide, or unclear."""
 
     OURS = "ours"
     THEIRS = "theirs"

@@ -304,7 +304,7 @@ def _matrices(shapes: Sequence[Shape]) -> FloatArray:
 
 
 def _own_lengths(shapes: Sequence[Shape], length: float) -> FloatArray:
-    """Return the least length, in each shape's own coordinates, of a length in user units."""
+    """Return for each shape a length in its own coordinates, at most `length` in user units."""
     a, b, c, d = _matrices(shapes)[:, :4].T
     # The longer half axis of the ellipse to which the matrix maps the unit circle.
     with np.errstate(all="ignore"):

@@ -129,7 +129,7 @@ class Facets:
         return result
 
     def _nearest_edges(self, points: FloatArray, facets: IndexArray) -> IndexArray:
-        """Return for each point the nearest edge of its given facet, as the edge's first corner."""
+        """Return for each point the nearest edge of its facet, as the index of the first corner."""
         after = next_corners(self.offsets)
         starts, counts = self.offsets[:-1][facets], np.diff(self.offsets)[facets]
         best, least = starts.copy(), np.full(len(points), np.inf)

@@ -96,7 +96,7 @@ def panorama(
 
 
 def _fills(source: IndexArray, count: int, colors: Any) -> ColourArray:
-    """Return the colour of each polygon; source -1, the eye or arrow, has the colour of ink."""
+    """Return the colour of each polygon, (k, 3); for the eye or arrow (source -1) it is `_INK`."""
     if colors is None:
         colors = [_PALETTE[k % len(_PALETTE)] for k in range(count)]
     base = colours(colors, count, "colors") if count else np.zeros((0, 3), dtype=np.uint8)

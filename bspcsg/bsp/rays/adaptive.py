@@ -110,7 +110,7 @@ class StabTree:
 
     @property
     def nodes(self) -> StabNodes:
-        """A snapshot of the nodes: counters T(v) and T(p), lists L(v) and S(v), cuts, children."""
+        """A snapshot of the nodes: the counters, facets, cuts and children of each node."""
         with core_errors():
             return stab_nodes(self._tree.nodes())
 
@@ -315,9 +315,9 @@ _UNLIMITED = 2**62
 
 
 def _pivots(nodes: StabNodes) -> Iterator[int]:
-    """Yield the facet of each cut of the equal `PartitionTree`, in preorder.
+    """Yield the facets whose hyperplanes are the cuts of the equal `PartitionTree`, in preorder.
 
-    A leaf's only facet is such a cut, too; a leaf with several facets is an error.
+    They include facets that are alone in a leaf; a leaf with several facets is an error.
     """
     pending = [0]
     while pending:

@@ -484,7 +484,7 @@ def _restored(kind: type[RayCaster], facets: RayTargets, pitch: int) -> RayCaste
 
 
 def hits_of(facets: RayTargets, columns: Any, normals: FloatArray | None = None) -> Hits:
-    """Return the core's columns of hits as `Hits` of facets (for the modules of this package)."""
+    """Return `Hits` made of the arrays that the core returns for rays; for this package only."""
     facet, t, kind, weights, point = columns
     d, missed = facets.dimension, facet < 0
     if normals is None:
@@ -500,7 +500,7 @@ def hits_of(facets: RayTargets, columns: Any, normals: FloatArray | None = None)
 
 
 def _rows_at(rows: Any, index: IndexArray) -> Any:
-    """Return the rows at the indices; index -1 gives an arbitrary row."""
+    """Return the rows of an array at the indices; index -1, for no hit, gives an arbitrary row."""
     return rows[index] if len(rows) else np.zeros((len(index), *rows.shape[1:]), rows.dtype)
 
 

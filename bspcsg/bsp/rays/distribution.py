@@ -1,7 +1,8 @@
 """Trees for a given distribution of rays, with the facets that are most likely hit at the top.
 
 The score of a facet p for rays l with the density ω is ``score(p) = ∫ ω(l) · |n · l_d| · area(p) /
-area(S) dl``; the integral is computed as a sum over a sample (lecture notes, "Distribution
+area(S) dl``, with the unit normal n of the facet, the unit direction l_d of the ray, and the set S
+of all facets. The integral is computed as a sum over a sample of rays (lecture notes, "Distribution
 optimized BSP").
 """
 

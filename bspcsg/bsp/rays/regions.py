@@ -15,7 +15,7 @@ def region_of(
 ) -> RegionShape:
     """Return the region R(v) of a node, clipped to the facets' box enlarged by a margin.
 
-    The margin is in model units. Without facets the box is that of the origin alone.
+    The margin is in model units. Without facets, a box around the origin is used.
 
     Raises
     ------

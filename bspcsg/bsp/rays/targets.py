@@ -100,7 +100,7 @@ def facets_from(given: Any) -> RayTargets:
 
 @uncounted
 def _boundary_of(solid: Solid) -> RayTargets:
-    """Return the boundary of a bounded solid, or of the complement of a bounded one, reversed."""
+    """Return the boundary triangles of a solid that is bounded or has a bounded complement."""
     reduced = solid.normalized()
     outside = reduced if reduced.is_bounded else (~solid).normalized()
     unbounded = outside is not reduced and outside.is_bounded

@@ -27,11 +27,11 @@ class StabStep:
     facet : int or None
         The facet that is tested or hit, or whose hyperplane divides the leaf.
     count : int
-        T(v) after a visit; 1 or 0 for a test that hits or misses; T(p) after a hit; for a division,
-        the number of the new leaf on the minus side (the leaf on the plus side has the next
-        number).
+        The node's visit counter T(v) after a visit; 1 or 0 for a test that hits or misses; the
+        facet's hit counter T(p) after a hit; for a division, the index of the new leaf on the minus
+        side (the leaf on the plus side has the next index).
     coplanar, minus, plus : tuple of int
-        For a division: the facets in the cut, and L(v) of the two new leaves.
+        For a division: the facets in the cut, and the facets of each of the two new leaves.
     """
 
     kind: Literal["visit", "leaf", "test", "count", "divide"]

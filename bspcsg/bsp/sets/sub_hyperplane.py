@@ -45,9 +45,9 @@ class SubHyperplane(SetOperators):
     offset : float
         Points x of the hyperplane have ``normal . x == offset``.
     part : Intervals or Region, optional
-        The set in the hyperplane's coordinates; by default the whole hyperplane. Their origin is
-        the point nearest to the origin of space. On a line the coordinate grows with the minus side
-        on the left; for planes see `plane_frame`.
+        The set in the hyperplane's coordinates; by default the whole hyperplane. The origin of
+        these coordinates is the point nearest to the origin of space. On a line the coordinate
+        grows with the minus side on the left; for planes see `plane_frame`.
 
     Raises
     ------
@@ -279,7 +279,7 @@ class SubHyperplane(SetOperators):
         return made
 
     def _beside(self, other: "SubHyperplane") -> Any:
-        """Return the part of `other`, which lies in this hyperplane, in this one's coordinates."""
+        """Return the part of `other`, of the same hyperplane, in this hyperplane's coordinates."""
         if self.dimension != other.dimension:
             raise invalid_parameter(
                 f"The sub-hyperplanes have different dimensions, {self.dimension} and"

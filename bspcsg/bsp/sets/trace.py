@@ -57,16 +57,18 @@ class MergePair:
 
 @dataclass(frozen=True)
 class MergeSplit:
-    """The step that starts to split a subtree of the second operand by the cut of the last pair.
+    """The step that starts to split a subtree of the second operand by a cut of the first one.
+
+    The cut is that of the node `a` of the last `MergePair`.
 
     Parameters
     ----------
     root : int
         The root of the subtree.
     case : str
-        How the root's cut and the splitting cut lie to each other, see `ObjectTree.split_case`. For
-        a case such as "minus-plus", the child on the first side is split, and the root goes to the
-        second half.
+        How the root's cut lies relative to the splitting cut, see `ObjectTree.split_case`. In a
+        case such as "minus-plus", the root's child on the first side (minus) is split further, and
+        the root goes to the half on the second side (plus).
     """
 
     root: Root

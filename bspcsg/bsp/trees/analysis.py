@@ -37,13 +37,13 @@ class Growth:
     n : int
         The number of facets of the scene.
     fragments : float
-        On average over the trials.
+        The number of fragments, on average over the trials.
     bound : float
         The bound of `fragments`: n + 2 n ln n for segments, n² for the grid, n for surfaces.
     ratio : float
         ``fragments / bound``.
     depth : float
-        On average over the trials.
+        The depth of the tree, on average over the trials.
     seconds : float
         The time of one construction, on average over the trials.
     work : float

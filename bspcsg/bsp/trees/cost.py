@@ -1,8 +1,10 @@
 """The quality of a partition tree: the expected cost of a query, and size figures.
 
 The cost of the lecture notes, C(T) = 1 + P⁻ C(T⁻) + P⁺ C(T⁺) with C = 0 for an empty region, is the
-expected number of nodes that a query visits. With P± = μ(R(T±)) / μ(R(T)) the products along each
-path telescope: C(T) is the sum of μ(R(v)) / μ(R(root)) over all nodes v.
+expected number of nodes that a query visits: T⁻ and T⁺ are the subtrees on the two sides of the
+root's cut, and P⁻ and P⁺ the probabilities that a query visits them. With the region R(v) of a node
+v, its size μ(R(v)), and P± = μ(R(T±)) / μ(R(T)), the products along each path telescope: C(T) is
+the sum of μ(R(v)) / μ(R(root)) over all nodes v.
 """
 
 import math
@@ -39,9 +41,9 @@ def cost(tree: "PartitionTree", query: Query = "point", margin: float | None = N
     Returns
     -------
     float
-        0 for a tree without facets. Regions are divided exactly; only their sizes are doubles, each
-        within about 1e-14 of the root's, times the ratio of its distance from the origin to its
-        size where that is above 1.
+        0 for a tree without facets. Regions are divided exactly; only their sizes are rounded, by
+        about 1e-14 of the size of the root's region; far from the origin this error grows with
+        the region's distance from the origin, divided by the region's extent.
 
     Raises
     ------

@@ -23,10 +23,11 @@ EMPTY = -1
 class LeafForm:
     """A partition tree in which each leaf stores no fragment or one fragment.
 
-    The number of nodes is 2 · leaves - 1, as of any tree whose inner nodes have two children. It is
-    at most 2 n̄ - 1, with n̄ = Σ |S(v)| the number of fragments, if every cut supports a fragment;
-    it is exactly that if, moreover, one leaf alone stores a fragment and no two share a hyperplane;
-    and also if no cut supports one, and no leaf is empty.
+    The number of nodes is 2 · leaves - 1, as in any tree whose inner nodes have two children. Let
+    n̄ be the number of fragments. If the hyperplane of every inner node contains a fragment, the
+    tree has at most 2 n̄ - 1 nodes; it has exactly 2 n̄ - 1 nodes if also exactly one leaf stores a
+    fragment and no hyperplane of an inner node contains several. The tree also has exactly 2 n̄ - 1
+    nodes if no hyperplane of an inner node contains a fragment and no leaf is empty.
 
     Parameters
     ----------

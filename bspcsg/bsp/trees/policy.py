@@ -9,25 +9,28 @@ random
 least-splits
     Of `sample` candidates, evenly spaced in the region's list, the one that cuts the fewest facets.
 balanced
-    The candidate with the least ``|n⁻ - n⁺|``.
+    The candidate with the least ``|n⁻ - n⁺|``, where n⁻ and n⁺ are the numbers of facets on its
+    minus and its plus side.
 weighted
-    The least ``alpha * |n⁻ - n⁺| + (1 - alpha) * splits``; with ``alpha=0.5`` this is the candidate
-    whose larger side has the fewest facets.
+    The candidate with the least ``alpha * |n⁻ - n⁺| + (1 - alpha) * splits``; with ``alpha=0.5``
+    this is the candidate whose larger side has the fewest facets.
 least-cost
-    The least P⁻n⁻ + P⁺n⁺, with P the shares of the region's volume: the expected number of facets
-    that a point query still has to do with after one step (after Naylor 1993, section 4, who has
-    the expected cost of the subtrees, unknown at this time, for their sizes). Regions are kept
-    while building, so that this policy is several times slower than the others.
+    The candidate with the least P⁻n⁻ + P⁺n⁺, where P⁻ and P⁺ are the fractions of the region's
+    volume on the two sides: the expected number of facets on the side of a random point (after
+    Naylor 1993, section 4, who uses the expected costs of the subtrees, unknown at this time,
+    instead of n⁻ and n⁺). Regions are stored during construction, so that this policy is several
+    times slower than all others.
 
 end-points
     In the plane the lines through two end points of segments, in space the planes through three
-    corners: of `sample` of these, evenly spaced among all, and as many supporting hyperplanes the
-    one whose larger side has the fewest pieces. A restricted partition rather than an
+    corners: of `sample` of these, evenly spaced among all, and as many supporting hyperplanes, the
+    one whose larger side has the fewest pieces of facets. A restricted partition rather than an
     autopartition, and not one of `POLICIES`.
 
-The others divide by supporting hyperplanes only (autopartition). With ``top=k``, regions with more
-than k facets are divided by axis-parallel hyperplanes through the median instead, as long as
-neither side gets more than three quarters of the facets (general partition).
+All policies but end-points divide only by supporting hyperplanes, in which facets lie
+(autopartition). With ``top=k``, regions with more than k facets are divided by axis-parallel
+hyperplanes through the median instead, as long as neither side gets more than three quarters of the
+facets (general partition).
 """
 
 from typing import Any, Literal, TypeAlias, get_args

@@ -239,7 +239,7 @@ class RayStep:
 
         Notes
         -----
-        Havran, Kopal, Bittner, Žára 1997: their cases N and P are told apart by `side`.
+        Havran, Kopal, Bittner, Žára 1997: `side` distinguishes their cases N and P.
         """
         if self.kind != "visit" or self.start is None:
             return None

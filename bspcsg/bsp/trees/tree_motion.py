@@ -94,7 +94,10 @@ def _steps(offset: Any, dimension: int, pitch: int) -> IndexArray:
 
 
 def _moved_row(row: Sequence[int], matrix: IndexArray, shift: IndexArray, scale: int) -> list[int]:
-    """Return the image of n·x = c: the normal turned, the product for a moved point."""
+    """Return the image (*n', c') of a hyperplane n·x = c, given as (*n, c), under a motion.
+
+    The motion scales x by `scale`, rotates it by `matrix`, and adds `shift`.
+    """
     *normal, product = row
     turned = [sum(int(m) * n for m, n in zip(line, normal, strict=True)) for line in matrix]
     moved = sum(n * int(s) for n, s in zip(turned, shift, strict=True))

@@ -104,7 +104,7 @@ class Output:
             terminal.print_line("warning", line)
 
     def finding(self, name: str, finding: Finding) -> None:
-        """Print a finding about the file `name` on standard error, with ``--quiet`` errors only."""
+        """Print a finding about the file `name` on standard error; if ``--quiet``, only errors."""
         least = -1 if finding.severity == "error" else 0
         if self.verbosity >= least:
             said = f"{finding.message}{_element_numbers(finding)}"
@@ -114,7 +114,7 @@ class Output:
 def _element_numbers(finding: Finding) -> str:
     """Return text with the numbers of the first faces or vertices of a finding, after a colon.
 
-    Return an empty string if the message does not refer to them by “these”.
+    Return an empty string if the finding's message does not contain the word “these”.
     """
     if " these" not in finding.message or not finding.where:
         return ""

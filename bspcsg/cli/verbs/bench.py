@@ -405,7 +405,7 @@ def _write(
 
 
 def _is_wrong(record: dict[str, Any]) -> bool:
-    """Say whether in a record an engine's result differs from ours, or ours failed or is open."""
+    """Say whether in a record a result differs from ours, or ours failed or has open edges."""
     from ...bench.targets import OURS, result_of
 
     for row in record["cases"]:
