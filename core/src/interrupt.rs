@@ -4,7 +4,7 @@
 //! [`Call::run`], which returns `Cancelled`; so a routine that refuses nothing needs no error of its own.
 //! Data that calls share are never left half made: caches are set only when their values are complete.
 //!
-//! Polls are counted, and only one in [`UNITS_BETWEEN_LOOKS`] reads the shared state, so that a poll costs
+//! Polls are counted, and only one in `UNITS_BETWEEN_LOOKS` reads the shared state, so that a poll costs
 //! about as much as an addition.
 //!
 //! # Source

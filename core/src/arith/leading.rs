@@ -101,7 +101,7 @@ impl Leading {
     ///
     /// A numerator n·(1 + a) of 127 bits over a denominator d·(1 + b) of 64, with 0 ≤ a ≤ 2^-63 and 0 ≤ b <
     /// 2^-63 + 2^-63: as n/d is below 2^64, the ratio is more than n/d − 4 and at most n/d + 2. So it
-    /// rounds like all numbers within [`UNSURE`] of the quotient, unless these include the midpoint of two
+    /// rounds like all numbers within `UNSURE` of the quotient, unless these include the midpoint of two
     /// doubles.
     #[inline]
     pub fn over(&self, denominator: &Self) -> Option<f64> {

@@ -35,7 +35,7 @@ pub(super) fn magnitudes_to_f64<const A: usize, const B: usize>(
 ///
 /// A numerator n·(1 + a) of 127 bits over a denominator d·(1 + b) of 64, with 0 ≤ a < 2^-126 and 0 ≤ b <
 /// 2^-63: as n/d is below 2^64, the ratio is more than n/d − 2 and at most n/d + 2^-62. So it rounds like
-/// all numbers within [`UNSURE`] of the quotient, unless these include the midpoint of two doubles.
+/// all numbers within `UNSURE` of the quotient, unless these include the midpoint of two doubles.
 fn leading_to_f64<const A: usize, const B: usize>(num: &[u64; A], den: &[u64; B]) -> Option<f64> {
     const UNSURE: u64 = 4;
     let (num_bits, den_bits) = (bit_length(num).cast_signed(), bit_length(den).cast_signed());

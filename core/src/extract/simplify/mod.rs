@@ -5,7 +5,7 @@
 //! slivers. After each round changed triangles are compared exactly with all triangles near them, and
 //! changes that made surfaces cross are undone.
 //!
-//! Vertices are never moved. [`Drift`] bounds how far the surface moved.
+//! Vertices are never moved. `Drift` bounds how far the surface moved.
 //!
 //! # Cost
 //! A round is linear in the mesh and makes a maximal set of changes: each waiting one is next to

@@ -32,14 +32,14 @@ pub struct Fragment<S: Affine> {
 pub enum NodeCut {
     /// The supporting hyperplane of the input piece (a convex part of a facet) with this number.
     Pivot(u32),
-    /// The hyperplane x[axis] = at, in lattice steps: a free cut.
+    /// The hyperplane `x[axis] = at`, in lattice steps: a free cut.
     Axis {
         /// The axis to which the cut is perpendicular.
         axis: usize,
         /// The coordinate of the cut on the axis, in lattice steps.
         at: i64,
     },
-    /// The hyperplane at this index in the tree's own list, see [`FragmentTree::own`].
+    /// The hyperplane at this index in the tree's own list, see `FragmentTree::own`.
     Own(u32),
 }
 

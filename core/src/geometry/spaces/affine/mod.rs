@@ -40,7 +40,7 @@ pub trait Affine: Space {
     /// The exact coefficients n and d of n·x + d = 0.
     fn exact(cut: &Self::Hyperplane) -> [BigInt; 4];
 
-    /// The hyperplane x[axis] = at, with smaller coordinates on its minus side.
+    /// The hyperplane `x[axis] = at`, with smaller coordinates on its minus side.
     ///
     /// `None` if |at| exceeds [`Affine::MAX_COORDINATE`] or there is no such axis.
     fn axis_cut(axis: usize, at: i64) -> Option<Self::Hyperplane>;
