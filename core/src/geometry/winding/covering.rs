@@ -149,8 +149,8 @@ impl Sweep<'_> {
         (ended + after - first).is_multiple_of(2) && (first..after).all(in_turn)
     }
 
-    /// Return whether edges that have become neighbours on the sweep line, at the index `first` and at the
-    /// index `after`, do not meet farther right except in a common end.
+    /// Return whether edges that have become neighbours on the sweep line, on either side of the index
+    /// `first` and of the index `after`, do not meet farther right except in a common end.
     fn stays_apart(&self, first: usize, after: usize) -> bool {
         let below = first.checked_sub(1).is_none_or(|k| self.is_below(k));
         below && (first == after || self.is_below(after - 1))

@@ -12,7 +12,7 @@ use crate::geometry::side::Side;
 ///
 /// # Exactness
 /// A double is an integer times a power of two. In lattice steps each coordinate is such a number times a
-/// power of ten; the power goes into w, so that nothing is snapped or rounded.
+/// power of ten. A negative power goes into w, so that nothing is snapped or rounded.
 #[derive(Clone, Debug)]
 pub struct Viewpoint {
     approx: [f64; 4],
