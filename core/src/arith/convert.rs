@@ -1,4 +1,4 @@
-//! Conversions between number types that may round, saturate or truncate, each with the reason why that is
+//! Conversions between number types that may round, saturate or truncate; each function states why this is
 //! right.
 
 /// Integers that have a nearest double.

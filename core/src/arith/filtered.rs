@@ -1,6 +1,6 @@
-//! Answers of floating-point filters: certain, or left to an exact computation.
+//! Results of floating-point filters: certain, or doubtful and left to an exact computation.
 
-/// The answer of a filter, which computes in rounded arithmetic: certain, or doubtful, so that an exact
+/// The result of a filter, which computes in rounded arithmetic: certain, or doubtful, so that an exact
 /// computation must decide.
 ///
 /// # Example

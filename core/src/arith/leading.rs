@@ -1,4 +1,4 @@
-//! Integers by their leading bits, and quotients that these bits suffice to round.
+//! Integers represented by their leading bits, and quotients that are rounded correctly from these bits.
 
 use super::convert::low_limb;
 use super::round::nearly_to_f64;

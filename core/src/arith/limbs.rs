@@ -5,8 +5,8 @@
 
 use super::convert::{as_number, low_limb};
 
-/// The largest number of top limbs that a product may lack; the code computes them anyway, to check that they
-/// only repeat the sign.
+/// The largest number of top limbs by which a result may be shorter than the full product; these limbs are
+/// computed anyway, to check that they only repeat the sign.
 pub(super) const MAX_TRUNCATED_LIMBS: usize = 2;
 
 /// The product of two unsigned integers: its low `R >= A + B - MAX_TRUNCATED_LIMBS` limbs, and the limbs
@@ -60,7 +60,7 @@ pub(super) const fn multiply_add(a: u64, b: u64, c: u64, d: u64) -> (u64, u64) {
 /// Subtracts `subtrahend & mask`, shifted by `start` limbs, from an integer whose limbs from `R` on are in
 /// `top`.
 ///
-/// The borrow out of the subtrahend's last limb is dropped: a product has no limb for it.
+/// The borrow from above the subtrahend's last limb is dropped.
 #[inline]
 pub(super) fn subtract_masked<const R: usize, const B: usize>(
     number: &mut [u64; R],

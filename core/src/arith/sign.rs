@@ -53,8 +53,8 @@ impl Sign {
         self.cmp(&Self::Zero)
     }
 
-    /// The first sign that is not zero, or zero if all are: the sign of a sum in which each term outweighs
-    /// all later ones.
+    /// The first sign that is not zero, or zero if all are zero: the sign of a sum in which each term
+    /// outweighs the sum of all later terms.
     #[inline]
     pub fn first(signs: impl IntoIterator<Item = Self>) -> Self {
         let found = signs.into_iter().find(|sign| *sign != Self::Zero);

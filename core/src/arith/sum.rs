@@ -68,8 +68,8 @@ impl Sum {
         high
     }
 
-    /// `high`, or its neighbour if `error` is half their distance and the next smaller part has the sign of
-    /// `error`.
+    /// Returns `high`, or the neighbouring double of `high` if `error` is half the distance to it and the
+    /// next smaller part of the sum has the sign of `error`.
     fn nearer(&self, high: f64, error: f64) -> f64 {
         let below = self.parts.last().copied().unwrap_or(0.0);
         let further = high + 2.0 * error;

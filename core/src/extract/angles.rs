@@ -30,7 +30,8 @@ pub(super) fn rough([a, b, c, d]: Quad) -> Filtered<Ordering> {
     Filtered::when(sine.abs() > bound, (-Sign::of(sine)).order())
 }
 
-/// The cosine and sine of an angle in doubles, times one positive factor, and a bound on their errors.
+/// The cosine and sine of an angle, both multiplied by one common positive factor, as doubles, and a bound on
+/// their errors.
 struct Rough {
     cos: f64,
     sin: f64,
@@ -76,7 +77,8 @@ fn on_lattice([a, b, c, d]: [&Lattice; 4], axes: [usize; 2]) -> Ordering {
     (-(left + right).sign()).order()
 }
 
-/// The cosine and sine of the angle at `apex` from `p` to `q`, both times the same positive factor.
+/// Returns the cosine and sine of the angle at `apex` from `p` to `q`, both multiplied by one common positive
+/// factor.
 fn wide_angle(
     apex: &Homogeneous,
     p: &Homogeneous,

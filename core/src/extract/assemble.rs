@@ -41,8 +41,8 @@ const MAX_EDGES_SEARCHED: usize = 16;
 
 /// Returns the exact triangle mesh of a bounded solid.
 ///
-/// Input faces that nothing cut keep their triangle; cut faces are triangulated anew, together with the
-/// faces that continue them in their plane. Every directed edge of the mesh has exactly one opposite.
+/// An input face that no cut touches stays one triangle; cut faces are triangulated anew, together with
+/// coplanar faces adjacent to them. Every directed edge of the mesh has exactly one opposite.
 ///
 /// # Example
 /// ```
@@ -211,8 +211,8 @@ impl Assembly<'_> {
         touching
     }
 
-    /// Adds to the vertex table the corners of whole faces in cells where several operands met, because the
-    /// surface may touch itself at these corners.
+    /// Adds to the vertex table the corners of those faces `near` that are boundary as a whole: they lie in
+    /// cells where several operands met, so that the surface may touch itself there.
     fn identify_near(&mut self, near: &[SourceFace], fates: &Fates) {
         for face in near {
             if matches!(fates[*face], Fate::Whole(_)) {
@@ -338,7 +338,7 @@ impl Assembly<'_> {
     }
 }
 
-/// Returns the number of a point if one of the numbered edges starts or ends at it.
+/// Returns the number of the point `end` if one of the numbered edges starts or ends there.
 fn known_end<'e>(
     at: &Arc<Vertex>,
     mut numbered: impl Iterator<Item = (&'e BareEdge, &'e Edge)>,

@@ -24,7 +24,7 @@ pub struct ExactMesh {
     pub faces: Vec<OrientedFace>,
     /// The number of triangles at the start that are untouched faces of sources.
     pub untouched: usize,
-    /// Those triangles among the untouched ones with a vertex that other triangles may use, ascending.
+    /// The untouched triangles with a vertex that other triangles may use, ascending.
     pub special: Vec<u32>,
     /// The points that [`Corner::Point`] numbers.
     pub table: VertexTable,
@@ -45,8 +45,8 @@ impl ExactMesh {
         }
     }
 
-    /// Returns the position of each vertex in doubles, in model units: the doubles of its source, or the
-    /// nearest.
+    /// Returns the position of each vertex in doubles, in model units: the original doubles of a source
+    /// vertex, else the doubles nearest to the exact point.
     pub fn positions(&self, solid: &Solid) -> Vec<[f64; 3]> {
         let position = |corner: &Corner| match *corner {
             Corner::Point(point) => solid.pitch().position(self.table.point(point)),
@@ -105,7 +105,7 @@ pub fn renumber(
     numbers
 }
 
-/// Returns the new number of each used vertex, after unused ones are dropped, in the old order.
+/// Returns the new number of each vertex after unused vertices are dropped; the order stays the same.
 pub fn numbers_left(used: &[bool]) -> Vec<VertexId> {
     let number = |next: &mut u32, used: &bool| {
         *next += u32::from(*used);

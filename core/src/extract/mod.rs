@@ -1,4 +1,5 @@
-//! Turns a solid's tree into a mesh: collects, joins, pairs, triangulates, splits and rounds.
+//! Turns a solid's tree into a mesh: collects its boundary faces, joins coplanar ones, pairs edges,
+//! triangulates, splits contacts, and rounds.
 
 mod angles;
 pub mod assemble;

@@ -1,5 +1,5 @@
-//! Sorts new points and triangles of a mesh. The order follows from positions alone, so that a mesh has the
-//! same bytes whatever was evaluated before.
+//! Sorts new points and triangles of a mesh. The order depends on positions alone, so that equal results have
+//! equal bytes, independent of earlier evaluations.
 //!
 //! Constructed points are sorted by their doubles, with copies next to each other. Triangles that are not
 //! untouched faces are sorted by face, then by vertices; each starts at its vertex with the lowest number.

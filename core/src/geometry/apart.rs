@@ -17,8 +17,8 @@ pub struct NearTriangle {
 }
 
 impl NearTriangle {
-    /// Stands for an unknown triangle: no side of its plane is certain, so it is never apart from another
-    /// triangle.
+    /// A placeholder for an unknown triangle: a comparison with it never proves that two triangles have no
+    /// common point.
     pub const UNKNOWN: Self = Self {
         corners: [[f64::NAN; 3]; 3],
         normal: NearCross::UNKNOWN,
@@ -34,7 +34,8 @@ impl NearTriangle {
         }
     }
 
-    /// For each corner of another triangle, the side of this triangle's plane on which it lies, as a sign.
+    /// For each corner of another triangle, the side of this triangle's plane on which the corner lies, as a
+    /// sign.
     #[inline]
     fn sides_of(&self, other: &Self) -> Sides {
         let base = &self.corners[0];
@@ -49,8 +50,9 @@ impl NearTriangle {
 
 /// Return whether two lattice triangles certainly have no point in common; may return false negatives.
 ///
-/// They are apart if one lies on one side of the other's plane, or if the segments in which they meet the
-/// common line of both planes are apart (Möller 1997; in signs alone as Guigue and Devillers 2003).
+/// They are apart if all corners of one lie strictly on one side of the other's plane, or if the segments in
+/// which they meet the common line of the two planes are apart (Möller 1997; in signs alone as Guigue and
+/// Devillers 2003).
 pub fn are_apart(p: &NearTriangle, q: &NearTriangle) -> bool {
     let of_p = q.sides_of(p);
     if are_on_one_side(of_p) {
@@ -66,12 +68,12 @@ pub fn are_apart(p: &NearTriangle, q: &NearTriangle) -> bool {
     }
 }
 
-/// Return whether all three corners certainly lie strictly on one side.
+/// Return whether all three corners of a triangle certainly lie strictly on one side of a plane.
 fn are_on_one_side(sides: Sides) -> bool {
     sides[0].is_certain() && sides[1] == sides[0] && sides[2] == sides[0]
 }
 
-/// The index of the corner that is alone on its side of a plane; `None` if that is not certain.
+/// The index of the corner of a triangle that is alone on its side of a plane; `None` if that is not certain.
 fn lone_corner(sides: Sides) -> Option<usize> {
     let [Filtered::Certain(a), Filtered::Certain(b), Filtered::Certain(c)] = sides else {
         return None;
@@ -86,10 +88,11 @@ fn lone_corner(sides: Sides) -> Option<usize> {
 }
 
 /// Return whether the segments in which two triangles meet the common line of their planes are certainly
-/// apart; corner `i` of `p` and corner `k` of `q` are alone on their sides of the other's plane.
+/// apart; corner `i` of `p` is alone on its side of the plane of `q`, and corner `k` of `q` on its side of
+/// the plane of `p`.
 ///
-/// The sign of the volume that two edges of different triangles and a step between them span says which edge
-/// meets the line first, up to a sign that is the same for all four pairs.
+/// An edge of one triangle, an edge of the other, and a vector between these edges span a signed volume; its
+/// sign says which edge meets the common line first, up to a sign that is the same for all four pairs.
 fn segments_are_apart(p: &[[f64; 3]; 3], i: usize, q: &[[f64; 3]; 3], k: usize) -> bool {
     let (from, other) = (&p[i], &q[k]);
     let toward = difference(other, from);

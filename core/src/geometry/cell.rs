@@ -8,7 +8,8 @@ use crate::arith::bounds::COORDINATE_BITS;
 /// A box of the hierarchy that halving makes: the lattice points `low[i] .. low[i] + 2^size[i]` on each axis
 /// i.
 ///
-/// Its faces lie half a step outside these points, so that no lattice point, edge or face ever lies in one.
+/// The faces of the box lie half a step outside these points, so that no lattice point, lattice edge or
+/// lattice triangle ever lies in a face.
 ///
 /// # Example
 /// ```
@@ -131,8 +132,8 @@ impl Cell {
 
     /// The smallest cell of the hierarchy that contains a lattice box, given by its lowest and highest point.
     ///
-    /// On each axis, the number of low binary digits in which the two coordinates may differ is how often the
-    /// cell can be halved; the next cut is across the first axis with the largest such number.
+    /// On each axis, the two coordinates of the box differ only in a number of low binary digits; the cell
+    /// can be halved that many times. The next cut is across the first axis with the largest such number.
     #[allow(
         clippy::cast_possible_truncation,
         reason = "an exponent of coordinates"

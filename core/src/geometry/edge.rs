@@ -73,7 +73,7 @@ impl LatticeEdge {
         normal(a, b, point) == [0; 3]
     }
 
-    /// The sign that says on which side a lattice point lies, of the plane that contains the edge and is
+    /// The sign that says on which side of a plane a lattice point lies; the plane contains the edge and is
     /// parallel to `axis`.
     ///
     /// # Bits

@@ -260,7 +260,7 @@ impl LineKey {
         }
     }
 
-    /// The keys of several lines, computed with one inversion modulo each prime.
+    /// The keys of several lines, computed with a single modular inversion for each prime.
     pub fn of_all(lines: impl Iterator<Item = Line>) -> SmallVec<[Self; 8]> {
         let lines: SmallVec<[Line; 8]> = lines.collect();
         let first = Pluecker::all_scaled(lines.iter().map(|line| line.first));

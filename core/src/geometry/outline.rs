@@ -19,7 +19,7 @@ pub struct OutlineEdge {
     pub from: Arc<Vertex>,
     /// The end of the edge.
     pub to: Arc<Vertex>,
-    /// The lattice edge or the plane that carries the edge, which lies on it and in the region's plane.
+    /// The lattice edge or the plane that contains the edge; the edge lies where it meets the region's plane.
     pub carrier: Carrier,
     /// The key of the line through the edge.
     pub line: LineKey,
@@ -33,7 +33,7 @@ pub struct BareEdge {
     pub from: Arc<Vertex>,
     /// The end of the edge.
     pub to: Arc<Vertex>,
-    /// The lattice edge or the plane that carries the edge, which lies on it and in the region's plane.
+    /// The lattice edge or the plane that contains the edge; the edge lies where it meets the region's plane.
     pub carrier: Carrier,
 }
 
@@ -245,7 +245,7 @@ struct Event<'a> {
     change: i32,
 }
 
-/// Cancels the edges `run`, which lie on one line, against each other, and appends the remaining maximal
+/// Cancels opposite edges among the edges `run`, which lie on one line, and appends the remaining maximal
 /// edges to `kept`.
 fn cancel_line(edges: &[OutlineEdge], run: &[EdgeByLine], kept: &mut Vec<OutlineEdge>) {
     let run: SmallVec<[&OutlineEdge; 16]> = run.iter().map(|p| &edges[p.edge as usize]).collect();
@@ -271,8 +271,8 @@ fn cancel_line(edges: &[OutlineEdge], run: &[EdgeByLine], kept: &mut Vec<Outline
     });
 }
 
-/// Calls `emit` for each interval of a line on which the running sum of the events' changes is a nonzero
-/// constant, with the sum and both ends.
+/// Calls `emit` for each interval of a line on which the running sum of the changes at its points is constant
+/// and not zero; the arguments are the sum and both ends.
 fn each_segment<'a>(
     events: &mut [Event<'a>],
     axis: usize,
@@ -300,7 +300,7 @@ fn is_opposite(a: &OutlineEdge, b: &OutlineEdge, axis: usize) -> bool {
 }
 
 /// Appends |sum| copies of the edge between two points of a line; it runs from `low` to `high` if `sum` is
-/// positive, else back.
+/// positive, else from `high` to `low`.
 fn push_copies(
     run: &[&OutlineEdge],
     sum: i32,
@@ -326,7 +326,8 @@ fn push_copies(
 
 /// The polygon that an outline bounds, or `None` if it is not one convex loop.
 ///
-/// The outline bounds part of a convex face, so edges on the face's own edges need no test for convexity.
+/// The outline bounds a part of a convex face, so an outline edge that lies on an edge of the face needs no
+/// test for convexity.
 pub fn convex_loop(support: &Arc<Plane>, edges: &[BareEdge]) -> Option<Polygon> {
     let start = edges.first()?;
     let mut at = start;
@@ -355,8 +356,8 @@ fn continues(first: &Carrier, second: &Carrier) -> bool {
     }
 }
 
-/// Return whether the plane or lattice edge that carries each edge has no corner of the outline on its outer
-/// side, and exactly two corners on it; always true for a lattice edge of the face.
+/// Return whether a carrier (a plane or lattice edge that contains an outline edge) has no corner of the
+/// outline on its outer side, and exactly two corners on it; always true for a lattice edge of the face.
 fn bounds(carrier: &Carrier, edges: &[BareEdge]) -> bool {
     let Carrier::Cut(plane, plus) = carrier else {
         return true;
@@ -375,7 +376,8 @@ fn bounds(carrier: &Carrier, edges: &[BareEdge]) -> bool {
 
 /// The convex pieces of the part of a convex polygon that an outline bounds.
 ///
-/// The outline's edges are the cuts of a planar autopartition: the region lies on the minus side of each.
+/// The polygon is divided along the lines of the outline's edges (a planar autopartition); at each edge the
+/// region lies on the minus side.
 ///
 /// # Source
 /// Thibault, Naylor 1987 (autopartition).
@@ -443,7 +445,7 @@ pub fn halves(edges: Vec<BareEdge>, support: &Arc<Plane>, cut: &Arc<Plane>) -> [
     [minus, plus]
 }
 
-/// The edges in the plane `cut` that close the loops of edges which start or end in it.
+/// The edges in the plane `cut` that close a part of an outline whose other edges start or end in this plane.
 fn chords(edges: &[BareEdge], carrier: &Carrier, cut: &Plane, axis: usize) -> Vec<BareEdge> {
     let ends = edges.iter().flat_map(|e| [(&e.to, 1), (&e.from, -1)]);
     let met = ends.filter(|(at, _)| at.side_of(cut) == Side::On);

@@ -127,7 +127,8 @@ impl Plane {
     /// The plane that contains a lattice edge and is parallel to an axis; `None` if the edge itself is
     /// parallel to that axis.
     ///
-    /// Such planes are narrower than a plane through the edge along a normal.
+    /// The coefficients of such a plane have fewer bits than those of a plane through the edge and along a
+    /// face's normal.
     pub fn through_edge(a: &Lattice, b: &Lattice, axis: usize) -> Option<Self> {
         let n = edge_normal(a, b, axis);
         Self::new(n, -dot_lattice(&n, a))
@@ -339,7 +340,7 @@ impl Plane {
     }
 }
 
-/// The offset if planes may have one of its width, else `None`.
+/// The offset if it is not wider than offsets of planes may be, else `None`.
 fn if_it_fits(d: Int<3>) -> Option<Int<3>> {
     (d.bit_length() <= bounds::offset(COORDINATE_BITS)).then_some(d)
 }

@@ -56,8 +56,8 @@ impl Carrier {
         }
     }
 
-    /// Return whether no corner lies strictly on the inner side of this edge of a polygon with the plane
-    /// `support`; the corners lie in that plane, too.
+    /// Return whether no corner in `corners` lies strictly on the inner side of this edge of a polygon; all
+    /// corners lie in the polygon's plane `support`.
     fn all_outside(&self, support: &Plane, corners: &[Corner]) -> bool {
         let axis = support.main_axis();
         let (turned, side): (bool, &dyn Fn(&Vertex) -> Side) = match self {
@@ -136,7 +136,7 @@ pub type Sides = SmallVec<[Side; 8]>;
 /// The ends of a segment inside a polygon.
 type Chord = SmallVec<[Arc<Vertex>; 2]>;
 
-/// Return whether any side is `Minus`, and whether any is `Plus`.
+/// Return two flags: whether any of the sides is `Minus`, and whether any is `Plus`.
 pub fn straddle(sides: &[Side]) -> (bool, bool) {
     (sides.contains(&Side::Minus), sides.contains(&Side::Plus))
 }
@@ -298,7 +298,8 @@ impl Polygon {
         (half(Side::Minus), half(Side::Plus))
     }
 
-    /// The part of the polygon on the side `own`, `Minus` or `Plus`, of a plane that cuts it in a chord.
+    /// The part of the polygon on the side `own`, which is `Minus` or `Plus`, of a plane that cuts the
+    /// polygon in a chord.
     fn half(&self, cut: &Arc<Plane>, sides: &[Side], chord: &Chord, own: Side) -> Self {
         let n = self.corners.len();
         let along = |at: &Arc<Vertex>| Corner {
@@ -367,8 +368,8 @@ impl Polygon {
         Some(polygon)
     }
 
-    /// Return whether the polygon may reach half a step below `low` along an axis, and whether it may reach
-    /// half a step above `high`; may return false positives.
+    /// Return two flags: whether the polygon may reach half a step below `low` along an axis, and whether it
+    /// may reach half a step above `high`; either may be a false positive.
     fn may_extend_beyond(&self, axis: usize, low: i64, high: i64) -> (bool, bool) {
         let (mut below, mut above) = (false, false);
         for corner in &self.corners {

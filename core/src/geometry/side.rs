@@ -55,7 +55,7 @@ impl Side {
         }
     }
 
-    /// The side of the hyperplane that points of this side have after its direction is reversed.
+    /// The opposite side, on which a point of this side lies after the hyperplane is reversed.
     #[must_use]
     pub fn opposite(self) -> Self {
         match self {
@@ -107,8 +107,8 @@ impl Half {
     }
 }
 
-/// Whether two oriented hyperplanes of the same points have the same inside; also, whether a face of a solid
-/// has the direction of the face that it comes from.
+/// Whether two oriented hyperplanes that are the same set of points have the same inside; also, whether a
+/// face of a solid has the same direction as the source face that it lies in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Orientation {
     /// The two minus sides agree.
@@ -160,7 +160,7 @@ impl Orientation {
 
 /// The position of a convex set relative to a hyperplane; touching it does not count as crossing.
 ///
-/// Only a piece that is crossed is divided: the other cases mean the whole piece.
+/// The set is divided only if the hyperplane crosses it; each other case applies to the whole set.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Split<T> {
     /// The relative interior of the convex set is on the minus side.

@@ -59,8 +59,8 @@ enum Definition {
     Homogeneous(Box<Homogeneous>),
 }
 
-/// A fingerprint of a point: its coordinates modulo a prime. Equal points share it; two unequal points do so
-/// with probability 2^-183.
+/// A fingerprint of a point: its coordinates modulo a prime. Equal points have equal fingerprints; two
+/// different points have equal ones with probability 2^-183.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct VertexKey([u64; 3]);
 
@@ -160,8 +160,8 @@ impl Vertex {
         }
     }
 
-    /// The side on which the point lies, of the plane that contains a lattice edge and is parallel to an
-    /// axis.
+    /// The side of a plane on which the point lies; the plane contains a lattice edge and is parallel to
+    /// `axis`.
     pub fn side_of_edge(&self, edge: &LatticeEdge, axis: usize) -> Side {
         let (a, b) = edge.ends();
         match &self.definition {
@@ -173,7 +173,8 @@ impl Vertex {
         }
     }
 
-    /// The side of the plane through a lattice edge parallel to an axis, where doubles decide it.
+    /// The side of a plane on which the point lies, where doubles decide it; the plane contains a lattice
+    /// edge and is parallel to `axis`.
     ///
     /// Coordinates carry one rounding, their products with a lattice point's two, differences three and the
     /// edge's steps one: five relative to the magnitudes of the operands, and three more for the products and
@@ -283,8 +284,8 @@ impl Vertex {
 
     /// Return whether two vertices are the same point.
     ///
-    /// The planes and edges of a construction have one common point, so a point that lies in all of them is
-    /// the same point.
+    /// The planes and edges that define a vertex have one common point, so a point that lies in all of them
+    /// is this vertex.
     pub fn equals(&self, other: &Self) -> bool {
         if let (Definition::Lattice(p), Definition::Lattice(q)) =
             (&self.definition, &other.definition)

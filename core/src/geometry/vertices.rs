@@ -1,4 +1,4 @@
-//! Exact vertex identity: one number for each point, no matter how it is constructed.
+//! Exact vertex identity: each point has one number, however it is constructed.
 
 use std::hash::BuildHasher;
 use std::sync::Arc;

@@ -9,7 +9,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::fill_chunks;
 
-/// Returns the rows of an (n, k) array: the array's own memory, or a copy if they are not contiguous.
+/// Returns the rows of an (n, k) array: borrowed from the array, or copied if the array is not contiguous.
 pub fn rows<'a, T: Element + Copy, const K: usize>(
     array: &'a PyReadonlyArray2<'_, T>,
     name: &str,
@@ -27,7 +27,8 @@ pub fn rows<'a, T: Element + Copy, const K: usize>(
     Ok(Cow::Owned(view.rows().into_iter().map(row).collect()))
 }
 
-/// Returns the numbers of an array, row by row: its own memory, or a copy if that has another order.
+/// Returns the numbers of an array, row by row: borrowed from the array, or copied if its memory has another
+/// order.
 pub fn flat<'a, T: Element + Copy>(array: &'a PyReadonlyArray2<'_, T>) -> Cow<'a, [T]> {
     let view = array.as_array();
     match array.as_slice() {
@@ -63,7 +64,7 @@ pub fn triangles_of(
     triangles.iter().enumerate().map(row).collect()
 }
 
-/// Converts rows of indices to 64-bit integers, as Python's arrays have them.
+/// Converts rows of indices to 64-bit integers, the type of index arrays in Python.
 pub fn wide<T: Copy + Into<i64> + Sync, const K: usize>(rows: &[[T; K]]) -> Vec<[i64; K]> {
     let mut wide = vec![[0; K]; rows.len()];
     fill_chunks(rows, &mut wide, |_, rows, wide| {

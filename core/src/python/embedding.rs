@@ -33,7 +33,8 @@ pub fn mesh_faults<'py>(
     Ok(dict)
 }
 
-/// Return a mesh, closed by index, rounded to single precision, without the crossings that this makes.
+/// Return a mesh, closed by index, rounded to single precision, without the crossings that the rounding
+/// makes.
 #[pyfunction]
 pub fn mesh_in_single<'py>(
     py: Python<'py>,
@@ -47,8 +48,8 @@ pub fn mesh_in_single<'py>(
     settled_mesh(py, mesh, settled)
 }
 
-/// Return a mesh whose vertices a transform moved, without the crossings that this made; None if nothing was
-/// to be changed. It is closed by index, or once it is welded.
+/// Return a mesh whose vertices a transform moved, after removing the crossings that this made; None if
+/// nothing had to change. The mesh must be closed by index, or become so by welding equal vertices.
 #[pyfunction]
 pub fn mesh_moved<'py>(
     py: Python<'py>,

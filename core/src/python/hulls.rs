@@ -12,8 +12,9 @@ use crate::mesh::hulls::hull_of;
 /// The vertices and triangles of a hull, and whether it is convex on the lattice.
 type HullMesh<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i64>>, bool);
 
-/// Return the mesh of the convex hull of points that are snapped to the lattice, with the coordinates that
-/// were given; it is empty if the points lie in one plane, up to rounding.
+/// Return the mesh of the convex hull of points, which are snapped to the lattice first; its vertices have
+/// their given coordinates if all triangles then still face outwards. It is empty if the points lie in one
+/// plane, up to rounding.
 #[pyfunction]
 pub fn hull_mesh<'py>(
     py: Python<'py>,

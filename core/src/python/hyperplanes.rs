@@ -1,4 +1,5 @@
-//! Converts hyperplanes of Python: rows of integers, the normal and then the offset, in lattice steps.
+//! Converts hyperplanes from and to Python, where they are rows of integers: the normal, then the offset, in
+//! lattice steps.
 
 use std::sync::Arc;
 

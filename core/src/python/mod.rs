@@ -31,22 +31,24 @@ use self::sets::objects::ObjectTree;
 use crate::error::{panics, Error};
 use crate::mesh::grid::Pitch;
 
-/// Set the number of threads of operations that do not give one; 0 means one for each processor.
+/// Set the number of threads for operations called without a number of threads; 0 means one for each
+/// processor.
 #[pyfunction]
 fn set_threads(n: usize) {
     pool::set_default_threads(n);
 }
 
-/// Return the pitch for coordinates of at most `largest` in magnitude that extend over `extent`.
+/// Return the pitch (the exponent of the lattice step) that suits coordinates of at most `largest` in
+/// magnitude that extend over `extent`.
 #[pyfunction]
 fn suited_pitch(py: Python<'_>, largest: f64, extent: f64) -> PyResult<i64> {
     run::here(py, || Ok(Pitch::suited(largest, extent)?.exponent()))
 }
 
-/// Look up numpy's functions, as the first array would do otherwise.
+/// Look up numpy's functions, which otherwise the first call with an array would do.
 ///
-/// It is called while modules are imported, because interrupts wait then: an interrupt during the look-up is
-/// a panic.
+/// This runs while modules are imported, because signals are not handled then; an interrupt during the
+/// look-up would cause a panic.
 #[pyfunction]
 fn find_numpy(py: Python<'_>) {
     let _ = PyArray1::<f64>::zeros(py, 0, false).readonly();

@@ -12,12 +12,12 @@ use super::ending::detached;
 use super::errors::to_python;
 use crate::arith::convert::as_double;
 
-/// Stands for a number in the pattern of a row.
+/// The byte that represents a number in the pattern of a row.
 const NUMBER: u8 = b'#';
 
-/// Return the decimal numbers, each rounded once, of a text that consists of repetitions of `row`, in order.
+/// Return the decimal numbers of a text that consists of repetitions of `row`, in order, each rounded once.
 ///
-/// In `row`, `#` stands for a number; every other byte for itself.
+/// In `row`, the byte `#` represents a number, and every other byte must occur in the text as it is.
 #[pyfunction]
 pub fn numbers_in_rows<'py>(
     py: Python<'py>,
@@ -27,8 +27,8 @@ pub fn numbers_in_rows<'py>(
     in_rows(py, text, row)
 }
 
-/// Return the whole numbers of a text that consists of repetitions of `row`, in which `#` stands for a
-/// number.
+/// Return the whole numbers of a text that consists of repetitions of the pattern `row`, in which `#`
+/// represents a number.
 #[pyfunction]
 pub fn whole_numbers_in_rows<'py>(
     py: Python<'py>,
@@ -137,7 +137,8 @@ impl Decimal for f64 {
     }
 }
 
-/// Returns the numbers of a text of rows; the error is the byte at which the text differs from the pattern.
+/// Returns the numbers of a text of rows; the error is the index of the byte at which the text differs from
+/// the pattern.
 fn scanned<T: Decimal>(text: &[u8], row: &[u8]) -> Result<Vec<T>, usize> {
     let mut between = row.split(|byte| *byte == NUMBER);
     let first = between.next().unwrap_or_default();
@@ -159,7 +160,8 @@ fn scanned<T: Decimal>(text: &[u8], row: &[u8]) -> Result<Vec<T>, usize> {
     Ok(values)
 }
 
-/// Returns the position after some bytes that must stand at `at`; the error is `at`.
+/// Returns the index after the bytes `expected` if they stand in the text at the index `at`; else `at` as the
+/// error.
 fn behind(text: &[u8], at: usize, expected: &[u8]) -> Result<usize, usize> {
     let is_there = text[at..].starts_with(expected);
     is_there.then_some(at + expected.len()).ok_or(at)

@@ -12,7 +12,7 @@ use crate::mesh::measures::{measures, moments};
 use crate::mesh::surfaces::{counts, surfaces};
 use crate::mesh::weld::welded;
 
-/// The different points, and for each given point its number among them.
+/// The different points, and for each given point its index among them.
 type Welding<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<i64>>);
 
 /// Return the different points in the order in which they first occur, and for each given point its number

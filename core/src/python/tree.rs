@@ -274,7 +274,8 @@ impl Tree {
         Ok(Self::of(solid))
     }
 
-    /// Return the solid of its mesh without short edges and slivers; None if none can be removed.
+    /// Return the solid of the mesh without short edges and slivers (triangles no higher than the tolerance);
+    /// None if none can be removed.
     #[pyo3(signature = (tolerance, threads=0))]
     fn simplified(&self, py: Python<'_>, tolerance: f64, threads: usize) -> PyResult<Option<Self>> {
         let work = || simplified(&self.solid, tolerance);
@@ -282,7 +283,8 @@ impl Tree {
         Ok(solid.map(Self::of))
     }
 
-    /// Return whether the surface is the reduced boundary; None if that was not checked yet.
+    /// Return whether the surface contains every wall between inside and outside exactly once and no other
+    /// faces; None if that was not checked yet.
     #[getter]
     fn simple(&self) -> Option<bool> {
         let known = self.solid.is_reduced() || self.solid.simple().get().is_some();
@@ -298,7 +300,8 @@ impl Tree {
         ))
     }
 
-    /// Return for each triangle of the mesh the slot of its source and its face in the input.
+    /// Return for each triangle of the mesh the index (slot) of its source, and the number of its face in the
+    /// input.
     fn origins<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
         array(py, wide(&self.rounded(py, 0)?.origins))
     }
@@ -309,8 +312,8 @@ impl Tree {
         Ok(PyArray1::from_vec(py, flips))
     }
 
-    /// Return the same solid, whose mesh does not join faces of different patches; `patches` has for each
-    /// slot the patch number of each face of its input, or None.
+    /// Return the same solid, but its mesh will not join faces of different patches; `patches` has for each
+    /// source the patch number of each input face, or None.
     fn patched(&self, patches: Vec<Option<PyReadonlyArray1<'_, u32>>>) -> PyResult<Self> {
         let copied = |one: PyReadonlyArray1<'_, u32>| one.as_slice().map(<[u32]>::to_vec);
         let patches = patches
@@ -323,8 +326,8 @@ impl Tree {
         })
     }
 
-    /// Return a source on the lattice: its original doubles, its lattice vertices, its faces, and their
-    /// numbers in the input; None for a half-space.
+    /// Return an input mesh on the lattice: its original doubles, its lattice vertices, its faces, and the
+    /// numbers of these faces in the input; None for a half-space.
     fn source_arrays<'py>(
         &self,
         py: Python<'py>,
@@ -351,7 +354,7 @@ impl Tree {
     }
 
     /// Return whether the input meshes stay closed however their corners are rounded: no face was left out,
-    /// no corner lies in an edge of another face, and corners that were welded are equal.
+    /// no corner lies inside an edge of another face, and welded corners have equal doubles.
     #[getter]
     fn closes_when_moved(&self) -> bool {
         let mut sources = self.solid.sources().iter();
@@ -364,7 +367,7 @@ impl Tree {
         self.given().is_some()
     }
 
-    /// Return the arrays of the input mesh that the solid is.
+    /// Return the arrays of the input mesh, if the solid is one input mesh with unchanged faces.
     fn given_arrays<'py>(&self, py: Python<'py>) -> PyResult<MeshArrays<'py>> {
         let mesh = self.run(py, "given_arrays", 0, 0, || {
             let text = "the solid is not one unchanged input mesh, so no given arrays exist";
@@ -394,7 +397,8 @@ impl Tree {
         self.solid.sources().iter().next().map(|s| s.id())
     }
 
-    /// Return the largest distance of a source's lattice coordinate from its original double.
+    /// Return the largest distance, over all input meshes, by which snapping to the lattice changed a
+    /// coordinate.
     #[getter]
     fn snapped_by(&self) -> f64 {
         let sources = self.solid.sources();
@@ -422,7 +426,7 @@ impl Tree {
         Ok((fraction.numerator, fraction.denominator))
     }
 
-    /// Return the nearest double of the volume; None if cached sums do not decide it.
+    /// Return the double nearest to the volume; None if the cached sums are not exact enough to decide it.
     fn volume_rounded(&self, py: Python<'_>) -> PyResult<Option<f64>> {
         self.run(py, "volume_rounded", 0, 0, || {
             Ok(volume_rounded(&self.solid))
@@ -501,8 +505,8 @@ impl Tree {
         self.run(py, "meets", 0, size, meet)
     }
 
-    /// Return the same solid, whose mesh divides faces at edges inside them; None if there are no such
-    /// edges.
+    /// Return the same solid, but its mesh will divide faces at edges of the surface that lie inside them;
+    /// None if there are no such edges.
     fn divided(&self, py: Python<'_>) -> PyResult<Option<Self>> {
         let contacts = || edge_contacts(&self.solid, &self.patches);
         let contacts = self.run(py, "divided", 0, self.size(), contacts)?;
@@ -551,8 +555,8 @@ impl Tree {
         self.solid.pitch().exponent()
     }
 
-    /// Return whether a mesh of the solid would newly cross itself when a motion replaces its doubles by
-    /// those of the lattice.
+    /// Return whether a motion of the lattice would make a mesh of the solid cross itself, because vertices
+    /// get the doubles of their lattice points instead of their own.
     fn moving_crosses(&self, py: Python<'_>, axes: [i64; 3], shift: [i64; 3]) -> PyResult<bool> {
         let motion = motion(axes, shift).map_err(|e| to_python(py, &e))?;
         let crosses = || Ok(crosses_once_snapped(&self.solid, motion.shifted()));
@@ -566,7 +570,7 @@ impl Tree {
         })
     }
 
-    /// Return the same solid with new identities of its sources.
+    /// Return the same solid, with a new identity for each of its sources.
     fn renamed(&self, py: Python<'_>) -> PyResult<Self> {
         let renamed = || Ok(Self::of(self.solid.renamed()));
         self.run(py, "renamed", 0, self.size(), renamed)
@@ -624,8 +628,9 @@ impl Tree {
         Ok(dict)
     }
 
-    /// Return the stages of the evaluation that made the tree (names, seconds, counts), and why the
-    /// arrangement left it to the descent, if it did.
+    /// Return the stages of the evaluation that made the tree, each with name, seconds and count, and the
+    /// reason why the tree was made by dividing space (descent) and not by an arrangement of all faces; None
+    /// without such a reason.
     fn profile(&self) -> (Vec<(&'static str, f64, usize)>, Option<&'static str>) {
         let Some(counters) = &self.counters else {
             return (Vec::new(), None);

@@ -11,7 +11,7 @@ use crate::merge::lists::list::{List, Sources};
 use crate::tree::node::{Branch, Node};
 use crate::tree::solid::Solid;
 
-/// Where a point lies relative to a solid.
+/// The position of a point relative to a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Location {
     /// In the interior of the solid.
@@ -22,7 +22,7 @@ pub enum Location {
     Outside,
 }
 
-/// A list with at most this many faces and parts is not divided further to locate points in it.
+/// A list with at most this many faces and parts of faces is not divided further to locate points.
 const MAX_ELEMENTS_SEARCHED: usize = 20;
 
 /// Returns the location of each lattice point; `Boundary` means the solid's boundary if the solid is

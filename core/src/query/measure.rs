@@ -63,9 +63,9 @@ fn too_long(bits: u64, most_bits: u64) -> Error {
 
 /// Returns the volume in cubic model units as the nearest double, from sums that the tree's nodes cache.
 ///
-/// Visits only nodes that are not shared with a solid whose volume was already computed. `None` if the error
-/// bound leaves a choice of doubles, or if the boundary may be unbounded; [`volume_near`] then gives the
-/// volume.
+/// Visits only nodes that are not shared with a solid whose volume was already computed. `None` if more than
+/// one double lies within the error bound, or if the boundary may be unbounded; [`volume_near`] then gives
+/// the volume.
 pub fn volume_rounded(solid: &Solid) -> Option<f64> {
     let share = share(solid.root());
     if solid.root().outside > 0 || share.open {
@@ -91,15 +91,16 @@ fn flux_in_units(flux: &Int<6>, exponent: i64) -> Option<f64> {
     (size <= MAX_EXPONENT).then_some(ratio)
 }
 
-/// The number of binary places to which [`volume_near`] rounds the share of each cut triangle, in cubic
-/// steps.
+/// [`volume_near`] rounds the contribution of each cut triangle to the volume to this many binary places, in
+/// cubic steps.
 const BINARY_PLACES: usize = 128;
 
 /// Returns the volume in cubic model units, accurate to 2^-128 cubic steps for each cut triangle.
 ///
-/// The shares of triangles with lattice corners are exact integers; the share of any other triangle is
-/// rounded down once. The error is far below a double's precision, and the cost, unlike that of the exact
-/// sum, does not grow with the square of the number of cut faces.
+/// Each triangle contributes the volume of its tetrahedron with the origin: an exact integer if its corners
+/// are lattice points, else a fraction that is rounded down once. The error is far below a double's
+/// precision, and the cost, unlike that of the exact sum, does not grow with the square of the number of cut
+/// faces.
 ///
 /// # Errors
 /// `Unbounded`.

@@ -1,4 +1,4 @@
-//! Questions: where a point lies, how large a set is, what a ray meets, what a plane cuts.
+//! Queries of solids and sets: the location of a point, volumes and areas, hits of rays, sections by planes.
 #![allow(
     clippy::cast_precision_loss,
     clippy::cast_possible_truncation,

@@ -1,8 +1,8 @@
 //! The paths of a point and of a ray through a tree of fragments, exact and step by step.
 //!
 //! A ray visits the child on its origin's side first, then the facets in the cut, then the other child, and
-//! stops at the first hit. All depths are exact fractions. A ray also visits children that it only touches
-//! in a point, so that singular cases need no code of their own.
+//! stops at the first hit. All depths are exact fractions. A ray also visits children that it only touches in
+//! a point, so that such cases need no separate code.
 //!
 //! # Source
 //! Lecture notes on BSP trees, "Ray casting" and "Distribution optimized BSP"; Havran, Kopal,
@@ -111,8 +111,8 @@ impl RayPath {
 
 /// Finds the first piece that a ray meets, and reports each step to `watcher`.
 ///
-/// If several pieces lie at that point, the piece that the tree reaches first is taken; within a node, the
-/// first of the input.
+/// If the ray meets several pieces at one point, the result is the piece that the walk through the tree tests
+/// first; within a node, the piece that is first in the input.
 ///
 /// `facets` are the tree's facets, indexed by piece number.
 pub fn cast_ray<S: Cast<D> + Affine, const D: usize>(
@@ -143,7 +143,7 @@ pub fn cast_ray<S: Cast<D> + Affine, const D: usize>(
     path
 }
 
-/// An interval of parameters on a ray; without an end it is unbounded.
+/// An interval of parameters on a ray, unbounded if it has no end.
 #[derive(Clone, Copy)]
 struct Stretch {
     from: Ratio,
@@ -287,7 +287,8 @@ impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D
     }
 }
 
-/// Where and how a ray's line crosses a hyperplane.
+/// The parameter at which a ray's line crosses a hyperplane, and the sides on which the ray and its line
+/// start.
 struct Crossing {
     /// The side of the hyperplane on which the ray starts.
     start: Side,

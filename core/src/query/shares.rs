@@ -1,4 +1,4 @@
-//! The volume of a mesh as an exact sum of its triangles' shares.
+//! The volume of a mesh as an exact sum of contributions (shares) of its triangles.
 //!
 //! The denominator of a triangle's share is the product of the weights of its constructed corners. Halving
 //! space recursively makes groups of triangles that share few points with other groups. The sum of a group
@@ -48,18 +48,18 @@ struct Share {
     at: [f64; 3],
 }
 
-/// A sum of contributions of triangles to the volume, whose denominator is the product of `closed` and of the
-/// weights of the `open` points.
+/// A sum of contributions of triangles to the volume. Its denominator is the product of `closed` and of the
+/// homogeneous weights of the points in `open`.
 struct Partial {
     numerator: BigInt,
     /// The product of the weights of points that only this sum uses.
     closed: BigInt,
-    /// All other points in the denominator, ascending, each with the number of triangles of this sum that
-    /// use it.
+    /// The points whose weights are the other factors of the denominator, ascending, each with the number of
+    /// triangles of this sum that use it.
     open: Vec<(u32, u32)>,
 }
 
-/// A point in homogeneous coordinates, with its rounded position.
+/// A point in homogeneous coordinates, and its coordinates in doubles.
 struct Point {
     x: [BigInt; 3],
     weight: BigInt,
@@ -68,7 +68,7 @@ struct Point {
 }
 
 impl Shares {
-    /// Computes the shares of the triangles of a solid's mesh.
+    /// Computes the contribution of each triangle of a solid's mesh to the volume.
     pub fn of(solid: &Solid, mesh: &ExactMesh) -> Self {
         let mut shares = Self {
             whole: BigInt::ZERO,
@@ -200,7 +200,7 @@ impl Shares {
         })
     }
 
-    /// Multiplies into the denominator the weights of open points that no triangle outside the sum uses.
+    /// Multiplies into `closed` the weights of those `open` points that no triangle outside the sum uses.
     fn settled(&self, mut sum: Partial) -> Partial {
         let is_closed = |p: &(u32, u32)| self.uses[p.0 as usize] == p.1;
         let closed = sum.open.iter().filter(|p| is_closed(p)).map(|p| p.0);

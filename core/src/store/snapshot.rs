@@ -69,7 +69,8 @@ pub struct Snapshot {
 enum SourceData {
     Mesh(TriangleMesh),
     HalfSpace(PlaneData),
-    /// A mesh with its known close pairs of faces, so that its images need no search.
+    /// A mesh with its pairs of faces that touch, found by an earlier search, so that images of the mesh need
+    /// no search.
     Searched(TriangleMesh, Vec<[u32; 2]>),
 }
 
@@ -77,7 +78,7 @@ enum SourceData {
 struct PartData {
     slot: Slot,
     face: FaceId,
-    /// True if the part is turned around.
+    /// True if the orientation of the part is opposite to its face.
     flip: bool,
     edges: Vec<EdgeData>,
 }
@@ -199,8 +200,9 @@ impl Snapshot {
     /// Returns the image of a solid under a motion of its lattice; each source stores its image for each
     /// motion.
     ///
-    /// On axes along which a motion shifts, vertices take the doubles of the lattice. If that makes a mesh
-    /// cross itself, the solid is first united with itself, and takes all its doubles from the lattice.
+    /// On axes along which a motion shifts, vertices take the doubles of their lattice points. If that makes
+    /// a mesh cross itself, the solid is first united with itself, and all its vertices take the doubles of
+    /// their lattice points.
     ///
     /// # Errors
     /// `TooLarge` if a point or plane leaves the lattice; `Unbounded`, `Internal`.
@@ -296,8 +298,8 @@ impl Snapshot {
                 .any(|e| e.carrier.carrier().is_ok_and(|c| c.is_border()))
     }
 
-    /// Returns the winding number at the low corner of the universe; a plane that is the whole boundary
-    /// decides it.
+    /// Returns the winding number of the solid at the corner of the universe with the least coordinates; if a
+    /// single plane is the whole boundary, its orientation decides.
     fn label_at_infinity(&self) -> Result<i32> {
         if let [only] = self.wholes.as_slice()
             && let Some(SourceData::HalfSpace(plane)) = self.sources.get(only.slot.index())
@@ -417,8 +419,8 @@ impl SourceData {
         Ok(source.images().keep(motion, made()?))
     }
 
-    /// Returns the data to write: with close pairs only if some cross, because a reader would not search for
-    /// them.
+    /// Returns the data to write; pairs of close faces are written only if some faces cross, because a reader
+    /// would not search for these.
     fn written(self) -> Self {
         match self {
             Self::Searched(mesh, pairs) if crossing_faces(&mesh, &pairs).is_empty() => {
@@ -559,7 +561,8 @@ impl CarrierData {
     }
 }
 
-/// Returns true if a carrier and the support meet in a line that contains both ends of an edge.
+/// Returns true if the plane of a carrier and the plane `support` meet in a line that contains both ends of
+/// an edge.
 fn carries(carrier: &Carrier, support: &Plane, from: &Vertex, to: &Vertex) -> bool {
     let on = |plane: &Plane| from.side_of(plane) == Side::On && to.side_of(plane) == Side::On;
     let crosses = |plane: &Plane| {

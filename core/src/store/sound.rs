@@ -1,7 +1,7 @@
 //! Checks that a stored boundary bounds a set, which is all that the core assumes of it.
 //!
-//! A closed boundary gives every point a winding number that does not depend on the path to it. That
-//! suffices: set operations find faces that overlap or cross themselves.
+//! A closed boundary gives every point a winding number that does not depend on the path to it. More need not
+//! be checked: set operations find faces that overlap or cross each other.
 
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ pub fn is_sound(solid: &Solid) -> bool {
         && fates(leaf, &sources).is_some_and(|fates| is_closed(leaf, &fates, &sources))
 }
 
-/// Returns true if a source could be the result of an import, motions and refinements.
+/// Returns true if a source could be the result of an import followed by lattice motions and refinements.
 fn is_proper(source: &Source) -> bool {
     let Some(mesh) = source.mesh() else {
         return true;
@@ -45,8 +45,8 @@ fn is_proper(source: &Source) -> bool {
     numbers.into_iter().all(ascending) && doubles_fit(mesh, source.pitch()) && source.is_closed()
 }
 
-/// Returns true if the doubles of each vertex snap to it, on this lattice or on a coarser one that contains
-/// all coordinates.
+/// Returns true if the doubles of each vertex snap to its lattice point, on this lattice or on a coarser one
+/// that contains all coordinates.
 fn doubles_fit(mesh: &TriangleMesh, pitch: Pitch) -> bool {
     (0..3).all(|axis| {
         let slack = as_double(coarsest_step(&mesh.vertices, axis)) * 0.5;
@@ -70,7 +70,7 @@ fn coarsest_step(vertices: &[Lattice], axis: usize) -> i64 {
     step
 }
 
-/// Returns true if the outline of a part bounds a part of its face, which lies on the left of each edge.
+/// Returns true if the outline of a part bounds a subset of the part's face, on the left of each edge.
 ///
 /// The convex pieces are disjoint parts of the face. If their edges cancel the outline's edges, the outline
 /// bounds exactly these pieces.
@@ -88,8 +88,8 @@ fn lies_on_face(part: &Part) -> bool {
     !pieces.is_empty() && cancel(bounds.chain(reversed).collect()).is_empty()
 }
 
-/// Returns true if no corner of an outline lies outside a face, and each of its edges between lattice points
-/// lies on an edge of the face.
+/// Returns true if all corners of a part's outline lie in a face, and each outline edge between lattice
+/// points lies on an edge of the face.
 fn is_within(part: &Part, face: &Polygon) -> bool {
     let own: Vec<&Carrier> = face.edges().map(|(_, _, carrier)| carrier).collect();
     let walls: Vec<Plane> = own.iter().map(|c| c.plane(face.support())).collect();
@@ -106,7 +106,8 @@ fn is_within(part: &Part, face: &Polygon) -> bool {
         .all(|e| inside(&e.from) && known(&e.carrier))
 }
 
-/// Returns the fate of each listed face; `None` if a face or part is listed twice.
+/// Returns for each face whether it is whole, cut or gone, from the leaf's lists; `None` if a face or part is
+/// listed twice.
 fn fates(leaf: &DeferredLeaf, sources: &Sources) -> Option<Fates> {
     let gone = |s: &Arc<Source>| vec![Fate::Gone; s.face_count()];
     let mut fates = Fates::new(sources.table().iter().map(gone).collect());

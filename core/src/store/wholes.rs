@@ -7,8 +7,8 @@ use crate::extract::boundary::leaves::Fate;
 use crate::geometry::side::Orientation;
 use crate::mesh::handle::{FaceId, Slot, SourceFace};
 
-/// Whole faces of one source with the same orientation; either each of them may touch other faces, or none
-/// does.
+/// Whole faces of one source with the same orientation; either all of them may touch other faces, or none
+/// may.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct WholeFaces {
     pub(super) slot: Slot,

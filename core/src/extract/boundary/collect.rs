@@ -27,10 +27,10 @@ pub struct CutFace {
     pub outline: Outline,
 }
 
-/// The boundary of a solid, described by the fate of each source face.
+/// The boundary of a solid, described by the fate of each source face: whole, cut, or gone.
 #[derive(Debug)]
 pub struct Boundary {
-    /// The fate of each face of each source.
+    /// For each face of each source, whether all of it (whole), a part (cut) or none (gone) is boundary.
     pub fates: Fates,
     /// The faces that are boundary in part, ascending.
     pub cut: Vec<CutFace>,
@@ -62,8 +62,8 @@ pub fn collect(solid: &Solid, sources: &Sources) -> Boundary {
 }
 
 impl Collector<'_> {
-    /// Decides which faces that span several leaves are whole or cut, and finds the outlines of the cut
-    /// faces.
+    /// Decides for each face that extends over several leaves whether all of it is boundary (whole) or a part
+    /// (cut), and finds the outlines of the cut faces.
     fn settle(mut self) -> Boundary {
         let spanning = by_face(&self.listed.spanning, &self.listed.fates);
         let runs: Vec<&[Spanning]> = spanning
@@ -95,8 +95,8 @@ impl Collector<'_> {
         Boundary { fates, cut, near }
     }
 
-    /// Returns true only if every leaf that a face meets lists it in the same orientation, so that all of it
-    /// is boundary; may return false negatives.
+    /// Returns true only if every leaf that a face meets lists the face in the same orientation, so that all
+    /// of the face is boundary; may return false negatives. `run` has one entry for each leaf that lists it.
     fn is_whole(&self, run: &[Spanning]) -> bool {
         let first = run[0].face;
         let source = self.sources.get(first.slot());
@@ -117,8 +117,8 @@ impl Collector<'_> {
         )
     }
 
-    /// Returns the faces that are boundary in part, with outlines; a face whose boundary parts add up to all
-    /// of it becomes whole instead.
+    /// Returns the faces that are boundary in part, with outlines; if the boundary parts of a face add up to
+    /// the full triangle, it is marked as whole instead.
     fn outline(&mut self, open: &[&[Spanning]]) -> Vec<CutFace> {
         let spans = open.iter().flat_map(|run| run.iter()).map(Piece::from);
         let mut pieces: Vec<Piece> = spans.collect();

@@ -37,11 +37,11 @@ pub struct Piece<'a> {
     extent: Extent<'a>,
 }
 
-/// How a boundary part of a face is given; its outline is computed only on demand.
+/// The outline of a boundary part of a face, as data from which it is computed only on demand.
 enum Extent<'a> {
     /// The part of the face in the cell of the leaf with this number.
     Face(u32),
-    /// A part of the face that the tree stores, all of it.
+    /// All of a part of the face that the tree stores.
     Part(&'a Part),
     /// The region inside these edges.
     Edges(Vec<OutlineEdge>),
@@ -57,7 +57,7 @@ impl From<&Spanning> for Piece<'_> {
 }
 
 impl Piece<'_> {
-    /// Returns the outline of this boundary part of a face, which is the only one of its face.
+    /// Returns the outline of this boundary part, if the face has no other boundary part.
     pub fn outline(&mut self, sources: &Sources, cells: &[Cell]) -> Outline {
         match self.extent {
             Extent::Part(part) => Outline::of_bare(&part.edges),
@@ -65,8 +65,8 @@ impl Piece<'_> {
         }
     }
 
-    /// Returns the edges around this boundary part of a face; if the part stores them, it has none
-    /// afterwards.
+    /// Returns the edges around this boundary part of a face, and removes them from the part if it stores
+    /// them.
     pub fn take_edges(&mut self, sources: &Sources, cells: &[Cell]) -> Vec<OutlineEdge> {
         match &mut self.extent {
             Extent::Face(leaf) => {
@@ -83,20 +83,20 @@ impl Piece<'_> {
 /// The faces and parts that the leaves of a tree list, in the order of the leaves.
 #[derive(Default)]
 pub struct Listed<'a> {
-    /// The fates that follow from single leaves: `Whole` for a face inside the cell of a leaf that lists it,
-    /// `Cut` for a face of which a leaf lists a part.
+    /// The faces whose fate a single leaf decides: `Whole` for a face inside the cell of a leaf that lists
+    /// it, `Cut` for a face of which a leaf lists a part.
     pub fates: Fates,
     /// The faces that extend beyond the cell of a leaf that lists them, once for each such leaf.
     pub spanning: Vec<Spanning>,
     /// The boundary parts of faces that the leaves list, sorted by face.
     pub parts: Vec<Piece<'a>>,
-    /// Faces in cells where several operands met.
+    /// Faces in cells where several operands met, so that they may touch other faces.
     pub near: Vec<SourceFace>,
     /// The cell of each leaf.
     pub cells: Vec<Cell>,
 }
 
-/// The faces that extend beyond one leaf's cell, the parts of faces that the leaf lists, and its faces near
+/// The contents of one leaf: faces that extend beyond its cell, parts of faces, and faces that may touch
 /// other operands.
 #[derive(Default)]
 struct Found<'a> {
@@ -208,8 +208,8 @@ fn extents<'a>(part: &'a Part, leaves: &[u32], cells: &[Cell]) -> Extents<'a> {
     edges.filter(|e| !e.is_empty()).map(Extent::Edges).collect()
 }
 
-/// Returns whether the leaves that list a part of a face together contain all of the part; may return false
-/// negatives.
+/// Returns true only if the leaves that list a part of a face together contain all of the part; may return
+/// false negatives.
 fn is_whole(part: &Part, leaves: &[u32], cells: &[Cell]) -> bool {
     if let [leaf] = leaves
         && cells[*leaf as usize] == part.home
@@ -229,7 +229,7 @@ fn part_box(part: &Part) -> (Lattice, Lattice) {
     )
 }
 
-/// Returns whether the cells of some leaves together fill a box; may return false negatives.
+/// Returns true only if the cells of the given leaves together fill a box; may return false negatives.
 ///
 /// Leaves are disjoint, so counting lattice points suffices.
 pub fn fill(
@@ -297,22 +297,23 @@ pub enum Fate {
     Cut,
 }
 
-/// The fate of each face of each source, by slot; a source that no leaf names has an empty list.
+/// For each source, by its index (slot), the fate of each face: whole, cut or gone. A source that no leaf
+/// names has an empty list.
 #[derive(Debug, Default)]
 pub struct Fates(Vec<Vec<Fate>>);
 
 impl Fates {
-    /// Takes one list of fates for each source, by slot.
+    /// Takes one list of fates (whole, cut or gone, for each face) for each source, by its index (slot).
     pub fn new(by_slot: Vec<Vec<Fate>>) -> Self {
         Self(by_slot)
     }
 
-    /// The fates of the faces of the source at a slot.
+    /// The fate (whole, cut or gone) of each face of the source with the index `slot`.
     pub fn of(&self, slot: Slot) -> &[Fate] {
         &self.0[slot.index()]
     }
 
-    /// Yields each slot with the fates of its source's faces.
+    /// Yields the index (slot) of each source, with the fate (whole, cut or gone) of each of its faces.
     pub fn by_slot(&self) -> impl Iterator<Item = (Slot, &[Fate])> {
         Slot::all().zip(self.0.iter().map(Vec::as_slice))
     }
@@ -342,7 +343,8 @@ impl IndexMut<SourceFace> for Fates {
     }
 }
 
-/// The fate of each source face, by slot, as a byte that several threads may set.
+/// The fate (whole, cut or gone) of each source face, by the index (slot) of the source, as a byte that
+/// several threads may set.
 struct AtomicFates(Vec<Vec<AtomicU8>>);
 
 const GONE: u8 = 0;

@@ -1,4 +1,5 @@
-//! The boundary as a tree lists it: the fates of source faces, and the edges where whole faces end.
+//! The boundary as a tree lists it: whether each source face is whole, cut or gone, and the edges at which
+//! whole faces end.
 
 pub mod collect;
 pub mod leaves;

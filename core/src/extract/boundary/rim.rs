@@ -1,7 +1,9 @@
-//! Finds where the whole faces of a source end (their rim), by vertices, without opposite half-edges.
+//! Finds the edges at which the whole faces of a source (entirely boundary) end, by their vertices, without
+//! opposite half-edges.
 //!
-//! Two faces at an edge share both ends of the edge. So a face can lie beside a face of another fate only if
-//! it has a corner where fates differ. Such faces are few, and are compared edge by edge.
+//! Two faces at an edge share both ends of the edge. So a whole face can lie beside a cut or removed face
+//! only if such faces meet at one of its corners. Few whole faces have such a corner, and only these are
+//! compared edge by edge.
 
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
@@ -20,12 +22,13 @@ use crate::mesh::source::Source;
 use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
 
-/// Bit of a vertex at a whole face in its source's orientation; `TURNED`: at a whole face turned around;
-/// `OTHER`: at a face that is cut or gone.
+/// Bit of a vertex at a whole face (entirely boundary) in its source's orientation; `TURNED`: at a whole face
+/// turned around; `OTHER`: at a face that is cut or gone.
 const KEPT: u8 = 1;
 const TURNED: u8 = 2;
 const OTHER: u8 = 4;
-/// Bit of a vertex on an edge that has no opposite by index, but cancels with other edges on its line.
+/// Bit of a vertex on an edge that has no opposite by vertex numbers, but that other edges on the same line
+/// cancel.
 const OPEN: u8 = 8;
 
 /// For each source, by slot, the vertices and edges at which its whole faces (entirely boundary) meet faces
@@ -33,11 +36,13 @@ const OPEN: u8 = 8;
 #[derive(Debug)]
 pub struct Rims {
     by_slot: Vec<Rim>,
-    /// For each slot, half-edges near the rim by their two ends; made on first use.
+    /// For each source, the half-edges of its whole faces that share a corner with a cut or removed face, by
+    /// their two ends; made on first use.
     by_ends: Vec<OnceLock<HashMap<[VertexId; 2], u32>>>,
     /// For each slot, the faces around each vertex of its source; made on first use.
     around: Vec<OnceLock<Around>>,
-    /// Slots of sources whose fates have changed since their rims were found.
+    /// Sources, by index (slot), whose faces' fates (whole, cut or gone) have changed since their rims were
+    /// found.
     outdated: BTreeSet<Slot>,
 }
 
@@ -84,12 +89,13 @@ impl Rims {
         }
     }
 
-    /// Marks the rim of a source as outdated, because the fates of its faces have changed.
+    /// Marks as outdated which vertices of a source lie between whole faces and other faces, because faces of
+    /// the source have become whole, cut or gone.
     pub fn outdated(&mut self, slot: Slot) {
         self.outdated.insert(slot);
     }
 
-    /// Recomputes the rims that were marked as outdated.
+    /// Finds again the vertices between whole faces and other faces, for each source marked as outdated.
     pub fn renew(&mut self, fates: &Fates, sources: &Sources) {
         for slot in std::mem::take(&mut self.outdated) {
             self.by_slot[slot.index()] = Rim::of(sources.get(slot), fates.of(slot));
@@ -97,7 +103,8 @@ impl Rims {
         }
     }
 
-    /// The rim of the source at a slot.
+    /// The vertices at which whole faces (entirely boundary) of the source with the index `slot` meet other
+    /// faces.
     pub fn get(&self, slot: Slot) -> &Rim {
         &self.by_slot[slot.index()]
     }
@@ -116,7 +123,7 @@ impl Rims {
 
     /// Returns the face on the other side of a half-edge; `None` if no whole face can be there.
     ///
-    /// Looks up faces near the rim by their edges, and others by their corners.
+    /// A face with a corner at a cut or removed face is found by its edges, any other face by its corners.
     pub fn across(&self, slot: Slot, half: u32, sources: &Sources) -> Option<FaceId> {
         let mesh = sources.get(slot).mesh()?;
         let rim = self.get(slot);
@@ -177,12 +184,14 @@ impl Around {
     }
 }
 
-/// The vertices at which faces of one source have different fates, and the whole faces with such a corner.
+/// The vertices at which faces of one source have different fates (whole, cut or gone), and the whole faces
+/// with such a corner.
 #[derive(Debug, Default)]
 pub struct Rim {
     /// For each vertex, those of the bits `KEPT`, `TURNED`, `OTHER` and `OPEN` that apply.
     touch: Vec<u8>,
-    /// The whole faces with a corner at which fates differ, ascending.
+    /// The whole faces (entirely boundary) with a corner at which faces of different fates or orientations
+    /// meet, ascending.
     near: Vec<FaceId>,
 }
 
@@ -225,8 +234,8 @@ impl Rim {
         self.touch.iter().map(|touch| touch & (KEPT | TURNED) != 0)
     }
 
-    /// Returns true if faces of different fates meet at a vertex, or if the vertex lies on an open edge of a
-    /// face.
+    /// Returns true if faces that differ in orientation or in fate (whole or not) meet at a vertex, or if a
+    /// whole face meets an open edge there.
     fn is_mixed(&self, vertex: VertexId) -> bool {
         is_mixed(self.touch[vertex.index()])
     }

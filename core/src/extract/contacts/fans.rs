@@ -1,8 +1,8 @@
 //! Splitting of edges and vertices where a closed surface touches itself.
 //!
-//! Knows triangles by index, and of their geometry only what [`Radial`] answers. Half-edge
-//! `3 t + k` leaves corner `k` of triangle `t`; the two share this number. Invariant of the result:
-//! every directed edge has exactly one opposite by index, and the triangles around a vertex form one fan.
+//! Triangles are given by vertex numbers; all geometry comes from [`Radial`]. Half-edge `3 t + k` leaves
+//! corner `k` of triangle `t`; the two share this number. Invariant of the result: every directed edge has
+//! exactly one opposite by index, and the triangles around a vertex form one fan.
 
 mod radial;
 #[cfg(test)]
@@ -26,7 +26,7 @@ pub trait Radial {
     fn direction(&self, a: VertexId, b: VertexId) -> [Sign; 3];
 }
 
-/// A surface in which the triangles around each vertex form one fan.
+/// A surface in which the triangles around each vertex form one closed ring (fan).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Split {
     /// The triangles, in the given order, with the new vertices.
@@ -74,9 +74,9 @@ impl std::error::Error for Error {}
 
 /// Splits a closed surface until it is a manifold by index.
 ///
-/// At an edge of more than two triangles, the two that bound the same wedge of the inside stay together. If
-/// two copies of the edge would then have the same ends, their opposite half-edges are exchanged: then the
-/// outside between them is separated.
+/// At an edge of more than two triangles, the two triangles that bound the same wedge of the inside stay
+/// joined. If two copies of the edge would then have the same ends, they exchange their opposite half-edges,
+/// which separates the outside between the two wedges.
 ///
 /// # Order
 /// Triangles keep their order. Copies are numbered by the first triangle that uses them.
@@ -245,7 +245,7 @@ impl Surface<'_> {
         }
     }
 
-    /// Returns the next corner around the vertex of a corner.
+    /// Returns the next corner, in the ring of triangles around a vertex, after a given corner.
     fn turn(&self, corner: usize) -> usize {
         self.mates[next(next(corner))]
     }
@@ -302,11 +302,12 @@ impl Fans {
         self.count += 1;
     }
 
-    /// Exchanges opposite half-edges at an edge until no two copies of the edge have the same fans at both
-    /// ends.
+    /// Exchanges opposite half-edges at an edge until no two copies of the edge have the same two end
+    /// vertices.
     ///
-    /// Exchanging the mates of two half-edges in one fan cuts the fan in two, at either end. Fans
-    /// are only ever cut, so distinct copies stay distinct.
+    /// Each end of a copy belongs to a fan (ring of triangles around a vertex). An exchange between two
+    /// half-edges that share a fan cuts the fan in two. Fans are never joined, so copies that differ stay
+    /// different.
     fn tell_apart(&mut self, surface: &mut Surface, forward: &[usize]) {
         for (i, &g) in forward.iter().enumerate() {
             for &h in &forward[i + 1..] {

@@ -57,8 +57,8 @@ fn add_finding(
     }
 }
 
-/// Returns true if the triangles around each special vertex, one that not only untouched faces use, form one
-/// closed fan.
+/// Returns true if the triangles around each special vertex form one closed ring. A vertex is special unless
+/// only untouched input faces use it.
 ///
 /// # Errors
 /// `Overlap` if an edge at a special vertex has no opposite: the assembly is not closed.
@@ -83,12 +83,12 @@ pub(super) fn is_manifold(assembly: &Assembly) -> Result<bool, Failure> {
     Ok(single)
 }
 
-/// For each special vertex, one that not only untouched faces use, the next and the previous vertex in each
-/// triangle around it.
+/// For each special vertex, the next and the previous vertex in each triangle around it. A vertex is special
+/// unless only untouched input faces use it.
 struct Fans {
     starts: Vec<usize>,
     corners: Vec<[VertexId; 2]>,
-    /// Directed edges of these triangles between vertices that are not special.
+    /// Directed edges, in triangles with a special vertex, between two vertices that are not special.
     apart: Vec<[VertexId; 2]>,
 }
 
@@ -125,14 +125,16 @@ impl Fans {
         fans
     }
 
-    /// Sorts the directed edges between vertices that are not special; returns true if none occurs twice.
+    /// Sorts the directed edges between vertices that only untouched input faces use; returns true if none
+    /// occurs twice.
     fn edges_apart_are_single(&mut self) -> bool {
         self.apart.sort_unstable();
         self.apart.windows(2).all(|pair| pair[0] != pair[1])
     }
 }
 
-/// Returns true if, along each edge at a vertex, as many triangles start there as end.
+/// Returns true if, along each edge at a vertex, as many triangles begin as end, in their order around the
+/// vertex.
 fn is_balanced(fan: &[[VertexId; 2]]) -> bool {
     let mut starts: Vec<VertexId> = fan.iter().map(|c| c[0]).collect();
     let mut ends: Vec<VertexId> = fan.iter().map(|c| c[1]).collect();
@@ -141,7 +143,8 @@ fn is_balanced(fan: &[[VertexId; 2]]) -> bool {
     starts == ends
 }
 
-/// Sorts the corners at a vertex; returns true if they form one closed fan that uses each edge once.
+/// Sorts the corners of triangles at a vertex; returns true if the triangles form one closed ring that uses
+/// each edge once.
 fn is_single_fan(fan: &mut [[VertexId; 2]]) -> bool {
     fan.sort_unstable();
     if fan.windows(2).any(|pair| pair[0][0] == pair[1][0]) {

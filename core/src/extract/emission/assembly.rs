@@ -56,7 +56,8 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// Returns the table number of a source vertex, and from now on uses this table point for the vertex.
+    /// Returns the number of a source vertex in the vertex table; from then on this table point is the output
+    /// vertex for it.
     pub(in crate::extract) fn point_of(
         &mut self,
         slot: Slot,
@@ -74,8 +75,8 @@ impl<'a> Assembly<'a> {
         point
     }
 
-    /// Records that a table point is a vertex of a source; of several such vertices the first by slot and
-    /// number names it, whatever the order of calls.
+    /// Records that a table point coincides with a source vertex. If several source vertices coincide with
+    /// it, the one that is first by source index (slot) and number stays recorded, in any order of calls.
     pub(in crate::extract) fn name(&mut self, point: u32, vertex: (Slot, VertexId)) {
         let name = self.names.entry(point).or_insert(vertex);
         *name = vertex.min(*name);
@@ -93,19 +94,20 @@ impl<'a> Assembly<'a> {
         *image
     }
 
-    /// Yields the triangles with a special vertex, one that not only untouched faces use.
+    /// Yields the triangles with a special vertex. A vertex is special unless only untouched input faces use
+    /// it.
     pub(in crate::extract) fn special_triangles(&self) -> impl Iterator<Item = u32> + '_ {
         let last = as_number(self.untouched.count)..as_number(self.triangles.len());
         self.untouched.special.iter().copied().chain(last)
     }
 
-    /// Returns the number of special vertices, those that not only untouched faces use.
+    /// Returns the number of special vertices. A vertex is special unless only untouched input faces use it.
     pub(in crate::extract) fn special_count(&self) -> usize {
         self.vertices.len() - self.untouched.own_count()
     }
 
-    /// Returns the index of a vertex among those that not only untouched faces use; `None` if only they use
-    /// it.
+    /// Returns the index of a vertex among the special vertices; `None` if it is not special, that is, if
+    /// only untouched input faces use it.
     pub(in crate::extract) fn special_place(&self, vertex: VertexId) -> Option<usize> {
         let others = &self.untouched.vertices;
         if vertex < others.start {
@@ -115,7 +117,8 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// Returns the vertex at an index among the vertices that not only untouched faces use.
+    /// Returns the special vertex with a given index among special vertices. A vertex is special unless only
+    /// untouched input faces use it.
     pub(in crate::extract) fn special_vertex(&self, place: usize) -> VertexId {
         let before = place < self.untouched.vertices.start.index();
         VertexId::of(if before {
@@ -162,8 +165,8 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// Returns the vertices that triangles use, in output order: those of sources by slot and number, then
-    /// constructed points.
+    /// Returns the vertices that triangles use, in output order: first vertices of sources, by source index
+    /// (slot) and number, then constructed points.
     fn order(&self) -> Vec<VertexId> {
         let mut given: Vec<(Slot, VertexId, VertexId)> = Vec::new();
         let mut points: Vec<VertexId> = Vec::new();
@@ -191,7 +194,8 @@ impl<'a> Assembly<'a> {
         order
     }
 
-    /// Yields the vertices that triangles use, ascending, without those that only untouched faces use.
+    /// Yields the special vertices that triangles use, ascending. A vertex is special unless only untouched
+    /// input faces use it.
     fn used_special_vertices(&self) -> impl Iterator<Item = VertexId> {
         let mut used = vec![false; self.special_count()];
         for triangle in self.special_triangles() {

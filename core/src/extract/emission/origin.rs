@@ -50,7 +50,8 @@ impl<'a> Owners<'a> {
         Self { group, corners }
     }
 
-    /// Returns for each triangle the face at its centre, or the group's first face if rounding leaves none.
+    /// Returns for each triangle the source face that contains its centre, or the first face of the group if
+    /// rounding errors leave no such face.
     ///
     /// # Cost
     /// Points are halved, each half with the faces that meet its box. A long face meets about the square
@@ -87,8 +88,8 @@ impl<'a> Owners<'a> {
         }
     }
 
-    /// Halves the points of a search, each half with the faces near it; returns the search as an error if
-    /// that gains little.
+    /// Halves the points of a search, each half with the faces near it; returns the search itself as `Err` if
+    /// halving would rule out too few faces.
     fn halved<'p>(&self, search: Search<'p>) -> Result<[Search<'p>; 2], Search<'p>> {
         let Search { points, faces } = search;
         if points.len() <= MAX_POINTS_UNHALVED || faces.len() <= MAX_POINTS_UNHALVED {

@@ -135,7 +135,7 @@ impl Assembly<'_> {
     }
 }
 
-/// Divides edges at their inner points; the first edge has the number `first` in `inner`.
+/// Divides edges at points inside them, in order; the edge at index k has the number `first` + k in `inner`.
 fn chain(edges: &[Edge], first: usize, inner: &InnerPoints) -> Vec<(u32, u32)> {
     let mut chain = Vec::with_capacity(edges.len());
     for (edge, i) in edges.iter().zip(first..) {
@@ -150,7 +150,8 @@ fn chain(edges: &[Edge], first: usize, inner: &InnerPoints) -> Vec<(u32, u32)> {
     chain
 }
 
-/// Returns true if the area of the triangles is the area inside the edges, in doubles, up to one millionth.
+/// Returns true if the sum of the triangles' areas, in doubles, equals the area inside the edges up to one
+/// millionth.
 fn covers_once(view: &Projection, edges: &[(u32, u32)], triangles: &[[u32; 3]]) -> bool {
     let Some(origin) = edges.first().map(|e| view.approx(e.0)) else {
         return true;

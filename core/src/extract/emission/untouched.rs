@@ -19,7 +19,8 @@ pub struct Untouched {
     pub vertices: Range<VertexId>,
     /// The number of triangles of untouched faces.
     pub count: usize,
-    /// The triangles of untouched faces with a vertex that other triangles may also use, ascending.
+    /// The triangles of untouched faces with a vertex outside `vertices`, which other triangles may use,
+    /// ascending.
     pub special: Vec<u32>,
 }
 
@@ -43,7 +44,7 @@ pub struct Emitted<'a> {
 }
 
 impl Untouched {
-    /// Starts without triangles; only untouched faces will use `vertices`.
+    /// Starts without triangles; `vertices` are the output vertices that only untouched faces will use.
     pub fn new(vertices: Range<VertexId>) -> Self {
         Self {
             vertices,

@@ -50,8 +50,8 @@ pub struct Chord {
 }
 
 impl Chord {
-    /// Returns whether an end of the chord lies on the minus side of a plane, and whether one lies on the
-    /// plus side.
+    /// Returns two flags: whether an end of the chord lies on the minus side of a plane, and whether an end
+    /// lies on the plus side.
     fn reaches(&self, plane: &Plane) -> [bool; 2] {
         let sides = self.ends.each_ref().map(|end| end.side_of(plane));
         [Side::Minus, Side::Plus].map(|side| sides.contains(&side))
@@ -133,8 +133,8 @@ impl Part {
     }
 }
 
-/// Returns whether a face has a corner on the minus side of a plane, and whether it has one on the plus
-/// side.
+/// Returns two flags: whether a corner of a face lies on the minus side of a plane, and whether a corner lies
+/// on the plus side.
 fn reaches(face: OrientedFace, plane: &Plane, sources: &Sources) -> [bool; 2] {
     let Some(mesh) = sources.get(face.slot()).mesh() else {
         // A half-space's face is everywhere.

@@ -1,4 +1,5 @@
-//! Patches: which faces of a plane may be joined to one polygon, and where such polygons are divided.
+//! Patches: sets of faces, such that only coplanar faces of one patch may be joined to a polygon; and the
+//! edges at which such polygons are divided.
 
 use super::chords::EdgeContact;
 use crate::mesh::handle::SourceFace;

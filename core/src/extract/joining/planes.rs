@@ -65,7 +65,7 @@ struct Grouping<'a> {
 
 /// The boundary of a solid, with its cut faces joined to polygons by plane.
 pub struct Joined {
-    /// The fates of all faces; faces that joined a polygon are `Cut`.
+    /// The fate of each source face: whole, cut or gone; a face that joined a polygon counts as cut.
     pub fates: Fates,
     /// The polygons, with the faces that make them up.
     pub groups: Vec<PlaneGroup>,
@@ -239,8 +239,8 @@ impl Grouping<'_> {
         self.open.push((face, group));
     }
 
-    /// Moves whole faces into a plane group if they share an edge and the plane with a face of the group;
-    /// repeats this.
+    /// Moves into a plane group (the boundary faces of one plane) all whole coplanar faces that are connected
+    /// to its faces across edges.
     fn spread(&mut self) {
         while let Some((face, group)) = self.open.pop() {
             poll();
@@ -258,7 +258,8 @@ impl Grouping<'_> {
         self.rims.renew(&self.fates, self.sources);
     }
 
-    /// Moves whole faces into groups if they have an edge on a line of another face of the same plane.
+    /// Moves a whole face into a plane group (the boundary faces of one plane) if it has an edge on a line
+    /// that also contains an edge of another face in this plane.
     fn absorb_seams(&mut self) {
         let candidates = self.candidates();
         // A face that is alone in its plane shares no line there.
@@ -302,7 +303,8 @@ impl Grouping<'_> {
         }
     }
 
-    /// Returns the edges where whole faces end, each with the plane group of its face, sorted by group.
+    /// Returns the edges at which whole faces end, sorted by the plane group (the boundary faces of one
+    /// plane) that the face could join.
     fn candidates(&mut self) -> Vec<Candidate> {
         let frontier = self.rims.frontier(&self.fates, self.sources);
         let mut candidates: Vec<Candidate> = Vec::with_capacity(frontier.len());
@@ -330,7 +332,8 @@ impl Grouping<'_> {
     }
 }
 
-/// An edge where a whole face ends; the face may belong to the plane group of its plane.
+/// An edge at which a whole face ends, and the plane group (the boundary faces of one plane) that the face
+/// may join.
 #[derive(Clone, Copy)]
 struct Candidate {
     group: usize,

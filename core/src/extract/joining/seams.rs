@@ -28,9 +28,9 @@ pub struct Edge {
 
 /// Returns the points at which edges must be subdivided, for each edge that has such points.
 ///
-/// Opposite edges with equal ends pair and stay. All other edges of a line still cover the line equally
-/// often in both directions, because a boundary has no boundary. Divided at each other's ends, they pair,
-/// too.
+/// Opposite edges with the same ends form pairs and are not subdivided. All other edges on a line cover each
+/// of its points equally often in both directions, because a closed surface has no border. If each is divided
+/// at the ends of the others, they form pairs, too.
 pub fn subdivisions(
     edges: &[Edge],
     mut line: impl FnMut(usize) -> LineKey,

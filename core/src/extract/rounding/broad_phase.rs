@@ -13,8 +13,9 @@ use crate::mesh::tasks::{each_chunk, fill_chunks};
 /// bits.
 const MAX_CELLS_PER_AXIS: usize = 32;
 
-/// The largest average number of cells per triangle: beyond it, comparing a triangle with its neighbours
-/// costs no more than marking its cells. A grid of four cells along each axis has no more cells.
+/// The largest average number of cells per triangle: if triangles reach into more cells, comparing a triangle
+/// with its neighbours costs no more than marking its cells. A grid of four cells along each axis has no more
+/// cells than this.
 const MAX_CELLS_PER_TRIANGLE: usize = 64;
 
 /// Returns the triangles outside the ascending list `some` that may meet a triangle of `some` or a triangle
@@ -111,7 +112,7 @@ impl<'a> Cells<'a> {
         [2, 1, 0].map(|above| cell >> (above * self.bits) & ((1 << self.bits) - 1))
     }
 
-    /// Returns true if two cells, of which `low` has the lower number, share a side.
+    /// Returns true if two cells, of which `low` has the lower number, have a common face.
     #[inline]
     fn are_beside(&self, low: Cell, high: Cell) -> bool {
         let along = |above: u32| {
@@ -173,7 +174,8 @@ impl<'a> Cells<'a> {
         near.concat()
     }
 
-    /// Returns true if `holds` is true for one of the rows of cells that a triangle may reach into.
+    /// Returns true if `holds` is true for at least one row of cells along the last axis into which a
+    /// triangle may reach.
     #[inline]
     fn any_row(
         &self,
@@ -256,7 +258,7 @@ mod tests {
         (vertices, VertexId::rows(triangles))
     }
 
-    /// Needles, side by side, along a diagonal of a cube's side.
+    /// Long thin triangles side by side along a diagonal of a cube's face.
     fn needles(count: u32) -> (Vec<Point>, Vec<[VertexId; 3]>) {
         let needle = |k: u32| {
             let [low, high] = [k, k + 1].map(|k| f64::from(k) / f64::from(count));

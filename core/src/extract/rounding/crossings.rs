@@ -64,8 +64,9 @@ pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32 + Sync + S
     Faults { crossings, flat }
 }
 
-/// Divides the triangles of `some` into those with area, each with a party number, and those without. The
-/// triangles of a terrain have one number, because they do not cross each other; any other has its own.
+/// Divides the triangles of `some` into two lists: the triangles with area, each with a party number, and
+/// those without. Triangles with equal party numbers are known not to cross: all of a terrain have one
+/// number, any other triangle has its own.
 fn parties(faces: &Faces, some: &[u32]) -> (Vec<(u32, u32)>, Vec<u32>) {
     let pieces = terrains(faces, some);
     let alone = as_number(some.len());
@@ -86,8 +87,8 @@ pub fn all_faults(faces: &Faces) -> Faults {
     faults(faces, &all, |_| 0)
 }
 
-/// Returns the pairs of triangles that share no edge and that the filter cannot prove to be apart, except
-/// for a common corner; the lower number first, in ascending order.
+/// Returns the pairs of triangles that share no edge and may have more in common than a corner, because the
+/// filter could not exclude it. The lower number comes first; pairs ascend.
 ///
 /// # Cost
 /// That of `all_faults`.
@@ -179,7 +180,7 @@ trait PairFindings: Default + Send {
     /// Compares a pair, and records the result.
     fn compare(&mut self, p: &Candidate, q: &Candidate);
 
-    /// Merges these results with others.
+    /// Adds the results of another search to these results.
     fn with(self, others: Self) -> Self;
 }
 
@@ -187,7 +188,8 @@ trait PairFindings: Default + Send {
 #[derive(Default)]
 struct Meetings {
     crossings: Vec<[u32; 2]>,
-    /// Pairs that meet along edges: whether surfaces cross depends on the neighbours there.
+    /// Pairs that meet along edges: whether surfaces cross there depends on the triangles on the other side
+    /// of these edges.
     doubtful: Vec<([u32; 2], Meeting)>,
 }
 

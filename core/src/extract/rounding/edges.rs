@@ -9,9 +9,9 @@ use crate::geometry::doubles::Triangle;
 use crate::mesh::faces::{edges, Faces};
 use crate::mesh::handle::VertexId;
 
-/// Returns true if surfaces cross where two triangles meet; `sheets(i, k)` gives the sheets at edge k of the
-/// first (0) or second (1) triangle. A sheet that ends at its edge crosses the triangle that contains the
-/// edge.
+/// Returns true if surfaces cross where two triangles meet. `sheets(i, k)` gives the triangles (sheets) at
+/// edge k of the first (i = 0) or second (i = 1) triangle. A surface that ends at an edge inside a triangle
+/// counts as crossing it.
 pub fn crosses_at(
     meeting: Meeting,
     [p, q]: &[Triangle; 2],
@@ -31,8 +31,8 @@ pub fn crosses_at(
 /// Returns the pairs of triangles that meet along edges at which surfaces cross.
 ///
 /// # Cost
-/// A pass over the triangles; the sheets are sorted once for each edge and the triangle or edge that it
-/// meets.
+/// A pass over the triangles; the triangles around an edge are sorted once for each triangle or edge that
+/// this edge meets.
 pub fn crossing(faces: &Faces, mut pairs: Vec<([u32; 2], Meeting)>) -> Vec<[u32; 2]> {
     let there = AtEdges::of(faces, &pairs);
     let mut known = HashMap::default();
@@ -67,7 +67,8 @@ fn edges_at(faces: &Faces, [t, u]: [u32; 2], meeting: Meeting) -> SmallVec<[Edge
     }
 }
 
-/// The edges, or the edge and the triangle, that meet; the same for all pairs of triangles that meet there.
+/// A key for the location at which two triangles meet: two edges that meet, or an edge and the triangle that
+/// it meets.
 #[derive(PartialEq, Eq, Hash)]
 struct Place {
     edges: SmallVec<[Edge; 2]>,
@@ -106,7 +107,7 @@ impl<'a> AtEdges<'a> {
         there
     }
 
-    /// Finds all triangles at these edges, and records them as sheets.
+    /// Finds all triangles at the edges that are keys of `sheets`, and records them there.
     fn collect(&mut self) {
         let mut is_end = vec![false; self.faces.vertices.len()];
         for v in self.sheets.keys().flatten() {

@@ -1,8 +1,8 @@
-//! An integer image of triangles, rotated so that many of them are flat along an axis.
+//! An integer image of triangles, rotated so that many of them are perpendicular to an axis.
 //!
-//! Boxes around triangles that are flat along an axis overlap little; boxes around oblique ones
-//! overlap everything near. A body with walls at right angles is mostly oblique as a whole, and so
-//! are the needles along a cylinder.
+//! The box around a triangle that is perpendicular to an axis is flat, so that few such boxes overlap; the
+//! box around an oblique triangle overlaps everything near. A rotated body with right angles has mostly
+//! oblique walls, and so have the needles (long thin triangles) along a rotated cylinder.
 
 use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::geometry::axes::each_axis;
@@ -15,21 +15,21 @@ use crate::mesh::terrains::is_needle;
 /// The number of triangles sampled to find the axes.
 const TRIANGLES_SAMPLED: usize = 64;
 
-/// Axes are rotated if they suit at least one in this many sampled triangles.
+/// Axes are rotated if at least one in this many sampled triangles is then flat along an axis.
 const SUITED_IF_ONE_IN: usize = 4;
 
 /// Directions are parallel or perpendicular if their cosine is this close to one or to zero: a triangle that
 /// deviates by this share of its length counts as flat.
 const DIRECTION_TOLERANCE: f64 = 1e-6;
 
-/// Lines whose directions have a larger cosine count as parallel: seen across both, lengths shrink to less
-/// than a twentieth, and the rounding of a rotation must stay far below a step.
+/// Lines whose directions have a larger cosine count as parallel. Mapping perpendicular to both lines would
+/// shrink lengths to less than a twentieth, and the rounding of a rotation must stay far below a step.
 const MAX_COSINE_OF_AXES: f64 = 0.99;
 
 /// A linear map of triangles to integer coordinates, with the box of each triangle's image.
 ///
-/// If boxes of triangles overlap, so do their images: after a rotation they are widened by more than its
-/// rounding.
+/// If two triangles meet, the boxes of their images overlap: after a rotation the boxes are widened by more
+/// than its rounding errors.
 pub struct Image {
     /// A point near the triangles, and the three directions that become axes; `None` if nothing is rotated.
     frame: Option<(Point, [Point; 3])>,
@@ -100,8 +100,8 @@ fn unit(v: Point) -> Option<Point> {
     (size > 0.0 && size.is_finite()).then(|| v.map(|x| x / size))
 }
 
-/// Returns three perpendicular directions, the first two of which are the most common normals; `None` if
-/// they suit few normals, or are the axes themselves.
+/// Returns three perpendicular directions, the first two of which are the most common normals; `None` if few
+/// normals are parallel to these directions, or if they are the coordinate axes.
 fn axes(normals: &[Point]) -> Option<[Point; 3]> {
     if normals.iter().all(is_axis) {
         return None;
@@ -115,11 +115,11 @@ fn axes(normals: &[Point]) -> Option<[Point; 3]> {
     Some([first, second, cross(&first, &second)])
 }
 
-/// Returns three directions across the needles (long thin triangles) of a sample; `None` if needles along
-/// one or two lines are few, or all needles lie along axes.
+/// Returns three directions perpendicular to needles (long thin triangles) of a sample; `None` if too few
+/// needles are parallel to two lines, or if all needles are parallel to coordinate axes.
 ///
-/// The first is perpendicular to both lines, each other one lies in their plane across one line: so a needle
-/// along either line is thin in two directions.
+/// The first direction is perpendicular to both lines; each of the other two lies in the plane of the lines
+/// and is perpendicular to one line. So a needle along either line is thin in two directions.
 fn axes_across_needles(sample: &[Triangle]) -> Option<[Point; 3]> {
     let needles: Vec<Point> = sample.iter().filter_map(second_edge_direction).collect();
     if SUITED_IF_ONE_IN * needles.len() < sample.len() || needles.iter().all(is_axis) {
@@ -137,8 +137,8 @@ fn axes_across_needles(sample: &[Triangle]) -> Option<[Point; 3]> {
     Some([across, in_plane(&first), third])
 }
 
-/// Returns the direction of the second longest edge of a needle; `None` for any other triangle. The longest
-/// edge is the diagonal between neighbours.
+/// Returns the direction of the second longest edge of a needle (a long thin triangle); `None` for any other
+/// triangle. The longest edge is the diagonal between two neighbouring needles.
 fn second_edge_direction(triangle: &Triangle) -> Option<Point> {
     let [a, b, c] = triangle;
     let mut edges = [difference(b, a), difference(c, b), difference(a, c)];

@@ -112,9 +112,10 @@ fn names(faces: &[OrientedFace], sources: &Sources) -> (Vec<[u32; 2]>, Vec<bool>
 
 /// Finds and mends the crossings that rounding made.
 ///
-/// Compares triangles that are not untouched faces with all triangles near them, and untouched faces with
-/// those of other inputs or pieces: on the lattice they do not cross, but their given doubles may. If they
-/// cross there, too, because an input overlaps itself, the mesh stays as it is, and the faults are `own`.
+/// Compares each new triangle with all triangles near it, and each untouched face with untouched faces of
+/// other inputs or connected pieces: on the lattice untouched faces do not cross, but with their given
+/// doubles they may. If untouched faces cross on the lattice, too, because an input overlaps itself, the mesh
+/// stays as it is, and the faults are `own`.
 fn settle_mesh(
     mesh: &mut Mesh,
     solid: &Solid,
@@ -175,9 +176,11 @@ fn settle_mesh(
     Ok(settled)
 }
 
-/// Numbers the triangles by party: those in faces of one input and in one piece of the mesh have one number.
+/// Returns a party number for each triangle: triangles have equal numbers if they lie in faces of one input
+/// and in one connected piece of the mesh.
 ///
-/// Pieces of an input may touch at a point where one has no vertex, and a transform rounds each by itself.
+/// Two pieces of one input may touch at a point that is a vertex of only one of them; a transform rounds each
+/// piece separately, so that they may then cross.
 fn parties(mesh: &Mesh, exact: &ExactMesh) -> Vec<u32> {
     let mut pieces = DisjointSets::of_triangles(mesh.vertices.len(), &mesh.triangles);
     let mut numbers: HashMap<(u32, u32), u32> = HashMap::default();
@@ -218,7 +221,8 @@ fn at_blurred(solid: &Solid, exact: &ExactMesh) -> Vec<u32> {
     found
 }
 
-/// Returns the untouched faces that cross others because a motion of the lattice rounded them, ascending.
+/// Returns the untouched faces that cross other faces of their input because a motion of the lattice rounded
+/// their vertices, ascending.
 fn where_moving_crosses(sources: &Sources, exact: &ExactMesh) -> Vec<u32> {
     let mut found = Vec::new();
     let mut first = 0;
@@ -236,8 +240,8 @@ fn where_moving_crosses(sources: &Sources, exact: &ExactMesh) -> Vec<u32> {
     found
 }
 
-/// Returns the untouched faces with a corner that has the doubles of another vertex at its lattice point,
-/// ascending.
+/// Returns the untouched faces with a corner whose doubles are those of another vertex at the same lattice
+/// point, ascending.
 fn with_others_corners(mesh: &Mesh, sources: &Sources, exact: &ExactMesh) -> Vec<u32> {
     let bits = |p: &[f64; 3]| p.map(f64::to_bits);
     let has_others = |t: &u32| {

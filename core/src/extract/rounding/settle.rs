@@ -16,13 +16,13 @@ use crate::mesh::handle::VertexId;
 use crate::mesh::snap::snap_all;
 use crate::mesh::triangles::first_equal_vertices;
 
-/// The largest number of rounds: each mends the faults found, and the next one compares the triangles it
-/// changed.
+/// The largest number of rounds: each round mends the faults found, and the next round compares the changed
+/// triangles with others.
 const MAX_ROUNDS: usize = 4;
 
-/// The largest number of crossing pairs per triangle for which a moved mesh is mended. Surfaces that touched
-/// cross along curves, in fewer pairs than there are triangles. If more pairs cross, whole surfaces
-/// coincide, and no change as small as the rounding separates them.
+/// The largest number of crossing pairs per triangle for which a moved mesh is mended. If touching surfaces
+/// were made to cross, they cross along curves, in fewer pairs than there are triangles. If more pairs cross,
+/// whole surfaces coincide, and no change as small as the rounding separates them.
 const MAX_CROSSINGS_PER_TRIANGLE: usize = 1;
 
 /// A triangle mesh, closed by index, whose vertices were rounded.
@@ -51,8 +51,9 @@ pub struct Settled {
 
 /// Mends the faults `found` of the ascending triangles `changed`, as far as possible.
 ///
-/// `exact` gives the lattice point of a vertex, if its input had it elsewhere: at the lattice points
-/// surfaces do not cross. `given` is true for vertices of inputs, and `party` numbers the triangles.
+/// `exact` gives the lattice point of a vertex if the vertex's doubles differ from it; with all vertices at
+/// their lattice points, surfaces do not cross. `given` is true for vertices of inputs. Triangles with equal
+/// numbers `party` are known not to cross.
 pub fn settle(
     mesh: &mut Rounded,
     mut changed: Vec<u32>,
@@ -109,7 +110,7 @@ pub fn settle_in_single(mesh: &mut Rounded) -> Settled {
 }
 
 /// Mends crossings made by moving the vertices of a mesh, whose old positions are `before`. If crossings are
-/// left, tries again from the lattice.
+/// left, first rounds the corners of faulty triangles to the lattice and tries again.
 ///
 /// A mesh that crossed itself in its old position stays as it is (`own`), and so does a mesh of which the
 /// map laid whole surfaces on each other (`left`). A mesh that is not closed by index is welded first, as on
@@ -206,8 +207,8 @@ impl Rounded {
         faults(&self.faces(), changed, &party)
     }
 
-    /// Returns the same as `faults`, given the faults `found` before some triangles were touched: compares
-    /// only the touched triangles and their neighbours.
+    /// Returns the faults among the triangles `changed`, given the faults `found` before the triangles
+    /// `touched` were altered: compares only the altered triangles and their neighbours.
     fn faults_after(
         &self,
         found: &Faults,

@@ -1,4 +1,4 @@
-//! Finds meshes that cross themselves if the doubles of the lattice replace their own.
+//! Finds meshes that cross themselves if their vertices get the doubles nearest to their lattice points.
 //!
 //! On axes along which it shifts nothing, a motion of the lattice keeps the doubles of vertices. On all
 //! other axes it snaps each vertex separately, so that surfaces that touched may cross. Lattice points are
@@ -27,9 +27,10 @@ pub fn look_at_contacts(solid: &Solid, motion: &Motion) {
     }
 }
 
-/// Returns the faces among close pairs that cross others in the doubles of a mesh, ascending.
+/// Returns, in ascending order, the faces that cross others in the doubles of a mesh; `pairs` are the pairs
+/// of faces to compare.
 ///
-/// A motion that rounded positions again may have made them cross.
+/// A motion of the lattice that rounded positions again may have made such faces cross.
 pub fn crossing_faces(mesh: &TriangleMesh, pairs: &[[u32; 2]]) -> Vec<u32> {
     let faces = Faces {
         vertices: &mesh.doubles,
@@ -41,7 +42,8 @@ pub fn crossing_faces(mesh: &TriangleMesh, pairs: &[[u32; 2]]) -> Vec<u32> {
     found
 }
 
-/// The doubles of a vertex after a motion: its old ones, except on axes along which it was shifted.
+/// Returns the doubles of a vertex after a motion of the lattice: its old doubles, permuted or negated,
+/// except on axes along which the motion shifts, which get the doubles of the lattice point `image`.
 pub fn moved_doubles(motion: &Motion, pitch: Pitch, p: &Point, image: &Lattice) -> Point {
     [0, 1, 2].map(|i| {
         let (axis, sign) = motion.axes[i];
@@ -68,16 +70,16 @@ fn close_on_lattice(mesh: &TriangleMesh) -> Vec<[u32; 2]> {
     pairs
 }
 
-/// Returns true if a mesh of a solid crosses itself with the doubles of the lattice on some axes, and did
-/// not before.
+/// Returns true if a mesh of a solid would cross itself after its vertices get the doubles of their lattice
+/// points along the given axes, but does not cross itself now.
 pub fn crosses_once_snapped(solid: &Solid, axes: [bool; 3]) -> bool {
     // A reduced solid does not cross itself on the lattice.
     let is_known = axes == [true; 3] && solid.is_reduced();
     !is_known && solid.sources().iter().any(|s| source_crosses(s, axes))
 }
 
-/// Returns whether one source crosses itself with the doubles of the lattice on some axes; computes it only
-/// once.
+/// Returns true if a source's mesh would cross itself after its vertices get the doubles of their lattice
+/// points along the given axes; computes this only once.
 fn source_crosses(source: &Source, axes: [bool; 3]) -> bool {
     let crosses = |mesh| {
         let known = source.crosses_once_snapped(axes);

@@ -14,7 +14,7 @@ use crate::mesh::faces::Faces;
 /// false negatives.
 ///
 /// # Cost
-/// One test per triangle, up to the first whose plane is not certainly in front of the mean.
+/// One test per triangle, up to the first triangle that may have the mean on or outside its plane.
 pub fn is_star_shaped(faces: &Faces) -> bool {
     let eye = mean(faces.vertices);
     let mut left = 0;

@@ -58,8 +58,8 @@ pub fn touching(
     found
 }
 
-/// Returns the used vertices that share their doubles with another vertex, and a few others, with their
-/// bits.
+/// Returns the used vertices, each with the bits of its coordinates, that share their position with another
+/// vertex; a small number of other vertices may be among them.
 fn candidates(vertices: &[Point], is_used: impl Fn(u32) -> bool + Sync) -> Vec<(Digits, u32)> {
     let places = repeated(vertices);
     if places.is_empty() {
@@ -79,7 +79,7 @@ fn candidates(vertices: &[Point], is_used: impl Fn(u32) -> bool + Sync) -> Vec<(
     found.concat()
 }
 
-/// Returns the points with several vertices, and a few others.
+/// Returns the points at which several vertices lie; a small number of other points may be among them.
 fn repeated(vertices: &[Point]) -> HashSet<Digits> {
     let mut filter = Filter::for_places(vertices.len());
     let mut places = HashSet::default();
@@ -98,7 +98,8 @@ struct Filter {
 }
 
 impl Filter {
-    /// The bits per point in the set: so one in this many points outside the set is not ruled out.
+    /// The number of table bits per point in the set: one in this many points outside the set is not ruled
+    /// out.
     const BITS_PER_PLACE: usize = 16;
 
     /// The number of bits in a word of the table.

@@ -60,7 +60,8 @@ pub fn unfold(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources) -> Unfolded
     found
 }
 
-/// Returns the triangles with a constructed corner that do not face as their planes do, ascending.
+/// Returns, in ascending order, the triangles with a constructed corner that rounding has flattened or turned
+/// over.
 pub fn turned(mesh: &Mesh, exact: &ExactMesh, sources: &Sources) -> Vec<u64> {
     let planes = Planes { exact, sources };
     let is_given = |v: &VertexId| matches!(exact.vertices.get(v.index()), Some(Corner::Source(..)));

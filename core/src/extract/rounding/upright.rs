@@ -19,8 +19,8 @@ use crate::merge::lists::list::Sources;
 use crate::mesh::faces::Faces;
 use crate::mesh::grid::Pitch;
 
-/// Different coordinates up to this many steps have different nearest doubles: one step is at least two
-/// spacings of doubles there.
+/// Two different coordinates of at most this many lattice steps have different nearest doubles: one step is
+/// at least two spacings of doubles there.
 const MAX_DISTINCT_STEPS: u64 = 1 << 51;
 
 /// Returns true only if the triangles of a rounded mesh cross no more than on the lattice: all are
@@ -39,7 +39,7 @@ pub fn keeps_order(faces: &Faces, exact: &ExactMesh, sources: &Sources, pitch: P
     })
 }
 
-/// Returns true if a triangle is perpendicular to an axis and faces the direction of `normal`.
+/// Returns true if a triangle is perpendicular to an axis and its normal has the direction of `normal`.
 fn stands_upright(corners: &Triangle, normal: &[i128; 3]) -> bool {
     let [a, b, c] = corners;
     let axis = (0..3).find(|i| a[*i] == b[*i] && b[*i] == c[*i]);

@@ -3,7 +3,7 @@
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::{Point, Triangle};
 
-/// An axis-parallel box in doubles, the border included.
+/// An axis-parallel box in doubles; points on its border belong to it.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
     /// The corner with the smallest coordinates.

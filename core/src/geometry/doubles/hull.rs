@@ -52,8 +52,8 @@ pub fn hull(points: &[Point]) -> Vec<[usize; 3]> {
 
 /// The triangles of a convex hull of finite points that may each be off by a radius.
 ///
-/// A point is no corner if it lies within twice the radius of the hull of the other points, and no point lies
-/// farther outside than that. Empty if all points may lie in one plane.
+/// A point within twice the radius of the hull of the other points is no corner, and no point lies farther
+/// than twice the radius outside the result. Empty if all points may lie in one plane.
 ///
 /// # Example
 /// ```
@@ -85,13 +85,13 @@ pub fn hull_of_inexact(points: &[Point], radius: f64) -> Vec<[usize; 3]> {
     faces
 }
 
-/// The largest number of passes. Where several corners differ only by rounding, none is sharp; the first pass
-/// leaves one of them.
+/// The largest number of passes that drop corners which are not sharp. Of several corners that differ only by
+/// rounding, none is sharp; the first pass leaves one of them.
 const MAX_PASSES: usize = 3;
 
 /// Points of one plane, each off by a radius, lie within this many radii of the plane through three of them
-/// that are far apart. The three contribute at most three, two and one, by how far the plane extends outside
-/// each, and the point itself one.
+/// that are far apart. The errors of the three points contribute at most three, two and one radii, and the
+/// error of the point itself one.
 const FLAT_RADII: f64 = 7.0;
 
 /// The indices of the points that are corners of faces, ascending and without repetition.
@@ -201,8 +201,8 @@ struct Polytope<'a> {
 }
 
 impl<'a> Polytope<'a> {
-    /// The hull of several groups of points: of all points of the first group, and of those points of the
-    /// others that lie farther outside than the distance `max_distance`.
+    /// The hull of groups of points: it contains all points of the first group, and of each other group the
+    /// points that lie farther outside than the distance `max_distance`.
     fn around(points: &'a [Point], groups: &[&[usize]], max_distance: f64) -> Vec<[usize; 3]> {
         let all = groups.concat();
         let Some(first) = simplex(points, groups[0]).or_else(|| simplex(points, &all)) else {
@@ -230,7 +230,8 @@ impl<'a> Polytope<'a> {
         left.map(|face| face.corners).collect()
     }
 
-    /// Adds the points up to a round that lie farther outside the polytope than the distance `max_distance`.
+    /// Adds the points of all rounds up to `round` that lie farther outside the polytope than the distance
+    /// `max_distance`.
     fn add_all(&mut self, round: usize, max_distance: f64) {
         let is_left = |f: &usize| !self.faces[*f].is_gone;
         self.waiting = (0..self.faces.len()).filter(is_left).collect();
@@ -292,8 +293,8 @@ impl<'a> Polytope<'a> {
         self.faces[face].corners.map(|corner| self.points[corner])
     }
 
-    /// Lists each point at the first face, from number `from` on, on whose outer side it lies; points on no
-    /// outer side already lie in the polytope and are dropped.
+    /// Lists each point at one face on whose outer side it lies: the first such face from number `from` on. A
+    /// point on no outer side already lies in the polytope and is dropped.
     fn distribute(&mut self, mut points: Vec<usize>, from: usize) {
         for face in from..self.faces.len() {
             let triangle = self.triangle(face);
@@ -308,8 +309,8 @@ impl<'a> Polytope<'a> {
         }
     }
 
-    /// The point listed at a face, of the rounds up to `round`, that seems farthest from it in doubles;
-    /// `None` if there is none. Any such point would do.
+    /// The point listed at a face, of the rounds up to `round`, that is farthest from the face in doubles;
+    /// `None` if there is none. Rounding errors do no harm, because any listed point could be added next.
     fn farthest(&self, face: usize, round: usize) -> Option<usize> {
         if self.faces[face].is_gone {
             return None;
@@ -325,7 +326,8 @@ impl<'a> Polytope<'a> {
         })
     }
 
-    /// Adds a point to the polytope: new faces between the point and the rim replace the faces that it sees.
+    /// Adds a point to the polytope: the faces that the point sees are replaced by new faces between the
+    /// point and the border edges `rim` of the seen faces.
     fn add(&mut self, point: usize, seen: Vec<usize>, rim: &[Rim]) {
         let first = self.faces.len();
         // The rim is a cycle: each new face adjoins the one whose rim edge starts where its own ends, and the
@@ -353,7 +355,7 @@ impl<'a> Polytope<'a> {
         self.distribute(orphans, first);
     }
 
-    /// Marks the faces that a point sees as gone, starting from one of them; returns these faces and the
+    /// Marks the faces that a point sees as removed, starting from one of them; returns these faces and the
     /// edges around them.
     fn seen(&mut self, point: usize, face: usize) -> (Vec<usize>, Vec<Rim>) {
         let (mut seen, mut rim) = (vec![face], Vec::new());
@@ -386,11 +388,12 @@ impl<'a> Polytope<'a> {
     }
 }
 
-/// An edge of the rim around the faces that a point sees.
+/// An edge on the border between the faces of a polytope that a point sees and the faces that it does not
+/// see.
 struct Rim {
     start: usize,
     end: usize,
-    /// The face across the edge, which stays; `slot` is the number of the edge in that face.
+    /// The face across the edge, which the point does not see; `slot` is the index of the edge in that face.
     behind: usize,
     slot: usize,
 }

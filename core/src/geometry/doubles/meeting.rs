@@ -1,8 +1,8 @@
 //! How two triangles in doubles intersect, exactly.
 //!
-//! Surfaces that pass through each other do so along lines, never in single points. So single common points
-//! count as nothing, and a common segment is classified by whether it runs inside the triangles or along
-//! their edges.
+//! Two surfaces that cross do so along lines, never only in single points. So triangles with only single
+//! common points count as not intersecting, and a common segment is classified by whether it lies inside the
+//! triangles or along their edges.
 #![allow(clippy::float_cmp, reason = "equal corners are meant to the last bit")]
 
 use crate::arith::{Filtered, Sign};
@@ -15,7 +15,7 @@ use crate::geometry::side::Side;
 /// How two triangles intersect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meeting {
-    /// The triangles have no more than single points in common.
+    /// The triangles have at most single points in common.
     Clear,
     /// A segment of this edge of the first triangle lies inside the second.
     FirstEdge(usize),
@@ -69,8 +69,8 @@ fn meeting_by_sides(p: &Triangle, q: &Triangle) -> Meeting {
     }
 }
 
-/// Return whether doubles alone prove that two triangles have nothing or one corner in common; true for
-/// nearly all pairs.
+/// Return whether doubles alone prove that two triangles have no common point except perhaps one common
+/// corner; true for nearly all pairs.
 pub fn are_clear(p: &Facing, q: &Facing) -> bool {
     let common = CommonCorners::of(p.triangle(), q.triangle());
     if common.has_several() {
@@ -120,7 +120,7 @@ impl CommonCorners {
         self.0 >> (3 * i) & ENDS[edge] != 0
     }
 
-    /// The common corners with the roles of the two triangles exchanged.
+    /// The same common corners with the two triangles exchanged.
     #[inline]
     fn turned(self) -> Self {
         const DIAGONAL: u16 = 0b100_010_001;
@@ -160,8 +160,9 @@ fn lies_outside(t: &Facing, common: CommonCorners, other: &Facing, axis: usize) 
     })
 }
 
-/// Return whether two triangles with area that share an edge overlap there, folded onto each other; `edge` is
-/// its number in `q`. If not, they have only the edge in common.
+/// Return whether two triangles with area that share an edge lie in one plane on the same side of the edge,
+/// so that they overlap; `edge` is the number of the edge in `q`. If false, they have only the edge in
+/// common.
 pub fn folds_over(p: &Facing, q: &Facing, edge: usize) -> bool {
     // In a projection in which both turn the same way, they lie on different sides of the edge.
     let is_spread = |axis: usize| {
@@ -232,7 +233,8 @@ fn is_same_edge(p: &Triangle, i: usize, q: &Triangle, j: usize) -> bool {
     a == d && b == c || a == c && b == d
 }
 
-/// The corner that is alone on its side of a plane; a corner in the plane only if no other is alone.
+/// The index of the corner of a triangle that lies alone strictly on one side of a plane; 0 if there is no
+/// such corner.
 fn lone_corner(sides: [Side; 3]) -> usize {
     let single = |i: &usize| {
         let others = sides.iter().filter(|s| **s == sides[*i]).count();
@@ -244,9 +246,10 @@ fn lone_corner(sides: [Side; 3]) -> usize {
 /// Return whether the segments in which two triangles meet the common line of their planes share more than a
 /// point.
 ///
-/// The edges at the lone corners `p[i]` and `q[k]` bound the segments. The sign of the volume that two such
-/// edges span says which edge meets the line first, up to a sign that is the same for all four pairs; `On`
-/// means that both meet it in one point.
+/// The corners `p[i]` and `q[k]` are alone on their sides of the other triangle's plane, and the edges at
+/// these corners end the segments. The sign of the volume that an edge of each triangle spans says which of
+/// the two meets the line first, up to a sign that is the same for all four pairs; `On` means that both meet
+/// it in one point.
 fn has_common_segment(p: &Triangle, i: usize, q: &Triangle, k: usize) -> bool {
     let ends = |t: &Triangle, at: usize| [t[(at + 1) % 3], t[(at + 2) % 3]];
     let order = |our: &Point, their: &Point| side(&[p[i], *our, q[k]], their);

@@ -1,7 +1,7 @@
 //! Exact predicates of points given in doubles.
 //!
-//! A filter in doubles settles clear cases. Integers decide the others: coordinates times a common power of
-//! two, in fixed width if their exponents lie close together.
+//! A filter in doubles decides most cases. All other cases are decided in integers: coordinates times a
+//! common power of two, in fixed width if their exponents differ little.
 #![allow(
     clippy::float_cmp,
     reason = "equal coordinates are meant to the last bit"
@@ -62,9 +62,9 @@ const SIDE_BOUND: f64 = (7.0 + 56.0 * ROUNDING) * ROUNDING;
 /// The relative error bound A of orient2d in Shewchuk 1997, "Adaptive precision floating-point arithmetic".
 const TURN_BOUND: f64 = (3.0 + 16.0 * ROUNDING) * ROUNDING;
 
-/// The range of sums of products that the filters trust. Their bounds assume no underflow and no overflow,
-/// and sums outside this range may have had either. A product of three differences below 1e100 that lost
-/// 2^-1074 in one step is off by 1e-223 at most, far less than the bound at 1e-200.
+/// The range of sums of products for which the error bounds of the filters are valid. These bounds assume no
+/// underflow and no overflow; sums outside this range may have had either. A product of three differences
+/// below 1e100 that lost 2^-1074 in one step is off by 1e-223 at most, far less than the bound at 1e-200.
 const TRUSTED: std::ops::Range<f64> = 1e-200..1e200;
 
 /// The largest difference of exponents for which integers of fixed width suffice: 53 + 70 bits for a
@@ -118,8 +118,8 @@ impl Facing {
         self.clear_side(d).or_exact(|| exact_side([a, b, c, d]))
     }
 
-    /// The side of the triangle's plane on which a point lies, where doubles settle it; certain also for `On`
-    /// if the plane is across an axis.
+    /// The side of the triangle's plane on which a point lies, if doubles decide it; `On` can be certain only
+    /// if the plane is perpendicular to an axis.
     #[inline]
     pub fn clear_side(&self, d: &Point) -> Filtered<Side> {
         let [a, b, c] = &self.triangle;
@@ -130,8 +130,8 @@ impl Facing {
         self.clear_strict_side(d)
     }
 
-    /// The side of the triangle's plane on which a point lies, where doubles prove that it is not in the
-    /// plane.
+    /// The side of the triangle's plane on which a point lies, if doubles prove that the point is not in the
+    /// plane; else doubtful.
     #[inline]
     pub fn clear_strict_side(&self, d: &Point) -> Filtered<Side> {
         let (value, error) = self.height(d);
@@ -242,8 +242,8 @@ pub fn clear_turn([a, b, c]: [[f64; 2]; 3]) -> Filtered<Sign> {
     Filtered::when(clear, Sign::of(value))
 }
 
-/// The sign of the turn a → b → c, certain where all differences of coordinates are exact in doubles, so that
-/// two products decide: mostly for points on axis-parallel lines.
+/// The sign of the turn a → b → c, certain only where all differences of coordinates are exact in doubles, so
+/// that comparing two products decides; that is usual for points on axis-parallel lines.
 fn turn_by_parts([a, b, c]: [[f64; 2]; 3]) -> Filtered<Sign> {
     let [u, v] = [b, c].map(|p| [0, 1].map(|i| exact_difference(p[i], a[i])));
     // Rounding keeps the order of products; products with equal roundings are ordered by their rounding

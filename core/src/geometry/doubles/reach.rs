@@ -7,10 +7,10 @@ use crate::geometry::doubles::{Point, Triangle};
 const MAX_STEPS: usize = 64;
 
 /// Return whether `point`, outside the convex hull of `others`, lies farther from it than the distance
-/// `max_distance`; true where rounding leaves a doubt, and if there are no others.
+/// `max_distance`; also true where rounding leaves a doubt, and if `others` is empty.
 ///
-/// The nearest point of the hull lies in a triangle of the others. In each step, the one of them that lies
-/// farthest towards `point` replaces a corner of the triangle.
+/// The nearest point of the hull lies in a triangle whose corners are among `others`. In each step, the point
+/// of `others` that is farthest in the direction of `point` replaces a corner of the triangle.
 ///
 /// # Source
 /// Gilbert, Johnson, Keerthi 1988, "A fast procedure for computing the distance between complex
@@ -71,8 +71,8 @@ fn middle(point: &Point, others: &[Point]) -> Option<Point> {
     (count > 0.0).then(|| sum.map(|x| x / count))
 }
 
-/// Of the vectors from a point to others, the one with the least scalar product with a direction, and this
-/// product.
+/// Returns the least scalar product of a direction with a vector from `point` to one of `others`, and this
+/// vector.
 fn farthest_against(direction: &Point, point: &Point, others: &[Point]) -> (f64, Point) {
     let mut least = (f64::INFINITY, *direction);
     for other in others {

@@ -1,7 +1,7 @@
 //! Exact tests whether surfaces cross at an edge, from the half-planes of the triangles around it.
 //!
-//! Where more than two triangles share an edge, it is unknown which of them continue each other as one
-//! surface. Surfaces cross there if they do so however the triangles are paired.
+//! Where more than two triangles share an edge, it is unknown which pairs of them belong to one surface.
+//! Surfaces cross at the edge if they cross for every choice of pairs.
 
 use std::cmp::Ordering;
 
@@ -34,8 +34,8 @@ impl Sheet {
 /// The triangles around an edge as half-planes; nearly always two.
 pub type Sheets = SmallVec<[Sheet; 2]>;
 
-/// Return whether more sheets run in one direction of the edge than in the other, so that a surface ends
-/// there.
+/// Return whether unequal numbers of triangles (sheets) run in the two directions of an edge, so that a
+/// surface ends there.
 fn is_open(sheets: &[Sheet]) -> bool {
     sheets.iter().map(Sheet::direction_sign).sum::<i64>() != 0
 }
@@ -83,10 +83,12 @@ pub fn surfaces_cross(axis: [&Point; 2], [first, second]: [&[Sheet]; 2]) -> bool
     !word.windows(2).any(is_beside) && !cancels(&word)
 }
 
-/// The sheets around a line at which two edges lie, each with true if it belongs to the first edge.
+/// The triangles (sheets) around a line that contains two edges; each flag is true for a triangle at the
+/// first edge.
 type SheetWord = SmallVec<[(bool, Sheet); 4]>;
 
-/// Return whether a word of sheets cancels to the empty word in the free group.
+/// Return whether a sequence of triangles (sheets) around a line, read as a word of letters and inverse
+/// letters, cancels to the empty word in the free group.
 fn cancels(word: &[(bool, Sheet)]) -> bool {
     let mut left = SmallVec::<[(bool, bool); 4]>::new();
     for (is_first, Sheet { is_along, .. }) in word {

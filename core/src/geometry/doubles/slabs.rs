@@ -1,8 +1,8 @@
 //! Slabs: intervals of triangles along diagonals of the axes. Slanted triangles overlap less often in slabs
 //! than in boxes.
 //!
-//! Rounding keeps the order of numbers, and so do rounded sums and differences. So slabs that overlap still
-//! do so after rounding.
+//! Rounding keeps the order of numbers, and so do rounded sums and differences. So two slabs that overlap
+//! still overlap after rounding.
 //!
 //! # Source
 //! Klosowski, Held, Mitchell, Sowizral, Zikan 1998, "Efficient collision detection using bounding volume

@@ -47,7 +47,8 @@ impl Flux {
         error: 0.0,
     };
 
-    /// The least and the greatest value that the error allows; `None` if the error is not finite.
+    /// The lower and the upper end of the interval that contains the exact value, by the error bound; `None`
+    /// if the bound is not finite.
     pub fn ends(&self) -> Option<[Int<6>; 2]> {
         let in_limbs = |k: u8| self.error * 2f64.powi(-64 * i32::from(k));
         let limbs = (0..4).find(|k| in_limbs(*k) < 2f64.powi(100))?;
@@ -136,7 +137,8 @@ fn long_fraction(n: &Int<3>, d: i128) -> i128 {
     )
 }
 
-/// The quotient n / d, by two steps of long division in doubles; `times` multiplies an integer by d.
+/// The quotient n / d, by two steps of long division in doubles; `times` is a function that multiplies an
+/// integer by d.
 fn quotient<const N: usize, const M: usize>(
     n: &Int<N>,
     d: &Int<M>,
@@ -151,7 +153,8 @@ fn quotient<const N: usize, const M: usize>(
 /// A bound on the error of a coordinate that is a quotient of at most `size` in magnitude, in units of
 /// 2^-`FRACTION_BITS`.
 ///
-/// The first step of the division leaves 2^-50 of the quotient, the second 2^-50 of that, and rounding 1.
+/// The first step of the division leaves an error of 2^-50 of the quotient, the second step 2^-50 of this
+/// error, and the final rounding adds 1.
 fn slack(size: f64) -> f64 {
     1.0 + size * 2f64.powi(-99)
 }
@@ -274,8 +277,8 @@ pub struct Triangle<'a> {
     normal: [i128; 3],
 }
 
-/// A corner of a clipped triangle, and what carries the edge that leaves it: a number below 3 is an edge of
-/// the triangle, by its first corner; 3 + k is wall k.
+/// A corner of a clipped triangle, and the number of the line that carries the edge from this corner on: 0 to
+/// 2 is the triangle's edge from that corner; 3 + k is wall k of the cell.
 type CarriedCorner = (Fixed, usize);
 
 impl<'a> Triangle<'a> {
@@ -440,8 +443,8 @@ pub fn from_cubic_steps(whole: &Int<4>) -> Int<6> {
     Int::from_limbs(limbs)
 }
 
-/// How far points lie from the origin, and how wide the box around them is, along the worst axis; in units of
-/// 2^-`FRACTION_BITS` steps.
+/// The largest distance of points from the origin along an axis, and the largest extent of their box along an
+/// axis; in units of 2^-`FRACTION_BITS` lattice steps.
 #[derive(Clone, Copy, Debug)]
 pub struct CoordinateExtent {
     size: f64,
@@ -449,7 +452,8 @@ pub struct CoordinateExtent {
 }
 
 impl CoordinateExtent {
-    /// How far points in fixed-point binary lie from the origin, and how wide the box around them is.
+    /// Computes the largest coordinate, in magnitude, of points in fixed-point binary, and the largest extent
+    /// of their box.
     pub fn of(points: &[Fixed]) -> Self {
         let mut low = [i128::MAX; 3];
         let mut high = [i128::MIN; 3];
@@ -467,7 +471,8 @@ impl CoordinateExtent {
         }
     }
 
-    /// How far the corners of a lattice triangle lie from the origin, and how wide the box around them is.
+    /// Computes the largest coordinate, in magnitude, of the corners of a lattice triangle, and the largest
+    /// extent of the triangle's box.
     pub fn of_triangle(corners: &[Lattice; 3]) -> Self {
         let size = corners.iter().flatten().map(|c| c.unsigned_abs()).max();
         let spread = |i: usize| {

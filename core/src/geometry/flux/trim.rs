@@ -1,8 +1,8 @@
 //! The flux of (0, 0, z) through the part of a triangle between the walls of a cell across one axis.
 //!
 //! Usually a triangle at the border of a cell is cut by one wall, or by two opposite ones. A wall separates
-//! one corner from the two others: the flux through this corner's part follows from where the wall divides
-//! two edges, without computing new corners.
+//! one corner from the two others: the flux through the part at this corner is computed from the fractions at
+//! which the wall divides two edges, without computing new corners.
 
 use super::fixed::{from_cubic_steps, over_limb, sixfold_flux, Flux, Walls, FRACTION_BITS};
 use crate::arith::convert::as_double;
@@ -44,8 +44,8 @@ pub fn trimmed(corners: &[Lattice; 3], area: i128, walls: &Walls) -> TrimmedFlux
     }
 }
 
-/// Six times the flux through a triangle minus its parts outside walls that do not meet; each of `cuts` has
-/// the corners' distances outside a wall.
+/// Six times the flux through a triangle minus its parts outside walls that do not meet; each of `cuts` has,
+/// for one wall, the distances of the three corners outside the wall, in half steps.
 fn flux_inside<'a>(
     corners: &[Lattice; 3],
     area: i128,
@@ -77,14 +77,14 @@ fn lone_corner(beyond: &[i64; 3]) -> usize {
     }
 }
 
-/// The number of binary fraction digits of a [`share`].
+/// The number of binary fraction digits of the fraction of an edge that [`share`] returns.
 const SHARE_FRACTION_BITS: u32 = 104;
 
 /// Six times the flux through the part of a triangle between its corner `lone` and a wall that separates this
 /// corner from the others.
 ///
-/// With the corner a and the shares s and t of the edges to b and c, it is the triangle's `area` times s t (3
-/// a + s (b − a) + t (c − a)), where a, b, c are heights z.
+/// With the corner a and the fractions s and t of the edges to b and c before the wall, the result is the
+/// triangle's `area` times s t (3 a + s (b − a) + t (c − a)), where a, b, c are heights z.
 ///
 /// # Error
 /// Let u be 2^-104, Z the largest |z|. Shares are off by u, their product by 2u + 2^-144, the sum
@@ -118,7 +118,8 @@ fn share(before: u64, behind: u64) -> Int<2> {
     Int::from_i128((high << (SHARE_FRACTION_BITS / 2) | low).cast_signed())
 }
 
-/// The height `first` plus the given shares of rises, in units of 2^-`FRACTION_BITS` steps; rounded down.
+/// The height z `first` plus two fractions, each times the rise of z along an edge, in units of
+/// 2^-`FRACTION_BITS` steps; rounded down.
 fn height(first: i64, rises: [(Int<2>, i64); 2]) -> i128 {
     let mut sum: Int<3> = Int::<2>::from_i128(1 << SHARE_FRACTION_BITS).mul_i64(first);
     for (share, rise) in rises {

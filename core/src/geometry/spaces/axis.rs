@@ -1,4 +1,5 @@
-//! Hyperplanes across the axes, and the border of the frame: what building a tree inside a frame needs.
+//! Operations of spaces with coordinate axes that are needed for building a tree inside a frame: hyperplanes
+//! across the axes, and the frame's border.
 
 use std::sync::Arc;
 

@@ -134,7 +134,7 @@ impl Line2 {
         Self { a, b, c }
     }
 
-    /// The same line with its sides exchanged, and so its direction.
+    /// The same line with its two sides exchanged and its direction reversed.
     #[must_use]
     pub fn flipped(&self) -> Self {
         let Self { a, b, c } = *self;
@@ -142,7 +142,7 @@ impl Line2 {
         Self { a, b, c }
     }
 
-    /// The coefficients a and b of the normal, and c.
+    /// The coefficients of the line a·x + b·y + c = 0: the normal [a, b], and c.
     pub fn coefficients(&self) -> ([i64; 2], i128) {
         ([self.a, self.b], self.c)
     }
@@ -162,8 +162,8 @@ impl Line2 {
         Side::from_sign((along + last).sign())
     }
 
-    /// The order of two lines by the angle of their directions (−b, a), if it is less than a half turn: this
-    /// line is `Less` if the other's direction is counterclockwise from its own.
+    /// The order of two lines by the angle of their directions (−b, a): `Less` if the other line's direction
+    /// is counterclockwise from this line's by less than a half turn.
     #[inline]
     pub fn turn(&self, other: &Self) -> Ordering {
         let product = |m: i64, n: i64| i128::from(m) * i128::from(n);
@@ -342,8 +342,8 @@ impl Segment2 {
         }
     }
 
-    /// The segment from this one's first point to the last point of another segment farther along the same
-    /// line.
+    /// The segment from the first point of this segment to the last point of another segment, which lies
+    /// farther along the same line.
     #[must_use]
     pub fn joined(&self, last: &Self) -> Self {
         let mut longer = *self;
@@ -352,8 +352,8 @@ impl Segment2 {
         longer
     }
 
-    /// The segment with its first (0) or last (1) point moved to where the line `cut` crosses it; `None` if
-    /// they are parallel.
+    /// The segment with its first (`end` = 0) or last (1) point moved to the point where the line `cut`
+    /// crosses the segment's line; `None` if the lines are parallel.
     fn cut_at_end(&self, end: usize, cut: Line2) -> Option<Self> {
         let mut shorter = *self;
         shorter.points[end] = Point2::meet(&self.line, &cut)?;
@@ -361,8 +361,8 @@ impl Segment2 {
         Some(shorter)
     }
 
-    /// The parts of the segment on the minus and on the plus side of a line; its first point lies on the side
-    /// `first`, its last on the other. `None` if the two are parallel.
+    /// The parts of the segment on the minus and on the plus side of a line; the first point of the segment
+    /// lies on the side `first`, the last point on the other side. `None` if the two lines are parallel.
     fn split_by(&self, first: Side, cut: &Line2) -> Option<Split<Self>> {
         let flipped = cut.flipped();
         let (inner, outer) = match first {

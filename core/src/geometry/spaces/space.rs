@@ -65,7 +65,8 @@ pub trait Space: Copy + Debug + Send + Sync + 'static {
     /// Hyperplanes through the ends or edges of a fragment, crossing its own, with the fragment on their
     /// minus sides.
     ///
-    /// Needed to compare coplanar fragments, which `split` by their common hyperplane cannot tell apart.
+    /// They serve to compare coplanar fragments, between which a `split` by the common hyperplane does not
+    /// distinguish.
     fn rims(piece: &Self::Fragment) -> Vec<Self::Hyperplane>;
 }
 
@@ -79,8 +80,8 @@ pub fn clip<S: Space>(piece: S::Fragment, cut: &S::Hyperplane, half: Half) -> Op
     }
 }
 
-/// Divides `piece` by the outline of a coplanar `mask`: returns the part inside, if any, and the parts
-/// outside.
+/// Divides `piece` by the outline of a coplanar fragment `mask`: returns the part of the piece inside the
+/// mask, if any, and the parts outside.
 ///
 /// # Order
 /// The outside parts follow the order of the mask's rims.
@@ -133,7 +134,7 @@ impl<S: Space> Region<S> {
         self.bounds.push((cut, half));
     }
 
-    /// Widens the region to its first `depth` half-spaces.
+    /// Removes all half-spaces from the region except the first `depth`.
     pub fn truncate(&mut self, depth: usize) {
         self.bounds.truncate(depth);
     }

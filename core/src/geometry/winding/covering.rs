@@ -1,8 +1,9 @@
 //! Tests whether directed outlines in the plane wind around each point at most once.
 //!
-//! Triangles that all turn left cover a point as often as their outline winds around it, where the outline
-//! consists of the edges that only one triangle has. If that is at most once, no two triangles overlap. The
-//! test costs a sweep over the outline instead of a test of all pairs.
+//! The outline of triangles consists of the edges that belong to only one triangle. If all triangles turn
+//! left, the number of triangles that cover a point is the winding number of the outline around it. If this
+//! number is at most one, no two triangles overlap. The test costs a sweep over the outline instead of a test
+//! of all pairs.
 
 use std::cmp::Ordering;
 
@@ -13,8 +14,8 @@ use crate::interrupt::poll;
 /// A point of the plane in finite doubles.
 pub type PlanarPoint = [f64; 2];
 
-/// A directed edge with its ends in the order in which a sweep to the right meets them; upwards for a
-/// vertical edge.
+/// A directed edge with its ends sorted in the order in which a sweep to the right meets them: by x, then by
+/// y.
 #[derive(Clone, Copy, Debug)]
 struct SweptEdge {
     left: PlanarPoint,
@@ -86,7 +87,7 @@ impl SweptEdge {
 /// The state of a sweep to the right over edges.
 struct Sweep<'a> {
     edges: &'a [SweptEdge],
-    /// The edges that the sweep has not reached, by their left ends.
+    /// The edges that the sweep has not reached yet, sorted by their left ends.
     starts: &'a [u32],
     /// The edges that cross the sweep line, in order from bottom to top.
     above: Vec<u32>,
@@ -97,8 +98,8 @@ impl Sweep<'_> {
         &self.edges[number as usize]
     }
 
-    /// Advances the sweep to a stop; returns whether the outlines wind at most once there and up to the next
-    /// stop.
+    /// Advances the sweep to a vertex (stop); returns true if the outlines are found to wind at most once
+    /// around points there and up to the next stop.
     fn advance_to(&mut self, stop: &PlanarPoint) -> bool {
         poll();
         let first = self
@@ -124,7 +125,8 @@ impl Sweep<'_> {
         self.takes_turns(first, after, count) && self.stays_apart(first, after)
     }
 
-    /// Removes and returns the edges whose left end is the stop; all earlier ones must be removed already.
+    /// Removes and returns the edges whose left end is the vertex `stop`; all edges with earlier left ends
+    /// must be removed already.
     fn beginning_at(&mut self, stop: &PlanarPoint) -> &[u32] {
         let begins = |k: &u32| is_same(&self.edges[*k as usize].left, stop);
         let count = self.starts.iter().take_while(|k| begins(k)).count();
@@ -139,15 +141,16 @@ impl Sweep<'_> {
         turn.order().reverse()
     }
 
-    /// Return whether the edges from index `first` to `after` enter and leave the inside by turns, and an
-    /// even number of edges begins and ends at the stop, so that the edges above still do, too.
+    /// Return whether, from bottom to top, the edges at the indices `first` to `after` enter and leave the
+    /// inside alternately, and the numbers of edges that end and begin at the stop have an even sum, so that
+    /// all edges above alternate, too.
     fn takes_turns(&self, first: usize, after: usize, ended: usize) -> bool {
         let in_turn = |at: usize| self.edge(self.above[at]).forward == at.is_multiple_of(2);
         (ended + after - first).is_multiple_of(2) && (first..after).all(in_turn)
     }
 
-    /// Return whether the new neighbours below index `first` and at index `after` do not meet farther right,
-    /// except in a common end.
+    /// Return whether edges that have become neighbours on the sweep line, on either side of the index
+    /// `first` and of the index `after`, do not meet farther right except in a common end.
     fn stays_apart(&self, first: usize, after: usize) -> bool {
         let below = first.checked_sub(1).is_none_or(|k| self.is_below(k));
         below && (first == after || self.is_below(after - 1))

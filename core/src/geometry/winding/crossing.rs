@@ -40,8 +40,8 @@ pub fn plane_change(plane: &Plane, segment: &Segment) -> i32 {
     change_between(before, after)
 }
 
-/// The change of the winding number on the way from one half-space of a surface's plane to another: 1 when
-/// entering the minus side, −1 when leaving it, else 0.
+/// The change of the winding number along a path from the half-space `before` of a surface's plane to the
+/// half-space `after`: 1 if the path enters the minus side, −1 if it leaves it, else 0.
 pub fn change_between(before: Half, after: Half) -> i32 {
     match (before, after) {
         (Half::Minus, Half::Plus) => -1,

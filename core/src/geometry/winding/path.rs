@@ -1,8 +1,8 @@
 //! Changes of the winding number along a straight path from a cell's corner to an exact point.
 //!
-//! The path ends at a point of one surface, to find on which side of other surfaces it lies. Unlike the
-//! segments between corners, the path is not made generic: where it runs through an edge, or ends on another
-//! surface, the answer is doubtful.
+//! The path ends at a point of one surface, to find on which side of other surfaces this point lies. The path
+//! is not shifted to avoid special positions: where it runs through an edge, or ends on another surface, the
+//! result is doubtful.
 
 use super::crossing::change_between;
 use crate::arith::convert::{as_double, as_whole};
@@ -78,7 +78,8 @@ impl PaddedPath {
 }
 
 /// The change of the winding number across a lattice triangle, along a path from the corner of a cell, given
-/// in half lattice steps, to a lattice point; doubtful if the path meets an edge or ends in the plane.
+/// in half lattice steps, to a lattice point; doubtful if the path meets an edge or ends in the triangle's
+/// plane.
 pub fn triangle_change_on_path(
     corners: &[Lattice; 3],
     from: &Lattice,
@@ -122,7 +123,7 @@ pub struct NearCross {
 }
 
 impl NearCross {
-    /// The cross product of unknown rows: a determinant with it always has a doubtful sign.
+    /// A placeholder for a cross product of unknown rows: the sign of any determinant with it is doubtful.
     pub const UNKNOWN: Self = Self {
         value: [f64::NAN; 3],
         size: [f64::NAN; 3],
@@ -145,15 +146,15 @@ impl NearCross {
         }
     }
 
-    /// The sign of the determinant of an integer row and the two rows of the product, where doubles decide
-    /// it.
+    /// The sign of the determinant whose rows are an integer row and the two rows of this cross product,
+    /// where doubles decide it.
     #[inline]
     pub fn sign_with(&self, a: &Lattice) -> Filtered<Sign> {
         self.sign_with_rounded(&rounded(a))
     }
 
-    /// The sign of the determinant of a row of rounded differences and the two rows of the product, where
-    /// doubles decide it.
+    /// The sign of the determinant whose rows are a row of rounded differences and the two rows of this cross
+    /// product, where doubles decide it.
     #[inline]
     pub fn sign_with_rounded(&self, p: &[f64; 3]) -> Filtered<Sign> {
         let value = p[0] * self.value[0] + p[1] * self.value[1] + p[2] * self.value[2];
@@ -213,8 +214,8 @@ pub fn polygon_change_on_path<'a>(
     Filtered::Certain(change_between(before, after))
 }
 
-/// The sign of b(c) e(x) − e(c) b(x): the sign of plane `e` where the path from c to x meets plane `b`, times
-/// the sign of b(c).
+/// The sign of b(c) e(x) − e(c) b(x), where b(p) and e(p) are the values of two planes at a point p. It is
+/// the sign of plane `e` at the point where the path from c to x meets plane `b`, times the sign of b(c).
 fn cross(b: &Plane, e: &Plane, c: &Lattice, x: &Vertex) -> Sign {
     let (bc, ec) = (b.near_value_at_doubled(c), e.near_value_at_doubled(c));
     let (bx, ex) = (x.near_value(b), x.near_value(e));

@@ -1,8 +1,7 @@
-//! The end of the interpreter: threads that are inside the core then wait there.
+//! Handles the end of the Python interpreter: threads that are then inside the core wait there for ever.
 //!
-//! `CPython` before 3.14 ends a thread that takes the GIL of an ending interpreter by unwinding its stack;
-//! if Rust's frames are on the stack, that aborts the process. Only daemon threads are still alive at that
-//! time.
+//! `CPython` before 3.14 unwinds the stack of a thread that takes the GIL while the interpreter ends; if
+//! frames of Rust are on this stack, the process aborts. Only daemon threads are still alive at that time.
 
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::SeqCst};
@@ -18,7 +17,8 @@ static IS_ENDING: AtomicBool = AtomicBool::new(false);
 static RETURNING: AtomicUsize = AtomicUsize::new(0);
 
 thread_local! {
-    /// True for the thread that ends the Python interpreter.
+    /// True for the thread that ends the Python interpreter; other threads must not leave the core after
+    /// that.
     static ENDS_IT: Cell<bool> = const { Cell::new(false) };
 }
 
@@ -32,7 +32,8 @@ pub fn watch(module: &Bound<'_, PyModule>) -> PyResult<()> {
     Ok(())
 }
 
-/// From now on lets no other thread leave the core, and waits for the threads that are just leaving it.
+/// Marks the interpreter as ending, so that no other thread leaves the core, and waits for the threads that
+/// are just leaving it.
 #[pyfunction]
 fn end(py: Python<'_>) {
     ENDS_IT.set(true);

@@ -31,7 +31,8 @@ pub fn to_python(py: Python<'_>, error: &Error) -> PyErr {
     }
 }
 
-/// Adds the name of the call and its inputs to the exception of an internal error, for a report.
+/// Adds the name of the call and its inputs to the exception of an internal error, so that the error can be
+/// reported.
 pub fn with_report<'py>(
     py: Python<'py>,
     error: PyErr,

@@ -6,7 +6,8 @@ use pyo3::types::IntoPyDict;
 
 use super::ending::forget_threads;
 
-/// Registers [`settle`] for before each fork and [`begin_anew`] for the child, if the system has forks.
+/// Registers [`settle`] to be called before each fork, and [`begin_anew`] to be called in the child process,
+/// if the system has forks.
 ///
 /// # Errors
 /// The exceptions of `os.register_at_fork`.
@@ -21,7 +22,7 @@ pub fn watch(module: &Bound<'_, PyModule>) -> PyResult<()> {
     Ok(())
 }
 
-/// Resets, in a forked child, what depends on threads that the child does not have.
+/// Resets, in a forked child, the state that depends on threads of the parent, which the child does not have.
 #[pyfunction]
 fn begin_anew() {
     forget_threads();
@@ -29,7 +30,8 @@ fn begin_anew() {
 
 /// Completes the one-time setup that the first call with arrays makes.
 ///
-/// If another thread were still at it during the fork, the child would wait for that thread for ever.
+/// If another thread were in the middle of this setup during the fork, the child would wait for that thread
+/// for ever.
 #[pyfunction]
 fn settle(py: Python<'_>) -> PyResult<()> {
     if py.import("sys")?.getattr("modules")?.contains("numpy")? {

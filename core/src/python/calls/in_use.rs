@@ -7,7 +7,8 @@ use pyo3::prelude::*;
 use super::errors::to_python;
 use crate::error::{Error, ErrorKind};
 
-/// The number of calls that are using an object, counted with the GIL held, as Python forks.
+/// The number of calls that are using an object. It changes only with the GIL held, which Python also holds
+/// while it forks.
 ///
 /// A call of another thread that was running when the process was forked never ends in the child, and may
 /// have left the object locked or half changed.

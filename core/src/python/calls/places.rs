@@ -1,10 +1,10 @@
-//! Gives the threads of a pool processors on which they begin a call.
+//! Pins the threads of a pool to free processors at the beginning of a call.
 //!
 //! Linux wakes a thread on the waker's processor if the processor where the thread ran last seems busy. That
-//! one still seems busy if the caller has worked there and now waits, or if the host of a virtual machine
-//! has put it to sleep. Threads that meet on one processor share it until the kernel balances loads, some
-//! milliseconds later: longer than many calls take. So if processors are free, a call pins each thread to
-//! its own one at the start, and soon releases the threads again.
+//! processor seems busy even if the caller has worked there and now waits, or if the host of a virtual
+//! machine has put it to sleep. Threads that share a processor stay there until the kernel balances loads,
+//! some milliseconds later: longer than many calls take. So if processors are free, a call pins each thread
+//! to a processor of its own at the start, and soon releases the threads again.
 
 #[cfg(target_os = "linux")]
 pub use linux::Places;
@@ -24,7 +24,8 @@ mod linux {
     /// threads seldom meet.
     const MAX_THREADS_PLACED: usize = 8;
 
-    /// How long the result of a test for free processors stays valid: a hundred times what the test takes.
+    /// The time for which the result of a test for free processors stays valid: a hundred times as long as
+    /// the test takes.
     const MAX_AGE: Duration = Duration::from_millis(5);
 
     /// The threads of a pool, to be pinned to processors.
@@ -50,8 +51,9 @@ mod linux {
             }
         }
 
-        /// Pins each thread to its own processor, the first to the caller's, since the caller is about to
-        /// wait. `None` if that would slow other work, or if another call has pinned the threads.
+        /// Pins each thread of the pool to its own processor; the first thread gets the processor of the
+        /// caller, who is about to wait. `None` if that would slow other work, or if another call has pinned
+        /// the threads.
         pub fn hold(&self) -> Option<Held<'_>> {
             if !(2..=MAX_THREADS_PLACED).contains(&self.threads.len()) {
                 return None;

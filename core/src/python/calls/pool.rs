@@ -1,4 +1,4 @@
-//! Pools of threads, which a forked process makes again.
+//! Pools of threads; a forked process starts its own.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};

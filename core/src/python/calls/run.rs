@@ -12,11 +12,12 @@ use crate::error::panics::caught;
 use crate::error::{Error, Result};
 use crate::interrupt::{Call, CallerHooks, Share, Task, ASK_EVERY};
 
-/// Work on fewer array elements than this begins on the caller's thread: passes over them are not shared, and
-/// a step that is worth it wakes the thread pool itself.
+/// A call with fewer array elements than this begins on the caller's thread. It uses the thread pool only for
+/// steps that are long enough to gain from it.
 pub const MIN_ELEMENTS_FOR_POOL: usize = 1 << 13;
 
-/// What a call on the caller's thread may do: ask for signals, and run a part of its work in a thread pool.
+/// The functions by which a call on the caller's thread checks for signals, and runs a part of its work in a
+/// thread pool.
 const HOOKS: CallerHooks = CallerHooks {
     wants_to_stop: signal_raised,
     hand_over,
@@ -95,7 +96,8 @@ fn hand_over(task: Task, share: Share<'_>) {
     }
 }
 
-/// Returns the pool for this thread's call; `None` if it has one thread, or the system starts none.
+/// Returns the thread pool for the call of this thread; `None` if the pool has only one thread, or if the
+/// system cannot start the threads.
 fn helpers() -> Option<Arc<Pool>> {
     HELPERS.with_borrow_mut(|(threads, found)| {
         let ask = || attached(|py| pool(py, *threads).ok());

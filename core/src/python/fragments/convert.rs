@@ -9,7 +9,7 @@ use crate::python::arrays::array;
 use crate::python::hyperplanes::Row;
 use crate::tree::fragments::{NodeCut, Policy, Sample};
 
-/// How a tree is to be built, before the dimension is known: by a policy, by lines through corners, or by
+/// The method of building a tree, before the dimension is known: by a policy, by lines through corners, or by
 /// given cuts.
 #[derive(Clone, Debug)]
 pub enum BuildMethod {
@@ -18,7 +18,7 @@ pub enum BuildMethod {
     Given(Vec<NodeCut>),
 }
 
-/// How a tree is to be built, and hyperplanes of the caller that come first.
+/// The method of building a tree, and hyperplanes given by the caller that are used as cuts first.
 #[derive(Clone, Debug)]
 pub struct BuildOptions {
     pub method: BuildMethod,
@@ -70,7 +70,7 @@ pub fn rows<T: numpy::Element + Copy>(
     PyArray1::from_vec(py, flat.collect()).reshape([count, dimension])
 }
 
-/// Stands for an axis in the row of a cut whose hyperplane is in the tree's own list.
+/// Replaces the axis in a row that describes a cut, if the hyperplane of the cut is in the tree's own list.
 const OWN_AXIS: i64 = -2;
 
 /// Returns cuts as rows: (-1, piece) for a piece's hyperplane, (axis, coordinate) for an axis-parallel cut,

@@ -122,7 +122,7 @@ pub struct Export {
 }
 
 impl<S: FromRow> FacetTree<S> {
-    /// Builds the tree again, and returns how each of its regions was divided.
+    /// Builds the tree again, and returns a record of the division of each region.
     pub fn construction(&self, options: &BuildOptions) -> Result<Vec<Division>> {
         let mut divisions = Vec::new();
         let plan = plan(&self.facets, options)?;
@@ -130,7 +130,8 @@ impl<S: FromRow> FacetTree<S> {
         Ok(divisions)
     }
 
-    /// Returns the tree with more facets: it keeps its cuts, and empty regions are divided by `options`.
+    /// Returns the tree with more facets: existing cuts stay, and regions without facets are divided as
+    /// `options` say.
     pub fn grown(&self, facets: Vec<Facet>, options: &BuildOptions) -> Result<Self> {
         let rest = plan(&facets, options)?;
         let plan = Plan::Grown(Box::new(self.tree.clone()), Box::new(rest));
@@ -162,7 +163,7 @@ impl<S: FromRow> FacetTree<S> {
         steps.map(|step| (step.node.0, sign(step.side))).collect()
     }
 
-    /// Returns the first hit of each ray, and its cost.
+    /// Returns for each ray the first hit and the cost of finding it: numbers of nodes, leaves and tests.
     pub fn cast<const D: usize>(&self, rays: &[[f64; 6]]) -> Result<Vec<RayPath>>
     where
         S: Cast<D>,
@@ -307,7 +308,7 @@ impl<S: Affine> FacetTree<S> {
     }
 
     /// Returns the box around the tree's facets (input points, segments or polygons), enlarged by a margin in
-    /// model units, at least one step.
+    /// model units, but by at least one lattice step.
     pub fn whole(&self, margin: f64) -> Result<Polytope<S>> {
         let steps = (margin / self.units([1.0; 3])[0])
             .round()

@@ -43,7 +43,7 @@ type FragmentArrays<'py> = (
     Bools<'py>,
 );
 
-/// Evaluates an expression with the tree, whatever its dimension.
+/// Evaluates an expression with the tree, in any dimension.
 macro_rules! each {
     ($inner:expr, $facet_tree:ident => $body:expr) => {
         match $inner {
@@ -63,7 +63,7 @@ pub struct PyFragmentTree {
     options: BuildOptions,
 }
 
-/// Calls a method that has the dimension as a constant, on the tree of that dimension.
+/// Calls a method with the tree's dimension as a constant parameter.
 macro_rules! each_cast {
     ($inner:expr, $facet_tree:ident, $method:ident, $($argument:expr),*) => {
         match $inner {
@@ -125,8 +125,8 @@ impl PyFragmentTree {
         })
     }
 
-    /// Return a tree whose cuts `answer(depth, count, candidates)` chooses: it returns the index of a
-    /// candidate and None, or any number and the row of a hyperplane.
+    /// Return a tree whose cuts the callback `answer(depth, count, candidates)` chooses. It returns a pair:
+    /// the index of a candidate and None; or any number and the row (normal, offset) of a hyperplane.
     #[classmethod]
     #[allow(clippy::too_many_arguments)]
     fn asked(
@@ -185,7 +185,7 @@ impl PyFragmentTree {
         })
     }
 
-    /// Return the tree with more facets; a policy divides regions that were empty.
+    /// Return the tree with more facets; the given policy divides regions that had no facets.
     #[allow(clippy::too_many_arguments)]
     fn grown(
         &self,
@@ -234,7 +234,7 @@ impl PyFragmentTree {
         })
     }
 
-    /// Return how each node of the tree was made, in the order of the nodes.
+    /// Return a record of the division at each node of the tree, in the order of the nodes.
     fn construction(&self, py: Python<'_>) -> PyResult<Vec<DivisionRow>> {
         let options = &self.options;
         let divisions = self.run(
@@ -245,14 +245,16 @@ impl PyFragmentTree {
         Ok(divisions.into_iter().map(division_row).collect())
     }
 
-    /// Return the nodes that a point passes, each with the side of the point: −1, 0 or 1.
+    /// Return the nodes that a point passes on its path from the root, each with the side of the node's
+    /// hyperplane on which the point lies: −1, 0 or 1.
     fn path(&self, py: Python<'_>, point: [f64; 3]) -> PyResult<Vec<(u32, i8)>> {
         self.run(py, 0, || {
             Ok(each!(&self.inner, facet_tree => facet_tree.path(&point)))
         })
     }
 
-    /// Return the first facet on each ray, and the cost of finding it.
+    /// Return for each ray the facet that it meets first, the parameter of the hit, and the numbers of
+    /// visited nodes, visited leaves and tests.
     fn cast<'py>(
         &self,
         py: Python<'py>,
@@ -277,7 +279,8 @@ impl PyFragmentTree {
         ))
     }
 
-    /// Return the steps of one ray through the tree, and the piece and parameter of its first hit.
+    /// Return the steps of one ray through the tree, and its first hit: the piece of a facet and the
+    /// parameter.
     fn ray_events(
         &self,
         py: Python<'_>,
@@ -294,7 +297,7 @@ impl PyFragmentTree {
         Ok((path.hit, events.iter().map(event_row).collect()))
     }
 
-    /// Return the hyperplanes that come from no facet: rows of normal and offset, in lattice steps.
+    /// Return the cuts that are not hyperplanes of facets, as rows of normal and offset, in lattice steps.
     fn own(&self) -> Vec<Row> {
         each!(&self.inner, facet_tree => facet_tree.build_options()).own
     }
@@ -333,8 +336,7 @@ impl PyFragmentTree {
         })
     }
 
-    /// Return the cuts of a tree over the same facets that splits none of them; None if the search finds
-    /// none.
+    /// Return cuts for a tree over the same facets in which no facet is split; None if the search finds none.
     fn perfect_cuts<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<i64>>>> {
         let found = self.run(
             py,
@@ -399,7 +401,8 @@ impl PyFragmentTree {
         ))
     }
 
-    /// Return, for each split of a fragment, the node and the input facet.
+    /// Return for each division of a fragment in two the number of the node whose cut divides it, and the
+    /// index of the input facet.
     fn splits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
         let pairs = each!(&self.inner, facet_tree => facet_tree
             .tree
@@ -439,7 +442,8 @@ impl PyFragmentTree {
         ))
     }
 
-    /// Return volume and surface of the root's region, and those of all nodes' regions, in lattice steps.
+    /// Return the volume and the surface of the root's region, then arrays of the volume and the surface of
+    /// each node's region, in lattice steps.
     fn measures<'py>(
         &self,
         py: Python<'py>,
@@ -461,8 +465,8 @@ impl PyFragmentTree {
         ))
     }
 
-    /// Return the corners of the walls of a region: the root's if `node` is None, else the node's, or its
-    /// part on one side of the node's hyperplane if `side` is -1 or 1.
+    /// Return the corners of the walls of a region. If `node` is None, it is the root's region; else the
+    /// region of the node, or its part on one side of the node's hyperplane if `side` is -1 or 1.
     #[pyo3(signature = (node, side, margin))]
     fn region<'py>(
         &self,
@@ -490,8 +494,8 @@ impl PyFragmentTree {
         rows(py, corners, self.dimension())
     }
 
-    /// Return the tree's facets (input points, segments or polygons) on the lattice: corners in steps, and
-    /// for each facet where its corners start.
+    /// Return the tree's facets (input points, segments or polygons) on the lattice: the corners of all
+    /// facets in lattice steps, and for each facet the index of its first corner.
     fn lattice<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyArray2<i64>>, Ints<'py>)> {
         let corners = rows(py, self.corners.clone(), self.dimension())?;
         Ok((corners, PyArray1::from_vec(py, self.offsets.clone())))
@@ -515,7 +519,7 @@ impl PyFragmentTree {
 /// The cost of casting a ray, in elements of other work.
 const ELEMENTS_PER_RAY: usize = 1000;
 
-/// A slot for the exception that a callback raised.
+/// Storage for the exception that a callback raised.
 type Raised = Arc<Mutex<Option<PyErr>>>;
 
 fn method_of(

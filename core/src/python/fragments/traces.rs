@@ -6,14 +6,16 @@ use crate::geometry::side::Half;
 use crate::query::path::RayEvent;
 use crate::tree::fragments::{Candidate, Division, Reason};
 
-/// A node, its parent or −1, its side of the parent, its depth, the row of its cut, and the reason for the
-/// cut.
+/// A node's number, its parent or −1, its side of the parent's cut, its depth, the row of its cut, and the
+/// reason for the cut.
 type Place = (u32, i64, i8, u32, [i64; 2], &'static str);
 
-/// A candidate: its piece; the numbers of pieces on the minus side, on the plus side and on both; its score.
+/// A candidate for a cut: its piece; the numbers of pieces on the minus side, on the plus side and on both
+/// sides; its score.
 pub type CandidateRow = (u32, u32, u32, u32, f64);
 
-/// A division: the node; the candidates; the pieces before, minus, plus, split and coplanar.
+/// A division: the node; the candidates for the cut; lists of the pieces in the region, on the minus side, on
+/// the plus side, split by the cut, and in the cut.
 pub type DivisionRow = (Place, Vec<CandidateRow>, [Vec<u32>; 5]);
 
 /// An event of a ray: kind, node, piece, side; the parameters of entering, leaving and crossing.

@@ -1,4 +1,4 @@
-//! The classes of rays: facets that rays are cast at, and trees that rays cause to grow.
+//! The classes for rays: facets that rays are cast at, and trees that grow where rays pass.
 
 pub mod scene;
 pub mod store;

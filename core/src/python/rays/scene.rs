@@ -24,7 +24,7 @@ enum Facets {
     Triangles(Scene<3>),
 }
 
-/// Evaluates an expression with the scene, whatever its dimension.
+/// Evaluates an expression with the scene, in any dimension.
 macro_rules! with_scene {
     ($facets:expr, $scene:ident => $body:expr) => {
         match $facets {
@@ -179,7 +179,7 @@ impl RayScene {
         with_scene!(&self.facets, scene => scene.facets().len())
     }
 
-    /// Divide all parts of the tree that are still deferred.
+    /// Divide all parts of the tree of boxes that no ray has reached yet.
     #[pyo3(signature = (threads=0))]
     fn complete(&self, py: Python<'_>, threads: usize) -> PyResult<()> {
         self.run(py, threads, MIN_ELEMENTS_FOR_POOL, || {
@@ -188,8 +188,8 @@ impl RayScene {
         })
     }
 
-    /// Return the scene after its facets have moved, with its tree refitted; the number of facets must be
-    /// the same.
+    /// Return a scene with moved facets, given by their new corners, in the same number; the tree of boxes is
+    /// kept, with boxes of new extents.
     fn refitted(&self, py: Python<'_>, corners: PyReadonlyArray1<'_, f64>) -> PyResult<Self> {
         let flat = corners.as_slice()?;
         let facets = self.run(py, 0, flat.len(), || {
@@ -203,8 +203,8 @@ impl RayScene {
         Ok(Self { facets, calls })
     }
 
-    /// Return the nodes that rays have reached, in preorder, as columns: boxes, parents, whether a node is
-    /// deferred, and the facets of leaves.
+    /// Return the nodes that rays have reached, in preorder, as columns: boxes, parents, flags that are true
+    /// for nodes not divided yet, and the facets of leaves.
     fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let _call = self.calls.enter(py)?;
         with_scene!(&self.facets, scene => known_nodes(py, scene))
@@ -226,7 +226,7 @@ impl RayScene {
         Ok(columns.arrays(py))
     }
 
-    /// Return the first facet on each ray, −1 for a ray without one.
+    /// Return for each ray the index of the first facet that it meets; −1 for a ray that meets none.
     #[pyo3(signature = (origins, directions, threads=0))]
     fn first_facets<'py>(
         &self,
@@ -243,7 +243,8 @@ impl RayScene {
         Ok(PyArray1::from_vec(py, facets))
     }
 
-    /// Return where each ray's hits start, and all hits; with `merge` only the first hit at each point.
+    /// Return the index of each ray's first hit, and columns with all hits; with `merge` only the first of
+    /// several hits at one point.
     #[pyo3(signature = (origins, directions, merge=false, threads=0))]
     fn all<'py>(
         &self,
@@ -264,8 +265,9 @@ impl RayScene {
         Ok((PyArray1::from_vec(py, offsets), columns.arrays(py)))
     }
 
-    /// Return where each ray's intervals inside start, and their parameters and facets, flat; if
-    /// `unbounded`, the winding number far away is 1.
+    /// Return three flat arrays: the index of each ray's first interval inside the set, the parameters at
+    /// both ends of each interval, and the facets there. If `unbounded`, the winding number far from the
+    /// facets is 1.
     #[pyo3(signature = (origins, directions, rule="positive", unbounded=false, threads=0))]
     fn intervals<'py>(
         &self,

@@ -1,4 +1,4 @@
-//! The class `RayTree`: a tree of supporting hyperplanes that grows where rays go.
+//! The class `RayTree`: a tree of supporting hyperplanes of facets that grows where rays pass.
 
 use num_bigint::BigInt;
 use numpy::{PyArray1, PyReadonlyArray1};
@@ -31,7 +31,7 @@ enum Stabbed {
     Triangles(StabTree<Dim3, 3>),
 }
 
-/// Evaluates an expression with the tree, whatever its dimension.
+/// Evaluates an expression with the tree, in any dimension.
 macro_rules! with_tree {
     ($stabbed:expr, $tree:ident => $body:expr) => {
         match $stabbed {
@@ -45,7 +45,7 @@ macro_rules! with_tree {
 /// The numbers of nodes, leaves and tests of each ray, one ray after the other.
 type Counts<'py> = Bound<'py, PyArray1<i64>>;
 
-/// A tree that grows where rays go, also with rays of several calls at a time. See `_core.pyi`.
+/// A tree that grows where rays pass; several calls may test rays at the same time. See `_core.pyi`.
 #[pyclass(frozen, module = "bspcsg._core")]
 pub struct RayTree {
     tree: Stabbed,
@@ -106,7 +106,7 @@ impl RayTree {
         )
     }
 
-    /// Return the first hit of each ray, and its cost.
+    /// Return for each ray the first hit and its cost: the numbers of nodes, leaves and tests.
     fn test<'py>(
         &self,
         py: Python<'py>,
@@ -124,8 +124,8 @@ impl RayTree {
         Ok((columns.arrays(py), PyArray1::from_vec(py, counts)))
     }
 
-    /// Return the first hit of a ray, its cost, and each step: kind, node, facet, a count or flag, and the
-    /// lists of a division (in the cut, minus, plus).
+    /// Return the first hit of a ray, its cost, and its steps. A step has a kind, a node, a facet, a count or
+    /// flag, and for a division three lists: the facets in the cut, on its minus side and on its plus side.
     fn test_watched<'py>(
         &self,
         py: Python<'py>,
@@ -145,8 +145,8 @@ impl RayTree {
         Ok((columns.arrays(py), PyArray1::from_vec(py, counts), rows))
     }
 
-    /// Return the nodes in the order in which they were made, as columns; for a leaf its list, for an inner
-    /// node the facets in its cut.
+    /// Return the nodes in the order in which they were made, as columns; each leaf has the facets of its
+    /// list, each inner node the facets in its cut.
     fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = self.read(
             py,
@@ -168,7 +168,7 @@ impl RayTree {
         Ok(dict)
     }
 
-    /// Return the cuts and counters as bytes, without facets and threshold.
+    /// Return the cuts and counters of the tree as bytes; facets and threshold are not included.
     fn dump<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let record = self.read(py, |tree| with_tree!(tree, tree => tree.record()))?;
         let bytes = store::to_bytes(&record).map_err(|e| to_python(py, &e))?;
@@ -186,7 +186,8 @@ impl RayTree {
 }
 
 impl RayTree {
-    /// Reads the tree with the GIL released, which a thread that changes the tree may need.
+    /// Reads the tree with the GIL released, because another thread that is changing the tree may need the
+    /// GIL.
     fn read<T: Send>(
         &self,
         py: Python<'_>,
@@ -197,7 +198,8 @@ impl RayTree {
     }
 }
 
-/// Kind, node, facet, count or flag; the lists of a division.
+/// A step of a ray: kind, node, facet, and a count or flag; for a division also the facets in the cut, on its
+/// minus side and on its plus side.
 type StabRow = (&'static str, u32, i64, u64, Option<[Vec<u32>; 3]>);
 
 fn stab_row(event: StabEvent) -> StabRow {

@@ -1,4 +1,4 @@
-//! A set of any dimension, behind Python's one class `ObjectTree`.
+//! A set of one, two or three dimensions, as Python's class `ObjectTree` stores it.
 
 use std::sync::Arc;
 
@@ -61,7 +61,7 @@ impl Set {
         }
     }
 
-    /// Makes the minus side of a hyperplane.
+    /// Makes the half-space on the minus side of a hyperplane.
     pub fn half_space(hyperplane: &[BigInt]) -> Result<Self> {
         let [minus, _] =
             Self::uniform(hyperplane.len().saturating_sub(1), true)?.split(hyperplane)?;
@@ -91,7 +91,7 @@ impl Set {
         Ok(each!(self, tree => stats(tree)))
     }
 
-    /// Returns true if the set has all points, false if it is empty, `None` otherwise.
+    /// Returns true if the set contains all points, false if it is empty, `None` otherwise.
     pub fn uniform_label(&self) -> Option<bool> {
         let label = match self {
             Self::Line(tree) => tree.label(),
@@ -157,7 +157,7 @@ impl Set {
         }
     }
 
-    /// Returns the same set as a tree with a hyperplane at its root.
+    /// Returns the same set as a tree with the given hyperplane at its root.
     pub fn partitioned(&self, cut: &[BigInt]) -> Result<Self> {
         Ok(match self {
             Self::Line(tree) => Self::Line(rooted(tree, &on_line(cut)?)?),
@@ -177,7 +177,8 @@ impl Set {
         })
     }
 
-    /// Returns the name of the case that describes how the root's cut lies to a hyperplane.
+    /// Returns the name of the case (`SplitCase`) that describes the position of the root's cut relative to a
+    /// hyperplane.
     pub fn split_case(&self, cut: &[BigInt]) -> Result<&'static str> {
         let case = match self {
             Self::Line(tree) => split_case(tree, &span::<Dim1>(&on_line(cut)?)?),

@@ -16,7 +16,7 @@ pub enum Set {
     Space(PartitionTree<Dim3>),
 }
 
-/// Evaluates an expression with the tree of a set, whatever its dimension, inside a function that may fail.
+/// Evaluates an expression with the tree of a set, in any dimension, inside a function that may fail.
 macro_rules! each {
     ($set:expr, $tree:ident => $value:expr) => {
         match $set {

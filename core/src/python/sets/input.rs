@@ -17,7 +17,7 @@ use crate::tree::partition::{enclosed, Facet, PartitionTree, PivotPolicy, Plan};
 /// A rule that says which winding numbers are inside.
 pub type Rule = fn(i32) -> bool;
 
-/// How hyperplanes of facets are chosen, and whether axis-parallel cuts come before them.
+/// The rule that chooses hyperplanes of facets as cuts, and whether axis-parallel cuts come before them.
 pub type Policy = (PivotPolicy, bool);
 
 /// The input that a set is made from.
@@ -27,11 +27,11 @@ pub struct Input {
     pub facets: Vec<Vec<f64>>,
     /// Triangles as vertex numbers, for a set in space.
     pub faces: Vec<[i64; 3]>,
-    /// Hyperplanes that are cut along first.
+    /// Hyperplanes that are used as cuts first.
     pub cuts: Vec<Row>,
     /// The rule that says which winding numbers are inside.
     pub rule: Rule,
-    /// How regions are divided after the given cuts.
+    /// The rule that divides regions after the given cuts.
     pub policy: Policy,
 }
 
@@ -125,7 +125,7 @@ pub fn inside_of<S: AxisSpace>(
     enclosed(facets, 0, input.rule, &plan)
 }
 
-/// Converts rows to facets with the numbers of their rows; rows without a facet are left out.
+/// Converts rows to facets, each with the number of its row; a row that gives no facet is left out.
 fn facets<S: AxisSpace>(
     input: &Input,
     make: impl Fn(&[f64]) -> Result<Option<S::Fragment>>,
@@ -176,8 +176,8 @@ pub fn outlines(rows: &[[f64; 4]], pitch: Pitch) -> Result<Outlines> {
     Ok(outlines)
 }
 
-/// Snaps a corner to the lattice. Most segments begin where the one before ends, whose lattice point is
-/// `known`.
+/// Snaps a corner to the lattice; `known` is the end of the previous segment with its lattice point, because
+/// most segments begin there.
 #[allow(
     clippy::float_cmp,
     reason = "the same corner is given by the same doubles"

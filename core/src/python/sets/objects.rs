@@ -180,7 +180,7 @@ impl ObjectTree {
         Ok(self.with(set))
     }
 
-    /// Return the region inside closed segments, given by its boundary; the tree is made on demand.
+    /// Return the region inside closed outlines, given by segments; its tree is made on demand.
     #[classmethod]
     fn region(
         _cls: &Bound<'_, PyType>,
@@ -219,8 +219,9 @@ impl ObjectTree {
         Ok(self.with(set))
     }
 
-    /// Return the result of an operation, and the steps of merging the trees: kind, two roots or a node, the
-    /// action, and the reason. Roots are nodes in preorder, −1 an Out leaf, −2 an In leaf.
+    /// Return the result of an operation, and the steps of merging the trees: the kind of step, two numbers
+    /// (the roots of two merged trees, or one node), the action, and the reason. Roots are nodes in preorder;
+    /// −1 is an Out leaf, −2 an In leaf.
     fn merge_steps(
         &self,
         py: Python<'_>,
@@ -311,7 +312,8 @@ impl ObjectTree {
         Ok(self.work(py, Set::moments)?.map(ratio).into())
     }
 
-    /// Return two fractions that enclose the area, far closer to each other than neighbouring doubles.
+    /// Return a lower and an upper bound of the area as fractions, far closer to each other than neighbouring
+    /// doubles.
     fn area_bounds(&self, py: Python<'_>) -> PyResult<[Ratio; 2]> {
         Ok(self.work(py, Set::area_bounds)?.map(ratio))
     }

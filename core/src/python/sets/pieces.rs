@@ -3,8 +3,8 @@
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// Convex polygons, segments or points: the coordinates of all corners, the number of corners of each, and a
-/// tag of each.
+/// A list of convex polygons, segments or points: the coordinates of all corners, the index of the first
+/// corner of each, and a tag of each.
 #[derive(Debug, Default)]
 pub struct PieceList {
     /// The coordinates of all corners, `dimension` for each.

@@ -45,7 +45,7 @@ impl Set {
         Ok(list)
     }
 
-    /// Returns the faces of the convex cells, each with the number of its cell.
+    /// Returns the faces of the set's convex cells, each with the number of its cell.
     pub fn cells(&self, pitch: Pitch) -> Result<PieceList> {
         if !self.is_bounded() {
             let text =
@@ -86,7 +86,7 @@ impl Set {
         }
     }
 
-    /// Returns two fractions that enclose the area of a plane region.
+    /// Returns a lower and an upper bound of the area of a plane region as fractions.
     pub fn area_bounds(&self, pitch: Pitch) -> Result<[Fraction; 2]> {
         moments::area_bounds(self.plane()?.boundary()?, pitch)
     }
@@ -145,7 +145,7 @@ impl Set {
     }
 }
 
-/// Returns the corners of outlines, each with the number of the outline directly around it, or −1.
+/// Returns the corners of outlines, each outline with the number of the outline directly around it, or −1.
 pub fn outline_pieces(outlines: &[Outline], pitch: Pitch) -> PieceList {
     let mut list = PieceList::new();
     for outline in outlines {

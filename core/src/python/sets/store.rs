@@ -17,7 +17,7 @@ use crate::python::calls::errors::to_python;
 use crate::store::sealed::{seal, unseal, Kind};
 use crate::tree::partition::{from_preorder, preorder, Entry, Label, PartitionTree};
 
-/// The bits of the coefficients of a plane's normal, and of its offset.
+/// The largest number of bits of a component of a stored plane's normal.
 const NORMAL: u32 = normal(COORDINATE_BITS);
 const OFFSET: u32 = offset(COORDINATE_BITS);
 

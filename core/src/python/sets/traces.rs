@@ -11,7 +11,7 @@ use crate::merge::{merge_watched, SetOp};
 use crate::python::hyperplanes::{row_of, shape, Row};
 use crate::tree::partition::{preorder, Entry, Label, PartitionTree};
 
-/// The kind of a step, two numbers, the action, and the reason.
+/// A step of merging two trees: its kind, two numbers, the action, and the reason.
 pub type StepRow = (&'static str, i64, i64, &'static str, &'static str);
 
 impl Set {

@@ -21,12 +21,12 @@ use crate::tree::solid::Solid;
 /// Returns the reflex edges of a reduced solid's surface that lie inside a face: there two parts of the
 /// solid touch, and the face extends over both. Exact.
 ///
-/// An edge is reflex if the solid fills more than half of the space around it. Other edges touch a face from
-/// outside and separate nothing.
+/// An edge is reflex if the solid fills more than half of the space around it. An edge that is not reflex
+/// only touches a face from outside, and does not connect two parts of the solid.
 ///
 /// # Cost
-/// The mesh, the pairs of a reflex edge and a flat part of the surface whose boxes overlap, and the
-/// pairs of an edge and a triangle in one plane whose boxes overlap.
+/// Proportional to the mesh, the pairs of a reflex edge and a flat part of the surface whose boxes overlap,
+/// and the pairs of an edge and a triangle in one plane whose boxes overlap.
 ///
 /// # Errors
 /// `Unbounded`.
@@ -80,15 +80,14 @@ impl ReflexEdge {
         }
     }
 
-    /// Returns true if the edge lies in the plane of a triangle; most pairs that are compared share a
-    /// corner.
+    /// Returns true if the edge lies in the plane of a triangle.
     fn lies_in_plane_of(&self, triangle: u32, surface: &Surface) -> bool {
         let corners = surface.triangles()[triangle as usize];
         let mut ends = self.ends.iter().zip(&self.vertices);
         ends.all(|(end, v)| corners.contains(v) || surface.side(triangle, end) == Side::On)
     }
 
-    /// The edge as a triangle without area, for boxes.
+    /// The edge as the corners of a triangle without area, for computing boxes.
     fn corners(&self) -> [Vertex; 3] {
         let [from, to] = &self.ends;
         [from.clone(), to.clone(), to.clone()]
@@ -102,7 +101,8 @@ impl ReflexEdge {
     }
 }
 
-/// The reflex edges of a surface, and its flat parts, connected coplanar triangles of one patch.
+/// The reflex edges of a surface (the solid fills more than half of the space around each), and its flat
+/// parts: connected coplanar triangles of one patch.
 struct Folds<'a> {
     surface: &'a Surface<'a>,
     topology: Topology,
@@ -139,8 +139,9 @@ impl<'a> Folds<'a> {
         }
     }
 
-    /// Returns pairs of a reflex edge and a triangle whose interior, or that of its flat part, contains the
-    /// edge; at least one for each such edge and flat part.
+    /// Returns pairs of a reflex edge and a triangle such that the interior of the triangle, or of its flat
+    /// part (connected coplanar triangles), contains the edge. For each edge inside a flat part there is at
+    /// least one pair.
     fn contacts(&self) -> Vec<[u32; 2]> {
         let mut found = Vec::new();
         for run in self.in_planes().chunk_by(|a, b| a[0] == b[0]) {
@@ -243,7 +244,7 @@ impl<'a> Folds<'a> {
     }
 
     /// Returns true if an edge in a triangle's plane has a point in the triangle's interior, or overlaps an
-    /// edge of the triangle that is inside the flat part.
+    /// edge that the triangle shares with another triangle of its flat part (connected coplanar triangles).
     fn is_in_middle(&self, edge: u32, triangle: u32) -> bool {
         poll();
         let ends = self.reflex[edge as usize].ends.each_ref();

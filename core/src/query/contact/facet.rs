@@ -20,7 +20,7 @@ pub struct Facet {
 }
 
 impl Facet {
-    /// Returns true if two triangles have a point in common; then an edge of one meets the other.
+    /// Returns true if two triangles have a point in common.
     pub fn meets(&self, other: &Self) -> bool {
         poll();
         let ours = self.sides_of(other);
@@ -51,8 +51,8 @@ impl Facet {
         })
     }
 
-    /// Returns true if a segment with its ends on different sides of the plane meets the triangle: all edges
-    /// then turn in one direction around it.
+    /// Returns true if a segment with its ends on different sides of the triangle's plane meets the triangle,
+    /// that is, if no two edges turn in opposite directions around the segment.
     fn is_pierced(&self, [from, to]: [&Vertex; 2]) -> bool {
         let around = |i: usize| {
             let (a, b) = (&self.corners[i], &self.corners[(i + 1) % 3]);
@@ -70,8 +70,9 @@ impl Facet {
         !is_split(turns)
     }
 
-    /// Returns true if a segment in the triangle's plane has a point in the interior: each edge has an end
-    /// of the segment on its inner side, and the segment's line has corners on both sides.
+    /// Returns true if a segment in the triangle's plane has a point in the triangle's interior: for each
+    /// edge, an end of the segment lies on the inner side, and corners lie on both sides of the segment's
+    /// line.
     pub fn has_inside(&self, [from, to]: [&Vertex; 2]) -> bool {
         let turn = |a, b, c| points::turn([a, b, c], self.view());
         let [a, b, c] = self.corners.each_ref();

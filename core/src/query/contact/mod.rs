@@ -16,7 +16,8 @@ use surface::Surface;
 /// Return whether the surfaces of two reduced solids on one lattice have a point in common; exact.
 ///
 /// # Cost
-/// Both meshes, and the pairs of triangles whose boxes overlap, up to the first pair that meets.
+/// Proportional to both meshes, and to the pairs of triangles whose boxes overlap, up to the first pair that
+/// meets.
 ///
 /// # Errors
 /// `Unbounded`.

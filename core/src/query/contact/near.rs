@@ -117,7 +117,8 @@ pub fn near_pairs(
     pairs(ElementsInBox::of(boxes, shift), bounded, meet)
 }
 
-/// The corners relative to a point, in lattice steps; `None` if one is not a lattice point.
+/// The corners of a triangle relative to a point, in lattice steps; `None` if a corner is not a lattice
+/// point.
 fn relative(corners: &[Vertex; 3], origin: &Lattice) -> Option<[[f64; 3]; 3]> {
     let [a, b, c] = corners.each_ref().map(Vertex::as_lattice);
     let from = |p: &Lattice| each_axis(|i| as_double(p[i] - origin[i]));

@@ -1,4 +1,4 @@
-//! Many rays at once, on all threads of the pool; answers in the order of the rays.
+//! Casts many rays on all threads of the pool; results are in the order of the rays.
 
 use rayon::prelude::*;
 
@@ -39,9 +39,9 @@ pub struct Rays<'a> {
 }
 
 impl Rays<'_> {
-    /// Casts all rays and returns their answers. `answer` gets rays with their numbers; `ray` makes a ray of
-    /// a snapped origin and a head (direction or target), and `along` gives its rough direction, for
-    /// sorting.
+    /// Casts all rays and returns the results. `answer` computes the results of rays, which it gets with
+    /// their numbers; `ray` makes a ray from a snapped origin and a head (direction or target); `along` gives
+    /// the rough direction from an origin and a head, for sorting.
     fn map<const D: usize, T: Send>(
         &self,
         scene: &Scene<D>,

@@ -1,10 +1,10 @@
 //! Bundles of similar rays, in single precision: a conservative test of which boxes they meet.
 //!
 //! # Error
-//! In the frame a scene lies in [−1, 1]. A ray is taken from where it enters this interval on its main axis.
-//! So it meets the scene only at main distances t from 0 to 2, and moves by at most t on each axis. Let u =
-//! 2^-24. The distance of a box's plane is a difference times an inverse that was rounded once: its relative
-//! error is below 4u, as if the plane had moved by 8u < 2^-21. An inverse that is cut at
+//! The frame maps a scene into [−1, 1] on each axis. A ray is taken from where it enters this interval on its
+//! main axis. So it meets the scene only at main distances t from 0 to 2, and moves by at most t on each
+//! axis. Let u = 2^-24. The distance of a box's plane is a difference times an inverse that was rounded once:
+//! its relative error is below 4u, as if the plane had moved by 8u < 2^-21. An inverse that is cut at
 //! [`MAX_INVERSE_SLOPE`] moves the ray by 2·2^-40. The start is found in doubles, with an error below 2^-49
 //! of its distance from the origin. The slack of [`Starts::views`] exceeds the sum of these errors and of
 //! rounding to single precision. So a ray that meets a box passes the test of each slab, which tries all
@@ -27,8 +27,8 @@ const SLACK_PER_WAY: f64 = 1.0 / (1u64 << 49) as f64;
 /// coordinate.
 const NARROWING: f64 = 1.0 / (1u64 << 23) as f64;
 
-/// Up to `N` rays in a frame that maps the scene into [−1, 1] on each axis, side by side, from where they
-/// enter that interval on their main axis.
+/// Up to `N` rays, each from the point where it enters the interval [−1, 1] on its main axis, in a frame that
+/// maps the scene into this interval on each axis.
 struct Starts<const D: usize, const N: usize> {
     at: [[f64; N]; D],
     slope: [[f64; N]; D],
@@ -38,8 +38,8 @@ struct Starts<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> Starts<D, N> {
-    /// Takes 1 to `N` rays with the main axis and signs of the first ray, which also fills the lanes left
-    /// over.
+    /// Takes 1 to `N` rays, with the main axis and the signs of the first ray; lanes without a ray repeat the
+    /// first ray.
     #[inline]
     fn of(rays: &[Ray<D>], frame: &Frame<D>) -> Self {
         let lead = &rays[0].near;
@@ -90,7 +90,8 @@ impl<const D: usize, const N: usize> Starts<D, N> {
         range(&self.at[axis]) + range(&self.slope[axis])
     }
 
-    /// Returns near starts, far starts and inverse slopes, for boxes seen from all starts within the slack.
+    /// Returns, for each ray, the start for near sides of boxes, the start for far sides, and the inverse
+    /// slope on an axis; the two starts bound all points within the slack of the true start.
     #[inline]
     fn views(&self, axis: usize) -> [[f32; N]; 3] {
         let backward = self.slope[axis][0] < 0.0;
@@ -122,7 +123,8 @@ fn alike<const D: usize>(a: &Ray<D>, b: &Ray<D>) -> bool {
     a.main == b.main && (0..D).all(|k| falls(a, k) == falls(b, k))
 }
 
-/// The starts for near planes and for far planes along an axis, and the inverse slopes, for a whole bundle.
+/// A bundle's bounds along an axis: its starts for near planes and for far planes of boxes, and its inverse
+/// slopes.
 #[derive(Clone, Copy, Debug, Default)]
 struct View {
     near: f32,
@@ -168,7 +170,7 @@ pub struct Bundle<const D: usize, const N: usize> {
     first: [usize; D],
     /// By axis: the starts for near planes, the starts for far planes, and the inverse slopes.
     views: [[[f32; N]; 3]; D],
-    /// For each ray the distance after which boxes no longer matter.
+    /// For each ray, the distance after which boxes are no longer visited.
     limits: [f32; N],
     beam: [View; D],
     scale: f64,
@@ -176,8 +178,8 @@ pub struct Bundle<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> Bundle<D, N> {
-    /// Makes the bundle of 1 to `N` rays, with the depth after which boxes no longer matter to each; `None`
-    /// if their octants or main axes differ, or they are more than `width` apart.
+    /// Makes the bundle of 1 to `N` rays, each with the depth after which boxes are no longer visited for it;
+    /// `None` if the octants or main axes of the rays differ, or the rays are more than `width` apart.
     #[inline]
     pub fn of(
         rays: &[Ray<D>],
@@ -222,7 +224,7 @@ impl<const D: usize, const N: usize> Bundle<D, N> {
         bundle
     }
 
-    /// The largest distance, of all rays, after which boxes no longer matter.
+    /// The largest distance, over all rays, after which boxes are no longer visited.
     #[inline]
     pub fn limit(&self) -> f32 {
         self.limits.iter().fold(
@@ -231,13 +233,14 @@ impl<const D: usize, const N: usize> Bundle<D, N> {
         )
     }
 
-    /// Sets the depth after which boxes no longer matter to a ray.
+    /// Sets the depth after which boxes are no longer visited for a ray.
     #[inline]
     pub fn set_limit(&mut self, ray: usize, depth: f64) {
         self.limits[ray] = above(depth * self.scale - self.skipped[ray]);
     }
 
-    /// Returns, for each box of a node, the distance at which the bundle enters it, and whether it does.
+    /// Returns, for each box of a node, the distance at which the bundle enters the box, and whether the
+    /// bundle enters it at all.
     #[inline]
     pub fn enters(
         &self,

@@ -121,7 +121,7 @@ impl Span {
             .fold(Self::NOTHING, |all, span| all.with(span))
     }
 
-    /// The measure of the box's boundary up to a factor: half its area in 3D, a length in 2D and 1D.
+    /// The measure of the box: half the surface area in 3D, half the perimeter in 2D, the length in 1D.
     #[inline]
     pub fn surface<const D: usize>(&self) -> f32 {
         let size = |k: usize| (self.high[k] - self.low[k]).max(0.0);

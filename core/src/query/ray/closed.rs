@@ -1,4 +1,4 @@
-//! Checks that facets are closed, so that rays have intervals inside.
+//! Checks that facets are closed, so that the intervals of a ray inside them are defined.
 
 use super::facet::Facet;
 use crate::error::{Error, ErrorKind, Result};

@@ -60,7 +60,8 @@ fn stretch(from: Ratio, entry: Option<u32>, end: Option<(Ratio, u32)>) -> Stretc
     Stretch { from, entry, end }
 }
 
-/// Returns the crossings at positive parameters, by parameter, then input order; `step` is +1 for leaving.
+/// Returns the crossings of a ray with facets at positive parameters, by parameter, then input order; `step`
+/// is +1 where the ray leaves and −1 where it enters.
 fn crossings<const D: usize>(scene: &Scene<D>, ray: &Ray<D>) -> Vec<Crossing> {
     let facets = likely(scene, std::slice::from_ref(ray))
         .pop()

@@ -9,7 +9,7 @@ use super::cell::Span;
 /// The number of bins on each axis, whose borders are the candidate cuts.
 const BINS: usize = 16;
 
-/// Of a longer list about this many facets are sampled to choose a cut.
+/// To choose a cut of a longer list, about this many of its facets are sampled.
 const FACETS_SAMPLED: usize = 4096;
 
 /// A list of at most this many facets makes two blocks: it is divided in the middle.
@@ -67,7 +67,7 @@ pub struct Cuts<const D: usize> {
     cuts: Vec<(Cut, [Way; 2])>,
 }
 
-/// The next cut, or the part, on a side of a cut.
+/// The content on one side of a cut: another cut, or a part of the list.
 #[derive(Clone, Copy)]
 enum Way {
     Cut(usize),
@@ -211,7 +211,8 @@ impl Bin {
         self.count += count;
     }
 
-    /// Returns the cost of testing the bin's blocks, weighted by the chance that a ray meets the box.
+    /// Returns the cost of testing the blocks of facets in the bin, weighted by the probability that a ray
+    /// meets the bin's box.
     fn cost<const D: usize>(&self) -> f32 {
         self.span.surface::<D>() * self.count.div_ceil(LANES as u32) as f32
     }
@@ -221,7 +222,7 @@ fn sample(items: &[BoxedFacet]) -> impl Iterator<Item = &BoxedFacet> {
     items.iter().step_by((items.len() / FACETS_SAMPLED).max(1))
 }
 
-/// Returns the cut of least cost for a sample of a list; `None` if all its centres are equal.
+/// Returns the cut of least cost for a sample of a list; `None` if the centres of all boxes are equal.
 fn best<const D: usize>(items: &[BoxedFacet]) -> Option<Cut> {
     let sample = || sample(items);
     let (mut low, mut high) = ([f32::INFINITY; D], [f32::NEG_INFINITY; D]);

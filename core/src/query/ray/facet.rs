@@ -19,7 +19,7 @@ pub type Corners<const D: usize> = [[i64; D]; D];
 
 type Weight = Int<DENOMINATOR_LIMBS>;
 
-/// Where a ray first meets a facet, exactly.
+/// The first point, exactly, at which a ray meets a facet.
 #[derive(Clone, Debug)]
 pub struct Meeting<const D: usize> {
     /// The parameter along the ray, not negative.
@@ -139,8 +139,8 @@ fn determinant<const D: usize>(v: &Corners<D>) -> Int<NUMERATOR_LIMBS> {
 
 /// Returns the sign that a zero weight of a corner gets when the origin moves by (ε, ε², ε³).
 ///
-/// In space w = d · (a × b) with the opposite edge from a to b, which grows by ε⃗ · ((a − b) × d);
-/// in the plane w₀ = d × b and w₁ = a × d, which grow by ∓ d × ε⃗.
+/// In space the weight w = d · (a × b), with the opposite edge from a to b, grows by ε⃗ · ((a − b) × d); in
+/// the plane w₀ = d × b and w₁ = a × d, which grow by ∓ d × ε⃗.
 fn shifted_sign<const D: usize>(v: &Corners<D>, d: &[i128; D], i: usize) -> Sign {
     match D {
         1 => Sign::Positive,

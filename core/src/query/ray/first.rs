@@ -21,7 +21,7 @@ pub struct Found<const D: usize> {
     pub meeting: Meeting<D>,
 }
 
-/// The nearest facet that was found on a ray up to now, with its depth in doubles.
+/// The nearest facet found on a ray during a search, with its depth in doubles.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate {
     /// The facet's index in the scene.
@@ -60,12 +60,12 @@ impl<const D: usize> Nearest<D> {
     }
 }
 
-/// Where on a ray a test for facets in between ends.
+/// The end of the part of a ray that is tested for facets.
 #[derive(Clone, Copy, Debug)]
 pub enum Reach {
-    /// Just before parameter 1, where the target is.
+    /// Just before the target, which is at parameter 1.
     Target,
-    /// Just before this parameter of the given direction, compared after rounding.
+    /// Just before this parameter, in lengths of the given direction; compared after rounding.
     Parameter(f64),
 }
 
@@ -222,7 +222,7 @@ impl<'a, const D: usize> Query<'a, D> {
     }
 }
 
-/// Computes an answer for each ray from the first facet on it.
+/// Finds the first facet on each ray, and computes a result from it.
 pub fn firsts<const D: usize, T>(
     scene: &Scene<D>,
     rays: &[Ray<D>],
@@ -265,7 +265,7 @@ pub fn alls<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Vec<Found<
     rays.iter().zip(met).map(exact).collect()
 }
 
-/// Returns for each ray the facets that doubles do not certainly exclude from meeting it.
+/// Returns for each ray the facets that the ray may meet, because computations in doubles cannot exclude it.
 pub fn likely<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Vec<u32>> {
     let queries = queries(scene, rays);
     let mut met = vec![Vec::new(); rays.len()];
@@ -283,8 +283,8 @@ pub fn likely<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Vec<u32>
     met
 }
 
-/// Returns for each ray whether a facet has a point strictly between the ray's start and the end of its
-/// reach.
+/// Returns for each ray whether a facet has a point strictly between the ray's start and a given end
+/// (`Reach`).
 pub fn blocked<const D: usize>(
     scene: &Scene<D>,
     rays: &[Ray<D>],
@@ -328,7 +328,7 @@ fn queries<'a, const D: usize>(scene: &'a Scene<D>, rays: &'a [Ray<D>]) -> Vec<Q
     rays.iter().map(|ray| Query::new(scene, ray)).collect()
 }
 
-/// Converts a ray's parameter, which carries at most four roundings, to a depth.
+/// Converts a parameter of a ray, which has at most four rounding errors, to a depth.
 fn depth_of<const D: usize>(ray: &Ray<D>, parameter: f64) -> Depth {
     let lead = ray.direction()[ray.near.main].unsigned_abs() as f64;
     let z = parameter * lead;

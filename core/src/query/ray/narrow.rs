@@ -1,7 +1,8 @@
 //! Computes the meeting of a ray and a triangle in 128-bit integers, and rounds it.
 //!
-//! The numbers are those of `facet`, exact if they fit. Quotients come from leading bits, which mostly
-//! decide the rounding; otherwise, and for wider numbers, the integers of `facet` are used.
+//! The module `facet` computes the same numbers in wide integers; here they are exact if they fit into 128
+//! bits. Quotients are computed from leading bits, which usually decide the rounding; otherwise, and for
+//! wider numbers, the wide integers are used.
 //!
 //! # Widths
 //! Let corners relative to the origin be below 2^p, p ≤ 41, and the direction below 2^q. Components
@@ -33,8 +34,8 @@ pub struct Narrow<const D: usize> {
 }
 
 impl<const D: usize> Narrow<D> {
-    /// Computes the meeting; `None` if numbers are too wide, if the ray runs along the facet's plane, or if
-    /// it does not meet the facet.
+    /// Computes the weights and the height of the point at which a ray meets a facet; `None` if the ray does
+    /// not meet the facet or runs in its plane, or if numbers are too wide.
     #[inline]
     pub fn of(ray: &Ray<D>, facet: &Facet<D>) -> Option<Self> {
         let v = relative(ray, facet);
@@ -88,8 +89,8 @@ impl<const D: usize> Narrow<D> {
         self.weights.iter().filter(|w| w.is_zero()).count()
     }
 
-    /// Returns the parameter along the ray in model units, correctly rounded; `None` if leading bits do not
-    /// decide.
+    /// Returns the parameter along the ray in model units, correctly rounded; `None` if the leading bits of
+    /// its numbers do not decide the rounding.
     #[inline]
     pub fn parameter(&self, pitch: Pitch) -> Option<f64> {
         if self.height == 0 {

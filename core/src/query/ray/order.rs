@@ -5,13 +5,13 @@
 
 use super::cell::Frame;
 
-/// The bits of the point of entry on each axis.
+/// The number of bits per axis, in the sort key, for the point where a ray enters the scene.
 const BITS_PER_AXIS: u32 = 7;
 
-/// The smallest batch that is sorted: the nodes that fewer rays visit stay in the cache.
+/// The smallest number of rays that are sorted: the nodes that fewer rays visit stay in the cache.
 const SORT_FROM: usize = 256;
 
-/// A batch stays unsorted if at least one in this many neighbouring pairs of rays is similar.
+/// Rays are not sorted if, of their neighbouring pairs, at least one in this many is similar already.
 const UNSORTED_IF_ONE_IN: usize = 2;
 
 /// The similarity of one in this many neighbouring pairs is sampled.

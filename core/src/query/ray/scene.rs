@@ -31,7 +31,8 @@ pub struct Scene<const D: usize> {
 }
 
 impl<const D: usize> Scene<D> {
-    /// Snaps facets, given in model units, to a lattice: the one with `pitch`, or one that suits them.
+    /// Snaps facets, given in model units, to the lattice with `pitch`; if `pitch` is `None`, to a lattice
+    /// that suits them.
     ///
     /// # Errors
     /// `NonFinite` and `TooLarge` with the facet's number.

@@ -229,8 +229,8 @@ impl<const D: usize> Treelet<D> {
         Some(treelet)
     }
 
-    /// Returns this treelet with its boxes refitted to moved facets; `below` has the refitted treelets below
-    /// it.
+    /// Returns this treelet with its boxes refitted to moved facets; `below` are the refitted treelets of its
+    /// deferred children.
     fn fitted(
         &self,
         facets: &[Facet<D>],
@@ -273,7 +273,8 @@ impl<const D: usize> Treelet<D> {
     }
 }
 
-/// Returns the largest number of facets that a child takes so that the nodes below can be full.
+/// Returns the largest number of facets for one child of a node over `facets` facets, such that the nodes
+/// below can be full.
 fn room(facets: usize) -> usize {
     let mut room = LANES;
     while room * CHILDREN_PER_NODE < facets {
@@ -287,7 +288,7 @@ struct Making<'a, const D: usize> {
     facets: &'a [Facet<D>],
     items: Vec<BoxedFacet>,
     treelet: Treelet<D>,
-    /// True if only the root is made, and long children are deferred.
+    /// True if only the root is made, and children with many facets are deferred.
     begun: bool,
 }
 

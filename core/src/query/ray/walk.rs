@@ -35,7 +35,8 @@ const MAX_BUNDLE_WIDTH: f64 = 8.0;
 
 type Stack<'a, const D: usize> = SmallVec<[Open<'a, D>; 64]>;
 
-/// Visits the blocks that rays meet, each ray's nearest first, until the rest lie farther than its limit.
+/// Visits the blocks of facets that rays meet, the nearest of each ray first, until all other blocks of a ray
+/// are farther than its limit.
 ///
 /// `depth` gives the limit of a ray, in lattice steps along its main axis. `visit` gets the number of a ray
 /// and a block, and returns the new limit.

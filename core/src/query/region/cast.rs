@@ -43,7 +43,7 @@ pub fn cast(tree: &PartitionTree<Dim2>, line: &Line2) -> Result<Vec<[Point2; 2]>
     Ok(connected(tree, &whole, found))
 }
 
-/// Returns the parts of a segment in a cut that have the set on both sides.
+/// Returns the parts of a segment in a cut that have the set on both sides of the cut.
 fn inside_of_both(cut: &Cut<Dim2>, piece: &Segment2) -> Result<Vec<Segment2>> {
     let mut found = Vec::new();
     for (part, minus) in cut.child(Half::Minus).labels_beside(*piece)? {

@@ -93,7 +93,8 @@ impl Sections {
     }
 }
 
-/// An edge of the mesh that the cutting plane crosses: its end below the plane, then its end above it.
+/// An edge of the mesh that the cutting plane crosses, as two vertices: first the end below the plane, then
+/// the end above it.
 type Rung = [usize; 2];
 
 /// A triangle that the plane crosses, with the two edges at which the plane crosses it.
@@ -172,7 +173,7 @@ fn coplanar(points: [&Vertex; 4]) -> bool {
     sum == BigInt::ZERO
 }
 
-/// Returns the lattice point nearest to where an edge meets a plane.
+/// Returns the lattice point nearest to the point where an edge meets a plane.
 fn meet(points: &[Vertex], edge: Rung, plane: &Plane) -> Result<Lattice> {
     if let [Some(p), Some(q)] = edge.map(|i| points[i].as_lattice())
         && let Some(near) = plane.short().and_then(|plane| meet_near(p, q, &plane))
@@ -201,8 +202,8 @@ fn meet_wide(ends: [&Vertex; 2], plane: &Plane) -> Result<Lattice> {
     Ok(meet)
 }
 
-/// Computes the lattice point in 128-bit integers, for an edge between lattice points; `None` if it does not
-/// fit.
+/// Returns the lattice point nearest to the point where an edge between lattice points meets a plane,
+/// computed in 128-bit integers; `None` if these do not suffice.
 fn meet_near(p: &Lattice, q: &Lattice, plane: &ShortPlane) -> Option<Lattice> {
     let (s, t) = (plane.value_at(p), plane.value_at(q));
     if s.unsigned_abs().max(t.unsigned_abs()) >= SHORT_VALUE {
@@ -217,7 +218,8 @@ fn meet_near(p: &Lattice, q: &Lattice, plane: &ShortPlane) -> Option<Lattice> {
     Some([p[0] + along(0)?, p[1] + along(1)?, p[2] + along(2)?])
 }
 
-/// Twice the product of a value below this with a difference of coordinates, below 2^55, fits into 127 bits.
+/// A value of a plane's equation below this bound can be multiplied by twice a difference of coordinates
+/// (below 2^55) within 127 bits.
 const SHORT_VALUE: u128 = 1 << 70;
 
 struct Wide {

@@ -1,4 +1,4 @@
-//! Tests rays in a stab tree one after another, because each may change the tree for the next.
+//! Tests rays in a stab tree one after another, because a ray may change the tree before the next is tested.
 
 use super::cast::Cast;
 use super::trace::{StabEvent, Trace};

@@ -1,4 +1,4 @@
-//! The trait of spaces with what stab trees need of facets and hyperplanes.
+//! The trait of spaces for stab trees: what these need to know of facets and hyperplanes.
 
 use crate::arith::bounds::MAX_COORDINATE;
 use crate::arith::Int;
@@ -28,7 +28,7 @@ pub trait Cast<const D: usize>: Space {
 
     /// Returns true if a fragment on one side of `cut` can have a point in the interior of a facet in `cut`.
     ///
-    /// It cannot if at most two of its corners lie in the cut, and these are corners of the facet.
+    /// It cannot if at most two corners of the fragment lie in the cut, and these are corners of the facet.
     fn touches(piece: &Self::Fragment, cut: &Self::Hyperplane, facet: &[[i64; D]; D]) -> bool;
 }
 

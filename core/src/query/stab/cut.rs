@@ -1,4 +1,5 @@
-//! Where a ray crosses a hyperplane: in doubles that suffice to choose children, or exactly.
+//! The point at which a ray crosses a hyperplane: in doubles if they suffice to choose children, else
+//! exactly.
 
 use super::cast::Cast;
 use crate::arith::{Filtered, Int, Sign};
@@ -9,7 +10,7 @@ use crate::query::ray::Ray;
 /// The relative error of a sum of four products of factors with two roundings each.
 const FILTER: f64 = 12.0 * ROUNDING;
 
-/// A hyperplane with exact coefficients and the same in doubles.
+/// A hyperplane with its coefficients as exact integers and as doubles.
 #[derive(Clone, Debug)]
 pub struct Cut<const D: usize> {
     normal: [i128; D],
@@ -18,14 +19,14 @@ pub struct Cut<const D: usize> {
     near_offset: f64,
 }
 
-/// How a ray lies to a hyperplane.
+/// The position of a ray relative to a hyperplane.
 #[derive(Clone, Copy, Debug)]
 pub enum Stab {
     /// The ray stays on one side of the hyperplane, or runs in it (`On`).
     Beside(Side),
     /// The ray's line crosses the hyperplane.
     Through {
-        /// Where it crosses, along the ray's main axis, in lattice steps.
+        /// The depth of the crossing, along the ray's main axis, in lattice steps.
         depth: Depth,
         /// True if the line goes from the minus to the plus side.
         rising: bool,
@@ -49,8 +50,8 @@ impl<const D: usize> Cut<D> {
         (self.normal, self.offset)
     }
 
-    /// Returns the side on which all corners of a facet lie; `Doubtful` if there is none or doubles cannot
-    /// tell.
+    /// Returns the side of the hyperplane on which all corners of a facet lie; `Doubtful` if they lie on both
+    /// sides, or if doubles cannot decide.
     #[inline]
     pub fn half(&self, facet: &[[f64; D]; D]) -> Filtered<Half> {
         let mut sides = [false; 2];
@@ -72,7 +73,7 @@ impl<const D: usize> Cut<D> {
         }
     }
 
-    /// Returns how a ray lies to the hyperplane.
+    /// Returns the position of a ray relative to the hyperplane.
     #[inline]
     pub fn stab(&self, ray: &Ray<D>) -> Stab {
         let near = &ray.near;

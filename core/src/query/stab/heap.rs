@@ -1,4 +1,4 @@
-//! The list L(v) of a leaf: its fragments as a heap by their hit counters T(p).
+//! The list L(v) of a leaf of a stab tree: its fragments as a heap, ordered by their numbers of hits T(p).
 
 /// A fragment in the list of a leaf.
 #[derive(Clone, Debug)]
@@ -31,7 +31,7 @@ impl<F> Default for Heap<F> {
 }
 
 impl<F> Heap<F> {
-    /// Makes a heap of entries in this order; `None` if they are not in heap order.
+    /// Makes a heap of entries that are already in heap order; `None` if they are not.
     pub fn of(entries: Vec<Entry<F>>) -> Option<Self> {
         let mut lower = entries.iter().enumerate().skip(1);
         let ordered = lower.all(|(place, entry)| !entry.precedes(&entries[(place - 1) / 2]));
@@ -67,7 +67,7 @@ impl<F> Heap<F> {
         self.rise(self.entries.len() - 1);
     }
 
-    /// Counts a hit of the fragment at an index; entries after it stay where they are.
+    /// Counts a hit of the fragment at an index; only entries at lower indices may change their index.
     pub fn count_hit(&mut self, place: usize) {
         self.entries[place].hits += 1;
         self.rise(place);

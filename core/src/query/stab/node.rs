@@ -31,7 +31,8 @@ pub(super) struct Node<S: Cast<D>, const D: usize> {
     pub(super) visits: AtomicU64,
     pub(super) depth: u32,
     pub(super) content: Content<S, D>,
-    /// The facets of a long list, ascending, each with its index in the list when this table was made.
+    /// For a leaf with a long list, its facets, ascending, each with its index in the list at the time when
+    /// this table was made.
     places: OnceLock<Vec<(u32, u32)>>,
 }
 
@@ -73,7 +74,7 @@ impl<S: Cast<D>, const D: usize> Node<S, D> {
         list.place(facet, places[at].1 as usize)
     }
 
-    /// Drops the table of indices in a list that is divided.
+    /// Drops the table of facet indices of a list that is being divided.
     pub(super) fn forget_places(&mut self) {
         self.places = OnceLock::new();
     }

@@ -1,4 +1,5 @@
-//! The record of a stab tree in numbers, from which the tree over the same facets is made again.
+//! The counters and cuts of a stab tree as plain numbers, from which the tree over the same facets is made
+//! again.
 
 use std::sync::atomic::Ordering;
 
@@ -104,7 +105,7 @@ impl Record {
     }
 }
 
-/// Sorts a node's list into the record's order; `None` if the record names different facets.
+/// Sorts the list of a node into the order in a record; `None` if the record names different facets.
 fn restore<S: Cast<D>, const D: usize>(
     content: &mut Content<S, D>,
     stored: &ContentRecord,

@@ -24,10 +24,10 @@ enum StackEntry {
     Cut { node: NodeId, from: f64, far: Far },
 }
 
-/// What lies on the stack of a ray's walk directly below a cut.
+/// The part of a ray's walk that waits, on its stack, directly below a cut.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Far {
-    /// Not the child on the far side of the cut.
+    /// A part other than the child on the far side of the cut.
     No,
     /// The child on the far side of the cut, by its index.
     Child(usize),

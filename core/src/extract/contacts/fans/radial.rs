@@ -14,8 +14,8 @@ type Wide = Int<4>;
 struct Spoke {
     half: usize,
     forward: bool,
-    /// The triangle's normal, reversed if the half-edge is backward: so it always lies a quarter turn in the
-    /// same direction from the triangle.
+    /// The triangle's normal, reversed if the half-edge is backward: for every triangle this vector is a
+    /// quarter turn around the edge from the triangle, in the same direction.
     across: [i128; 3],
 }
 
@@ -29,10 +29,10 @@ struct Axis {
 
 /// Pairs the half-edges of one edge, so that the triangles of a pair bound a wedge of the inside.
 ///
-/// Counterclockwise around the edge, the inside begins at a backward half-edge and ends at a
-/// forward one. Among triangles in one half-plane the forward ones come first, so that walls
-/// without thickness separate both sides. Beginnings and ends match like parentheses, so no pairs
-/// cross where wedges overlap.
+/// Counterclockwise around the edge, the inside begins at a backward half-edge and ends at a forward one.
+/// Among triangles in one half-plane those with forward half-edges come first, so that a wall without
+/// thickness separates its two sides. Backward and forward half-edges match like opening and closing
+/// parentheses, so that no two pairs cross where wedges overlap.
 ///
 /// # Order
 /// Depends on the half-edges' numbers only among triangles in one half-plane.
@@ -75,8 +75,8 @@ fn match_wedges(spokes: &[Spoke]) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// Returns the index from which, in cyclic order around an edge, no wedge of the inside ends before it has
-/// begun.
+/// Returns the index of the half-edge at which matching starts: in cyclic order from there, every wedge of
+/// the inside begins before it ends.
 fn start(spokes: &[Spoke]) -> usize {
     let (mut depth, mut lowest, mut start) = (0_i64, 0_i64, 0);
     for (k, spoke) in spokes.iter().enumerate() {
@@ -123,8 +123,8 @@ impl Axis {
         by_half.then_with(|| self.turn(u, v).order().reverse())
     }
 
-    /// Returns 0 if `u` has the direction of `zero`, 1 if the angle from `zero` is below 180 degrees, 2 if
-    /// it is 180 degrees, and 3 if it is larger.
+    /// Returns 0 if `u` has the direction of `zero`; else the class of the angle from `zero` to `u`: 1 below
+    /// 180 degrees, 2 at 180 degrees, 3 above.
     fn half(&self, zero: &[i128; 3], u: &[i128; 3]) -> u8 {
         match self.turn(zero, u) {
             Sign::Positive => 1,

@@ -25,7 +25,8 @@ const STEPS: [[f64; 3]; 14] = [
 ];
 
 impl Mending {
-    /// Returns the changes that may remove a fault: first merges, then swaps of edges, then translations.
+    /// Returns the changes to try for a pair of faulty triangles: first merges of vertices, then swaps of
+    /// edges, then translations.
     pub(super) fn edits(&self, fault: [u32; 2]) -> Vec<Edit> {
         let mut corners: Vec<VertexId> = fault
             .iter()
@@ -44,7 +45,8 @@ impl Mending {
         edits
     }
 
-    /// Returns the merges of two corners within reach of each other, the nearest pairs first.
+    /// Returns the merges of two corners that are within the allowed distance of each other, the nearest
+    /// pairs first.
     fn merges(&self, corners: &[VertexId]) -> Vec<Edit> {
         let place = |v: VertexId| &self.vertices[v.index()];
         let mut pairs: Vec<(f64, VertexId, VertexId)> = Vec::new();
@@ -96,8 +98,8 @@ impl Mending {
         Some(edit)
     }
 
-    /// Gives each closed fan, around vertices whose triangles were removed, a vertex of its own; `None` if a
-    /// fan is open.
+    /// Gives each closed ring of triangles (fan) around a vertex its own copy of the vertex, where triangles
+    /// were removed; `None` if the triangles around a vertex form no closed ring.
     fn part_fans(&self, edit: &mut Edit, to: VertexId) -> Option<()> {
         let gone = edit.triangles.iter().filter(|m| m.1.is_none());
         let mut loose: Vec<VertexId> = gone
@@ -149,8 +151,8 @@ impl Mending {
         })
     }
 
-    /// Replaces the common edge of a triangle and its neighbour by the other diagonal, if the two diagonals
-    /// nearly meet; `None` otherwise.
+    /// Replaces the common edge of a triangle and its neighbour by the other diagonal of their quadrilateral;
+    /// `None` unless the two diagonals nearly meet.
     fn swap(&self, t: u32, edge: usize) -> Option<Edit> {
         let corners = self.triangles[t as usize]?;
         let (a, b, c) = (
@@ -172,7 +174,7 @@ impl Mending {
         })
     }
 
-    /// Returns the translations of a vertex by one spacing that stay within reach.
+    /// Returns the translations of a vertex by one spacing of doubles that stay within the allowed distance.
     fn moves(&self, v: VertexId) -> Vec<Edit> {
         if self.fixed[v.index()] {
             return Vec::new();
@@ -216,8 +218,8 @@ fn cancel_opposites(made: &mut [(u32, Option<[VertexId; 3]>)]) {
     }
 }
 
-/// Divides the triangles around a vertex into closed fans, the fan of the first triangle first; `None` if a
-/// fan is open.
+/// Divides the triangles around a vertex into closed rings (fans), the ring of the first triangle first;
+/// `None` if they form no closed rings.
 fn fans(v: VertexId, around: Vec<Numbered>) -> Option<Vec<Vec<Numbered>>> {
     let turned = |t: &[VertexId; 3]| {
         let at = t.iter().position(|c| *c == v).unwrap_or(0);

@@ -77,13 +77,14 @@ pub struct Mending {
     /// For each vertex the triangles around it, ascending.
     pub(super) stars: Vec<Star>,
     pub(super) flat: BTreeSet<u32>,
-    /// Each crossing pair in both orders, so that the pairs of a triangle are a range.
+    /// Each crossing pair of triangles in both orders, so that the pairs that contain one triangle are a
+    /// contiguous range.
     pub(super) crossings: BTreeSet<[u32; 2]>,
     pub(super) halves: HashMap<[VertexId; 2], u32>,
     pub(super) precision: Precision,
     /// The distance of neighbouring floating-point numbers at the largest coordinate.
     pub(super) spacing: f64,
-    /// For each vertex, how far it, or a vertex merged into it, was moved at most.
+    /// For each vertex, a bound on how far the vertex, or any vertex merged into it, was moved.
     pub(super) drifts: Vec<f64>,
     pub(super) work: usize,
     pub(super) moved: HashSet<VertexId>,
@@ -97,8 +98,8 @@ pub(super) struct Edit {
     /// The vertex into which another vertex is merged, and the distance by which that moves the other
     /// vertex.
     pub(super) drift: Option<(VertexId, f64)>,
-    /// For each vertex to be added, the vertex that it copies, because fans around it are no longer
-    /// connected.
+    /// For each vertex to be added, the vertex that it copies: the triangles around that vertex are no longer
+    /// connected and need two vertices.
     pub(super) copies: Vec<VertexId>,
 }
 
@@ -158,8 +159,8 @@ impl Mending {
         crossings.copied().chain(flat).collect()
     }
 
-    /// Bounds how far a vertex would be, moved to `place`, from its original position and from those of
-    /// vertices merged into it.
+    /// Returns a bound on the distance of `place` from the original position of a vertex, and from the
+    /// original positions of all vertices merged into it.
     pub(super) fn drift(&self, v: VertexId, place: &Point) -> f64 {
         self.drifts[v.index()] + distance(&self.vertices[v.index()], place)
     }
@@ -185,7 +186,7 @@ impl Mending {
     }
 }
 
-/// The two orders of a pair.
+/// Returns a pair of triangles in both orders.
 pub(super) fn both([t, u]: [u32; 2]) -> [[u32; 2]; 2] {
     [[t, u], [u, t]]
 }

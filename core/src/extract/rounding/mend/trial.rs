@@ -80,8 +80,8 @@ impl Mending {
         }
     }
 
-    /// Returns the crossings and the flat triangles of the ascending triangles `some`; `None` if they are at
-    /// least `most` together.
+    /// Returns the crossings and the flat triangles among `some`, which ascends; `None` if there are at least
+    /// `most` of them.
     pub(super) fn faults_of(
         &mut self,
         some: &[u32],

@@ -51,8 +51,8 @@ pub trait Affine: Space {
     /// For each corner of a piece of a facet, whether the edge that leaves the corner lies on an edge of the
     /// facet.
     ///
-    /// `facet` has the facet's corners; edges that `seams` marks do not count. In 2D: for each end of the
-    /// piece, whether it is an end of the facet.
+    /// `facet` has the facet's corners; facet edges that `seams` marks count as not on the facet's border. In
+    /// 2D: for each end of the piece, whether it is an end of the facet.
     fn original_edges(piece: &Self::Fragment, facet: &[Lattice], seams: &[bool]) -> Vec<bool>;
 
     /// Return how `piece` lies relative to `cut`, without computing its parts.

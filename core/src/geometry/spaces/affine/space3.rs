@@ -14,8 +14,8 @@ use crate::geometry::side::Split;
 use crate::geometry::spaces::dim3::Dim3;
 use crate::geometry::spaces::space::Space;
 
-/// The plane through the corners of a convex polygon, from the first consecutive corners that are not on one
-/// line with the first.
+/// The plane through a convex polygon, computed from its first corner and the first two consecutive corners
+/// that are not on one line with it.
 fn plane_of(corners: &[Lattice]) -> Option<Plane> {
     let (first, rest) = corners.split_first()?;
     rest.windows(2)

@@ -11,8 +11,8 @@ use crate::geometry::side::Side;
 /// A viewpoint (x/w, y/w, z/w) with w > 0, or with w = 0 the point at infinity in direction (x, y, z).
 ///
 /// # Exactness
-/// A double is an integer times a power of two. So is each coordinate in lattice steps, except for a power of
-/// ten that goes into the denominator: nothing is snapped or rounded.
+/// A double is an integer times a power of two. In lattice steps each coordinate is such a number times a
+/// power of ten. A negative power goes into w, so that nothing is snapped or rounded.
 #[derive(Clone, Debug)]
 pub struct Viewpoint {
     approx: [f64; 4],
