@@ -146,7 +146,10 @@ def closed(number: int) -> Any:
         (["union", "-", "a.off", "--from", "off", "-o", "x.ply"], b"-: the file is empty.\n"),
         (["info", "-", "--from", "stl"], b"-: the file is empty.\n"),
         (["render", "-", "--from", "stl", "-o", "x.svg"], b"-: the file is empty.\n"),
-        (["report", "-", "-o", "x.md"], b"-: there is no case in these results.\n"),
+        (
+            ["report", "-", "-o", "x.md"],
+            b"-: the results contain no case; run bspcsg crosscheck --results first.\n",
+        ),
     ],
 )
 def test_a_closed_input_is_an_empty_one(folder: Path, arguments: list[str], said: bytes) -> None:
