@@ -246,10 +246,10 @@ pub fn fill(
         let (bottom, top) = (cell.low(), cell.high());
         let a = each_axis(|i| low[i].max(bottom[i]));
         let b = each_axis(|i| high[i].min(top[i]));
-        let Some(difference) = count(&a, &b).and_then(|part| rest.checked_sub(part)) else {
+        let Some(remaining) = count(&a, &b).and_then(|part| rest.checked_sub(part)) else {
             return false;
         };
-        rest = difference;
+        rest = remaining;
     }
     rest == 0
 }

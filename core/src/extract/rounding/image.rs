@@ -7,7 +7,7 @@
 use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::extent::Extent;
-use crate::geometry::doubles::vector::{cross, difference, dot, normal};
+use crate::geometry::doubles::vector::{cross, difference, dot, normal, unit};
 use crate::geometry::doubles::{Point, Triangle};
 use crate::geometry::plane::Lattice;
 use crate::mesh::terrains::is_needle;
@@ -48,7 +48,7 @@ impl Image {
         let numbers = 0..as_number(count);
         let step = count.div_ceil(TRIANGLES_SAMPLED).max(1);
         let sample: Vec<Triangle> = numbers.clone().step_by(step).map(&corners).collect();
-        let normals: Vec<Point> = sample.iter().map(normal).filter_map(unit).collect();
+        let normals: Vec<Point> = sample.iter().map(normal).filter_map(|n| unit(&n)).collect();
         let axes = axes(&normals).or_else(|| axes_across_needles(&sample));
         let frame = axes.map(|axes| (corners(0)[0], axes));
         let extent = |k: u32| Extent::of(&corners(k).map(|p| turned(frame.as_ref(), &p)));
@@ -95,11 +95,6 @@ fn turned(frame: Option<&(Point, [Point; 3])>, p: &Point) -> Point {
     })
 }
 
-fn unit(v: Point) -> Option<Point> {
-    let size = dot(&v, &v).sqrt();
-    (size > 0.0 && size.is_finite()).then(|| v.map(|x| x / size))
-}
-
 /// Returns three perpendicular directions, the first two of which are the most common normals; `None` if few
 /// normals are parallel to these directions, or if they are the coordinate axes.
 fn axes(normals: &[Point]) -> Option<[Point; 3]> {
@@ -131,7 +126,7 @@ fn axes_across_needles(sample: &[Triangle]) -> Option<[Point; 3]> {
     if SUITED_IF_ONE_IN * (suited(&first) + second.as_ref().map_or(0, suited)) < sample.len() {
         return None;
     }
-    let across = unit(cross(&first, &second.unwrap_or(beside(&first))))?;
+    let across = unit(&cross(&first, &second.unwrap_or(beside(&first))))?;
     let in_plane = |a: &Point| cross(a, &across);
     let third = second.map_or(first, |second| in_plane(&second));
     Some([across, in_plane(&first), third])
@@ -143,7 +138,7 @@ fn second_edge_direction(triangle: &Triangle) -> Option<Point> {
     let [a, b, c] = triangle;
     let mut edges = [difference(b, a), difference(c, b), difference(a, c)];
     edges.sort_unstable_by(|e, f| dot(e, e).total_cmp(&dot(f, f)));
-    is_needle(triangle).then_some(edges[1]).and_then(unit)
+    is_needle(triangle).then(|| unit(&edges[1])).flatten()
 }
 
 /// Returns an axis that is not parallel to a direction.

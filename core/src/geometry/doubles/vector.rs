@@ -30,6 +30,12 @@ pub fn cross(u: &Point, v: &Point) -> Point {
     [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
+/// Returns a vector scaled to length 1; `None` for the zero vector and for infinite lengths.
+pub fn unit(v: &Point) -> Option<Point> {
+    let length = dot(v, v).sqrt();
+    (length > 0.0 && length.is_finite()).then(|| v.map(|x| x / length))
+}
+
 /// The normal of a triangle by the right-hand rule, its length twice the triangle's area.
 #[inline]
 pub fn normal([a, b, c]: &Triangle) -> Point {

@@ -10,9 +10,9 @@ use crate::interrupt::spend;
 /// The most boxes that are compared all with all; halving the space of fewer boxes costs about as much.
 const MAX_COMPARED: usize = 256;
 
-/// The most boxes that are compared all with all if halving does not separate them; a sweep of fewer boxes
-/// costs about as much.
-pub const MAX_COMPARED_UNSEPARATED: usize = 384;
+/// The most boxes that are compared all with all if halving does not separate them; clipping fewer elements
+/// to smaller cells costs about as much.
+const MAX_COMPARED_UNSEPARATED: usize = 384;
 
 /// The number of pairs of boxes compared per unit of work, after which the program checks whether to stop.
 const PAIRS_PER_UNIT: usize = 16;

@@ -10,7 +10,7 @@ use super::clip::part_within;
 use super::BoundedElement;
 use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;
-use crate::geometry::doubles::vector::{cross, dot};
+use crate::geometry::doubles::vector::{cross, dot, unit};
 use crate::geometry::doubles::{Point, Triangle};
 use crate::interrupt::spend;
 
@@ -199,7 +199,9 @@ impl Frame {
 
     /// Returns the turned and scaled box around the box of an element (a triangle or part of a face).
     fn boxed(&self, number: u32, element: &BoundedElement) -> BoxedElement {
-        let [low, high] = [&element.low, &element.high].map(|end| end.map(as_double));
+        let low = element.low.map(as_double);
+        // Coordinates may be rounded down.
+        let high = element.high.map(|x| as_double(x) + 1.0);
         let end = |direction: &Point, towards: [&Point; 2]| {
             let at = |i: usize| towards[usize::from(direction[i] > 0.0)][i];
             dot(direction, &each_axis(at)) * self.scale
@@ -220,12 +222,6 @@ fn longest_edge(corners: &Triangle) -> Point {
     (0..3).map(edge).max_by(longer).unwrap_or_default()
 }
 
-/// Returns a vector scaled to length 1; `None` for the zero vector and for infinite lengths.
-fn unit(v: &Point) -> Option<Point> {
-    let size = dot(v, v).sqrt();
-    (size > 0.0 && size.is_finite()).then(|| v.map(|x| x / size))
-}
-
 impl Iterator for Crowd {
     type Item = Fragments;
 
@@ -238,8 +234,8 @@ impl Iterator for Crowd {
             if whole.are_of_one_operand() {
                 continue;
             }
-            let many = whole.elements.len() > MAX_FRAGMENTS_COMPARED;
-            match many.then(|| self.divide(&whole)).flatten() {
+            let is_crowded = whole.elements.len() > MAX_FRAGMENTS_COMPARED;
+            match is_crowded.then(|| self.divide(&whole)).flatten() {
                 Some(parts) => self.open.extend(parts),
                 None => return Some(whole),
             }
@@ -256,13 +252,13 @@ impl Fragments {
         if division.remaining_pairs() <= MAX_SHARE_OF_PAIRS * before {
             return Some([MAX_VAIN_DIVISIONS; 2]);
         }
-        let difference = self.patience.checked_sub(1);
-        let difference = difference.filter(|_| division.remaining_pairs() <= before)?;
+        let remaining = self.patience.checked_sub(1);
+        let remaining = remaining.filter(|_| division.remaining_pairs() <= before)?;
         let of_part = |own: f64| {
             if 2.0 * own <= before {
                 MAX_VAIN_DIVISIONS
             } else {
-                difference
+                remaining
             }
         };
         Some(division.pairs.map(of_part))

@@ -19,10 +19,10 @@ pub struct BoundedElement {
     /// The index of the operand that the triangle or part belongs to.
     pub operand: usize,
     /// The lowest coordinate on each axis of the triangle or part inside the cell, relative to the cell's low
-    /// corner.
+    /// corner; rounded down.
     pub low: Lattice,
     /// The highest coordinate on each axis of the triangle or part inside the cell, relative to the cell's
-    /// low corner.
+    /// low corner; rounded down.
     pub high: Lattice,
     /// The corners of a triangle that contains the element, relative to the cell's low corner; `None` if only
     /// the box is known.
@@ -236,6 +236,49 @@ mod tests {
         };
         let (half, whole) = (pairs(1000), pairs(2000));
         assert!(whole < 3 * half && whole < 50 * 2000, "{half} {whole}");
+    }
+
+    /// Two bundles of needles across each other, all inside one step of the boxes' coordinates.
+    #[test]
+    fn needles_smaller_than_a_step_are_found() {
+        let needle = |number: u32| {
+            let at = 0.2 + 0.003 * f64::from(number % 200);
+            let corners = [[0.1, at, 0.4], [0.9, at, 0.5], [0.9, at, 0.6]];
+            let corners = if number < 200 {
+                corners
+            } else {
+                corners.map(|[x, y, z]| [y, x, 1.0 - z])
+            };
+            BoundedElement {
+                operand: usize::from(number >= 200),
+                low: [0; 3],
+                high: [0; 3],
+                corners: Some(corners),
+            }
+        };
+        let boxed = |k: u32| {
+            let e = needle(k);
+            BoxedElement::new(e.operand, k, [&e.low, &e.high], 0)
+        };
+        let mut found = HashSet::new();
+        pairs(
+            ElementsInBox::of((0..400).map(boxed).collect(), 0),
+            needle,
+            |i, j| {
+                found.insert((i, j));
+                Some(())
+            },
+        );
+        // Where the second bundle is below a needle of the first one, they need not be found.
+        let cross = |i: u32, j: u32| {
+            let height = |x: f64| 0.4 + 0.1 * (x - 0.1) / 0.8..=0.4 + 0.2 * (x - 0.1) / 0.8;
+            let [y, x] = [i, j - 200].map(|k| 0.2 + 0.003 * f64::from(k));
+            let (first, second) = (height(x), height(y));
+            *first.end() >= 1.0 - second.end() && 1.0 - second.start() >= *first.start()
+        };
+        let all = (0..200).flat_map(|i| (200..400).map(move |j| (i, j)));
+        let all: Vec<(u32, u32)> = all.filter(|(i, j)| cross(*i, *j)).collect();
+        assert!(all.len() > 1000 && all.iter().all(|pair| found.contains(pair)));
     }
 
     proptest! {
