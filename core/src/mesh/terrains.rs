@@ -82,7 +82,7 @@ fn needles_terrains(faces: &Faces, needles: &[u32]) -> Vec<u32> {
 }
 
 /// Return whether a triangle is at least `MIN_NEEDLE_RATIO` times as long as high.
-pub fn is_needle(triangle: &Triangle) -> bool {
+fn is_needle(triangle: &Triangle) -> bool {
     let [a, b, c] = triangle;
     let square = |p: &Point, q: &Point| (0..3).map(|i| (p[i] - q[i]) * (p[i] - q[i])).sum();
     let longest = f64::max(f64::max(square(a, b), square(b, c)), square(c, a));
