@@ -332,7 +332,10 @@ fn a_mesh_says_that_it_crosses_itself_without_being_united() {
     let result = applied(SetOp::Difference, &bars, &tool);
     assert!(bars.simple().get().is_none(), "no cell showed it");
     mesh(&result).expect("bounded");
-    assert_eq!(bars.simple().get(), Some(&false));
     assert_eq!(result.simple().get(), Some(&false));
+    assert!(
+        bars.simple().get().is_none(),
+        "the places of the crossings sufficed"
+    );
     assert!(bars.united().get().is_none() && result.united().get().is_none());
 }

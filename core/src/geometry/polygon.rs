@@ -133,8 +133,8 @@ type Corners = SmallVec<[Corner; 5]>;
 /// The sides of a plane on which the corners of a polygon lie.
 pub type Sides = SmallVec<[Side; 8]>;
 
-/// The ends of a segment inside a polygon.
-type Chord = SmallVec<[Arc<Vertex>; 2]>;
+/// The ends of a segment of a polygon.
+pub type Chord = SmallVec<[Arc<Vertex>; 2]>;
 
 /// Return two flags: whether any of the sides is `Minus`, and whether any is `Plus`.
 pub fn straddle(sides: &[Side]) -> (bool, bool) {
@@ -270,9 +270,10 @@ impl Polygon {
         self.corners.iter().map(|c| c.at.side_of(cut)).collect()
     }
 
-    /// The ends of the segment in which a plane cuts the polygon, in order along its border; corners lie
-    /// strictly on both sides of the plane.
-    fn chord(&self, cut: &Arc<Plane>, sides: &[Side]) -> Chord {
+    /// The points of the polygon's border in a plane that does not contain it, in order along the border: the
+    /// ends of the segment in which the plane cuts or touches the polygon, or a corner. `sides` are the sides on
+    /// which the corners lie.
+    pub fn chord(&self, cut: &Arc<Plane>, sides: &[Side]) -> Chord {
         let n = self.corners.len();
         let mut ends = Chord::new();
         for i in 0..n {

@@ -149,9 +149,18 @@ fn evaluate_imported_pair(
     counters.count_leaf(found.compared);
     let named = operands.iter().map(Solid::used_sources).max().unwrap_or(0);
     let solid = Solid::new(found.root, pitch, sources.table().clone(), false);
+    let unites = |(operand, is_united): (&Solid, bool)| {
+        let operand = operand.clone();
+        if is_united {
+            operand.with_reduced(true)
+        } else {
+            operand
+        }
+    };
+    let operands: Vec<Solid> = operands.iter().zip(found.resolved).map(unites).collect();
     let solid = solid
         .without_unused_sources(named)
-        .resulting_from(operands)
+        .resulting_from(&operands)
         .with_effort(counters.elements_solved());
     Ok((solid, counters))
 }
@@ -235,14 +244,17 @@ pub fn overlaps_itself(source: &Arc<Source>) -> Result<bool> {
 /// # Errors
 /// `Internal`.
 pub fn is_simple(solid: &Solid, suspects: &[Lattice]) -> Result<bool> {
+    if let Some(known) = solid.known_simple() {
+        return Ok(known);
+    }
+    if overlaps_itself_at(solid, suspects) {
+        return Ok(*solid.simple().get_or_make(|| false));
+    }
     if let Some(known) = simple_by_meshes(solid)? {
         return Ok(known);
     }
     if let Some(found) = is_simple_mesh(solid) {
         return Ok(*solid.simple().get_or_make(|| found));
-    }
-    if overlaps_itself_at(solid, suspects) {
-        return Ok(*solid.simple().get_or_make(|| false));
     }
     normalize(solid, Rule::Positive)?;
     Ok(solid.is_reduced())
@@ -282,11 +294,8 @@ pub fn union_with_itself(solid: &Solid) -> Result<Option<Solid>> {
 /// Returns whether the solid does not overlap itself, if this is known or follows from checking the meshes it
 /// was made of; otherwise `None`.
 fn simple_by_meshes(solid: &Solid) -> Result<Option<bool>> {
-    if let Some(known) = solid.simple().get() {
-        return Ok(Some(*known));
-    }
-    if solid.is_reduced() {
-        return Ok(Some(true));
+    if let Some(known) = solid.known_simple() {
+        return Ok(Some(known));
     }
     let Some(meshes) = solid.unchecked_meshes() else {
         return Ok(None);

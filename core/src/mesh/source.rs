@@ -31,6 +31,7 @@ pub struct Source {
     cell: Cached<Option<Cell>>,
     snapped: [Cached<bool>; 8],
     close: Cached<Vec<[u32; 2]>>,
+    own_pairs: Cached<Option<Vec<[FaceId; 2]>>>,
     images: Images<Self>,
     findings: Vec<Finding>,
 }
@@ -67,6 +68,7 @@ impl Source {
             cell: Cached::new(),
             snapped: Default::default(),
             close: Cached::new(),
+            own_pairs: Cached::new(),
             images: Images::default(),
             findings,
         }
@@ -267,6 +269,12 @@ impl Source {
     /// The pairs of faces that touch on the lattice but share no edge; empty if not yet computed.
     pub fn close_pairs(&self) -> &Cached<Vec<[u32; 2]>> {
         &self.close
+    }
+
+    /// The pairs of faces that may share more than corners and edges; the cached value is `None` if they are
+    /// too many to be listed.
+    pub fn own_pairs(&self) -> &Cached<Option<Vec<[FaceId; 2]>>> {
+        &self.own_pairs
     }
 
     /// The pairing of half-edges with their mates, computed on first use; `None` for a half-space.

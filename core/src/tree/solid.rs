@@ -270,6 +270,12 @@ impl Solid {
         &self.simple
     }
 
+    /// Whether the solid is reduced, if this is known; else `None`.
+    pub fn known_simple(&self) -> Option<bool> {
+        let known = || self.is_reduced().then_some(true);
+        self.simple.get().copied().or_else(known)
+    }
+
     /// The union of the solid with itself, for solids that overlap themselves, once it is computed; shared by
     /// clones.
     pub fn united(&self) -> &Cached<Self> {

@@ -43,7 +43,7 @@ pub(super) struct BoxTree {
 }
 
 /// A node of a tree of boxes: its level, and its index in this level.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Node {
     level: usize,
     index: usize,
@@ -214,9 +214,9 @@ impl BoxTree {
         }
     }
 
-    /// Calls `visit` with blocks of pairs of triangles, one index in each tree, whose boxes and slabs meet.
-    /// Returns the results in an order that depends only on the trees, or the first error, which ends a task
-    /// early.
+    /// Calls `visit` with blocks of pairs of triangles, one index in each tree, whose boxes and slabs meet; if
+    /// the trees are one and the same, each pair of different triangles occurs once. Returns the results in an
+    /// order that depends only on the trees, or the first error, which ends a task early.
     pub(super) fn each_block<T: Send, E: Send>(
         &self,
         other: &Self,
@@ -255,6 +255,12 @@ impl BoxTree {
         let (ours, theirs) = (self.at(a), other.at(b));
         if a.level == 0 && b.level == 0 {
             found.push([a, b]);
+        } else if self.is_one_node(other, [a, b]) {
+            for (i, child) in self.children(a).enumerate() {
+                let others = self.children(a).skip(i);
+                let met = others.filter(|n| self.at(child).meets(self.at(*n)));
+                found.extend(met.map(|n| [child, n]));
+            }
         } else if b.level > a.level || b.level == a.level && theirs.extent_sum() > ours.extent_sum()
         {
             let met = other.children(b).filter(|n| ours.meets(other.at(*n)));
@@ -263,6 +269,11 @@ impl BoxTree {
             let met = self.children(a).filter(|n| theirs.meets(self.at(*n)));
             found.extend(met.map(|n| [n, b]));
         }
+    }
+
+    /// Returns true if both nodes are the same node of one tree.
+    fn is_one_node(&self, other: &Self, [a, b]: [Node; 2]) -> bool {
+        std::ptr::eq(self, other) && a == b
     }
 
     fn blocks_below<T, E>(
@@ -289,8 +300,9 @@ impl BoxTree {
 
     fn pairs_of_leaves(&self, other: &Self, [a, b]: [Node; 2], found: &mut Vec<[u32; 2]>) {
         let theirs = other.at(b);
+        let is_one = self.is_one_node(other, [a, b]);
         for i in self.leaves(a).filter(|i| self.bounds[*i].meets(theirs)) {
-            for j in other.leaves(b) {
+            for j in other.leaves(b).filter(|j| !is_one || i < *j) {
                 if self.bounds[i].meets(&other.bounds[j]) && !self.slabs[i].miss(&other.slabs[j]) {
                     found.push([as_number(i), as_number(j)]);
                 }
@@ -327,6 +339,27 @@ mod tests {
                 boxes && !ours.slabs[i].miss(&theirs.slabs[j])
             };
             let all = (0..a.len()).flat_map(|i| (0..b.len()).map(move |j| (i, j)));
+            let all = all.filter(|(i, j)| met(*i, *j));
+            let all: Vec<[u32; 2]> = all.map(|(i, j)| [as_number(i), as_number(j)]).collect();
+            assert_eq!(found, all);
+        }
+    }
+
+    #[test]
+    fn a_tree_compared_with_itself_has_each_pair_once() {
+        for count in [1, 4, 5, 90, 400] {
+            let tree = triangles(count, 5);
+            let tree = BoxTree::new(&tree).with_slabs(&tree, &[0.0; 3]);
+            let visit = |pairs: &[[u32; 2]]| Ok::<_, ()>(pairs.to_vec());
+            let found = tree.each_block(&tree, WorkSize::Nothing, visit);
+            let mut found = found.expect("no error").concat();
+            found.iter_mut().for_each(|pair| pair.sort_unstable());
+            found.sort_unstable();
+            let met = |i: usize, j: usize| {
+                tree.bounds[i].meets(&tree.bounds[j]) && !tree.slabs[i].miss(&tree.slabs[j])
+            };
+            let count = count as usize;
+            let all = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
             let all = all.filter(|(i, j)| met(*i, *j));
             let all: Vec<[u32; 2]> = all.map(|(i, j)| [as_number(i), as_number(j)]).collect();
             assert_eq!(found, all);

@@ -99,6 +99,15 @@ impl<'a> Operand<'a> {
     pub(super) fn tree(&self) -> Candidates {
         Candidates::of(self, &self.mesh.face_ids().collect::<Vec<_>>())
     }
+
+    /// Returns some faces of the mesh, prepared to be compared with each other.
+    pub(super) fn comparable(&self, faces: &[FaceId]) -> Candidates {
+        let mut made = Candidates::of(self, faces);
+        made.tree = made
+            .tree
+            .with_slabs(&made.triangles, &self.bounds[0].map(as_double));
+        made
+    }
 }
 
 impl FacesInWindow {

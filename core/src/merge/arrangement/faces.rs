@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap as HashMap;
-use smallvec::SmallVec;
+use smallvec::{smallvec, SmallVec};
 
-use super::segments::{Cover, Line, MeetingPoint, Segment};
-use super::surfaces::Surfaces;
-use super::windings::Probe;
+use super::contacts::{Cover, Line, MeetingPoint, Segment};
+use super::facets::{FacetId, Facets};
+use super::keep_rule::{Numbers, Sides};
 use crate::arith::convert::as_number;
 use crate::arith::Sign;
 use crate::geometry::edge::{LatticeEdge, Ring};
@@ -16,28 +16,29 @@ use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Carrier;
 use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
-use crate::merge::division::{axes, Defect, Division, PositionInPolygon, Triangulation};
+use crate::merge::division::{
+    axes, cell_with_probe, Defect, Division, PositionInPolygon, Probe, Triangulation,
+};
 use crate::merge::profile::Declined;
 use crate::mesh::handle::VertexId;
 
 /// The exact points and planes that the divisions of all faces share.
 #[derive(Debug)]
 pub(super) struct SharedGeometry<'a> {
-    pub(super) surfaces: &'a Surfaces<'a>,
+    pub(super) facets: &'a Facets<'a>,
     pub(super) points: &'a [MeetingPoint],
     /// For each point its exact position.
     pub(super) vertices: Vec<Arc<Vertex>>,
-    /// The planes of the divided faces, by face number (faces of both operands are numbered together).
+    /// The planes of the divided facets.
     pub(super) planes: Planes,
 }
 
-/// Planes of faces, by face number (faces of both operands are numbered together).
-pub(super) type Planes = HashMap<u32, Arc<Plane>>;
+pub(super) type Planes = HashMap<FacetId, Arc<Plane>>;
 
 /// A face to be divided, with the segments that divide it and the coplanar faces that cover it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face<'a> {
-    pub(super) number: u32,
+    pub(super) facet: FacetId,
     pub(super) operand: usize,
     pub(super) corners: [Lattice; 3],
     pub(super) vertices: [VertexId; 3],
@@ -46,27 +47,33 @@ pub(super) struct Face<'a> {
     pub(super) covers: &'a [Cover],
 }
 
-/// A face divided into triangular cells, with the winding numbers on both sides of each cell.
+/// A face divided into triangular cells, with winding numbers on both sides of each cell.
 #[derive(Debug)]
 pub(super) struct Arrangement<'a> {
     pub(super) face: Face<'a>,
     division: Division,
-    pub(super) cells: Vec<CellNumbers>,
+    /// The winding numbers of each operand.
+    numbers: SmallVec<[CellNumbers; 2]>,
+    /// For each cell, whether a facet of the same operand with a lower number covers it; empty if none does.
+    is_of_earlier: Vec<bool>,
 }
 
-/// The winding numbers in front of and behind a cell of a face: the other operand's, or for one mesh its own.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct CellNumbers {
-    /// The winding number in front of the cell, minus the number in front of the face's first cell.
-    pub(super) in_front: i32,
-    /// The winding number behind the cell, minus the number in front of it, without the contribution of the
-    /// face itself.
-    pub(super) behind: i32,
-    /// The number of other faces of the same plane that cover the triangular cell.
-    pub(super) covers: u32,
-    /// Whether a covering face has a lower number than the divided face (faces of both operands are numbered
-    /// together).
-    pub(super) is_of_earlier: bool,
+/// The winding numbers of one operand at the cells of a divided face; a table is empty if all its entries are
+/// zero.
+#[derive(Clone, Debug, Default)]
+struct CellNumbers {
+    /// The number in front of a cell, minus the number in front of the face's first cell.
+    in_front: Vec<i32>,
+    /// The number behind a cell, minus the number in front of it, without the contribution of the face
+    /// itself.
+    behind: Vec<i32>,
+    /// The number of faces of the operand that cover a cell.
+    covers: Vec<u32>,
+}
+
+/// Returns the entry of a table in which missing entries are zero.
+fn entry<T: Copy + Default>(table: &[T], cell: usize) -> T {
+    table.get(cell).copied().unwrap_or_default()
 }
 
 impl<'a> Arrangement<'a> {
@@ -75,20 +82,36 @@ impl<'a> Arrangement<'a> {
     /// # Errors
     /// `Defect` if a segment leaves the face.
     pub(super) fn new(face: Face<'a>, shared: &SharedGeometry) -> Result<Self, Declined> {
+        let operands = shared.facets.operands.len();
         let mut made = Self {
             division: divided(&face, shared)?,
             face,
-            cells: Vec::new(),
+            numbers: smallvec![CellNumbers::default(); operands],
+            is_of_earlier: Vec::new(),
         };
-        made.cells = made.numbers_in_front();
-        made.cover(shared);
+        for operand in 0..operands {
+            made.numbers[operand].in_front = made.numbers_in_front(operand, shared.facets);
+        }
+        for cover in face.covers {
+            made.cover(cover.other, shared.facets);
+        }
         Ok(made)
     }
 
-    /// Returns the winding number in front of the face at one of its corners, minus the number in front of
-    /// the face's first triangular cell.
-    pub(super) fn at_corner(&self, corner: u32) -> i32 {
-        self.cells[self.division.cell_at_corner(corner as usize)].in_front
+    /// Returns the number of triangular cells.
+    pub(super) fn len(&self) -> usize {
+        self.division.len()
+    }
+
+    /// Returns an operand's winding number in front of a cell, minus the number in front of the first cell.
+    pub(super) fn in_front(&self, operand: usize, cell: usize) -> i32 {
+        entry(&self.numbers[operand].in_front, cell)
+    }
+
+    /// Returns an operand's winding number in front of the face at one of its corners, minus the number in
+    /// front of the face's first cell.
+    pub(super) fn at_corner(&self, operand: usize, corner: usize) -> i32 {
+        self.in_front(operand, self.division.cell_at_corner(corner))
     }
 
     /// Returns a triangular cell of the divided face for which `count` finds a winding number at a point
@@ -97,69 +120,84 @@ impl<'a> Arrangement<'a> {
         &mut self,
         count: impl FnMut(&Probe) -> Option<i32>,
     ) -> Option<(usize, i32)> {
-        cell_with_number(self.division.triangulation(), self.face.plane, count)
+        cell_with_probe(self.division.triangulation(), self.face.plane, count)
     }
 
-    /// Returns for each triangular cell of the divided face the winding number in front of it, relative to
-    /// the first cell.
-    fn numbers_in_front(&self) -> Vec<CellNumbers> {
-        let numbers = self
-            .division
-            .spread(0, |here, cell, edge| here - self.change(cell, edge));
-        let cell = |in_front: i32| CellNumbers {
-            in_front,
-            ..CellNumbers::default()
+    /// Returns an operand's winding numbers in front of the cells, minus the number in front of the first
+    /// cell; empty if the operand has no face along a segment.
+    fn numbers_in_front(&self, operand: usize, facets: &Facets) -> Vec<i32> {
+        let is_of = |segment: &Segment| facets.operand_of(segment.other) == operand;
+        if !self.face.segments.iter().any(is_of) {
+            return Vec::new();
+        }
+        // The left of a segment is behind the other face, where the number is larger.
+        let change = |(segment, is_along): (usize, bool)| match &self.face.segments[segment] {
+            segment if !is_of(segment) || !segment.line.changes_number() => 0,
+            _ if is_along => 1,
+            _ => -1,
         };
-        numbers.into_iter().map(cell).collect()
+        self.division.spread(0, |here, cell, edge| {
+            here - self
+                .division
+                .along_edge(cell, edge)
+                .map(change)
+                .sum::<i32>()
+        })
     }
 
-    /// Returns the winding number in front of a triangular cell of the face minus the number in front of its
-    /// neighbour across an edge: the left of a segment is behind the other face, where the number is larger.
-    fn change(&self, cell: usize, edge: usize) -> i32 {
-        let change = |(segment, is_along): (usize, bool)| match self.face.segments[segment].line {
-            Line::Directed | Line::Touching { in_front: true, .. } => {
-                if is_along {
-                    1
-                } else {
-                    -1
-                }
-            }
-            Line::Touching { .. } | Line::Edge(_) => 0,
-        };
-        self.division.along_edge(cell, edge).map(change).sum()
-    }
-
-    /// Records which triangular cells of the face are covered by other faces of the same plane, and how these
-    /// change the number behind.
-    fn cover(&mut self, shared: &SharedGeometry) {
+    /// Records which cells a facet of the same plane covers, and how it changes the number behind them.
+    fn cover(&mut self, other: FacetId, facets: &Facets) {
         let axis = self.face.plane.main_axis();
         let is_up = self.face.plane.normal()[axis] > 0;
-        for Cover { other, .. } in self.face.covers {
-            let corners = shared.surfaces.corners(*other);
-            let outer =
-                [0, 1, 2].map(|i| Plane::beside_edge(&corners[i], &corners[(i + 1) % 3], axis));
-            let turn = LatticeEdge::new(corners[0], corners[1]).sign_beside(&corners[2], axis);
-            // The third corner lies inside the other face, and shows on which side of its first edge the
-            // inside is.
-            let is_same = (turn == Sign::Negative) == is_up;
-            let outside = Side::from_sign(-turn);
-            for cell in 0..self.cells.len() {
-                let is_out = |v: &Vertex| outer.iter().any(|plane| v.side_of(plane) == outside);
-                if !self.division.corners_of(cell).into_iter().any(is_out) {
-                    let cell = &mut self.cells[cell];
-                    cell.behind += if is_same { 1 } else { -1 };
-                    cell.covers += 1;
-                    cell.is_of_earlier |= *other < self.face.number;
-                }
+        let corners = facets.corners(other);
+        let outer = [0, 1, 2].map(|i| Plane::beside_edge(&corners[i], &corners[(i + 1) % 3], axis));
+        let turn = LatticeEdge::new(corners[0], corners[1]).sign_beside(&corners[2], axis);
+        // The third corner lies inside the other face, and shows on which side of its first edge the inside
+        // is.
+        let is_same = (turn == Sign::Negative) == is_up;
+        let outside = Side::from_sign(-turn);
+        let is_out = |v: &Vertex| outer.iter().any(|plane| v.side_of(plane) == outside);
+        let operand = facets.operand_of(other);
+        let is_earlier = operand == self.face.operand && other < self.face.facet;
+        let cells = self.division.len();
+        let numbers = &mut self.numbers[operand];
+        numbers.behind.resize(cells, 0);
+        numbers.covers.resize(cells, 0);
+        self.is_of_earlier.resize(cells, false);
+        for cell in 0..cells {
+            if !self.division.corners_of(cell).into_iter().any(is_out) {
+                numbers.behind[cell] += if is_same { 1 } else { -1 };
+                numbers.covers[cell] += 1;
+                self.is_of_earlier[cell] |= is_earlier;
             }
         }
     }
 
-    /// Returns the outline of the face's triangular cells for which `is_kept` is true; collinear consecutive
-    /// edges are merged.
-    pub(super) fn outline(&mut self, is_kept: impl Fn(&CellNumbers) -> bool) -> Vec<BareEdge> {
-        let is_kept: Vec<bool> = self.cells.iter().map(is_kept).collect();
-        self.division.outline(&is_kept)
+    /// Returns the winding numbers on both sides of a cell, given those in front of the face's first cell.
+    pub(super) fn sides(&self, cell: usize, first: &Numbers) -> Sides {
+        let with = |numbers: &Numbers, table: fn(&CellNumbers) -> &Vec<i32>| -> Numbers {
+            let pairs = numbers.iter().zip(&self.numbers);
+            pairs.map(|(n, of)| n + entry(table(of), cell)).collect()
+        };
+        let in_front = with(first, |of| &of.in_front);
+        let mut behind = with(&in_front, |of| &of.behind);
+        behind[self.face.operand] += 1;
+        Sides { in_front, behind }
+    }
+
+    /// Returns the number of faces of an operand that cover a cell.
+    pub(super) fn covers(&self, operand: usize, cell: usize) -> u32 {
+        entry(&self.numbers[operand].covers, cell)
+    }
+
+    /// Returns true if a face of the same operand that precedes this one covers a cell.
+    pub(super) fn is_of_earlier(&self, cell: usize) -> bool {
+        entry(&self.is_of_earlier, cell)
+    }
+
+    /// Returns the outline of the cells for which `is_kept` is true; collinear consecutive edges are merged.
+    pub(super) fn outline(&mut self, is_kept: &[bool]) -> Vec<BareEdge> {
+        self.division.outline(is_kept)
     }
 }
 
@@ -191,34 +229,7 @@ pub(super) fn count_in_face(
 ) -> Option<i32> {
     let corners = corners.map(|c| Arc::new(Vertex::lattice(c)));
     let mut face = Triangulation::new(corners.into_iter(), axes(plane));
-    cell_with_number(&mut face, plane, count).map(|(_, number)| number)
-}
-
-/// Returns a triangular cell of a face for which `count` finds a winding number at a point inside the cell,
-/// with this number. Tries the widest cells first, and several points of each, because another surface may
-/// touch the cell at a point.
-fn cell_with_number(
-    cells: &mut Triangulation,
-    plane: &Arc<Plane>,
-    mut count: impl FnMut(&Probe) -> Option<i32>,
-) -> Option<(usize, i32)> {
-    const WEIGHTS: [[f64; 3]; 4] = [
-        [1.0, 1.0, 1.0],
-        [5.0, 3.0, 2.0],
-        [2.0, 5.0, 3.0],
-        [3.0, 2.0, 5.0],
-    ];
-    let mut order: Vec<u32> = (0..as_number(cells.cells().len())).collect();
-    order.sort_by(|a, b| cells.size(*b).total_cmp(&cells.size(*a)));
-    let points = order
-        .into_iter()
-        .flat_map(|cell| WEIGHTS.map(|w| (cell, w)));
-    points.into_iter().find_map(|(cell, weights)| {
-        let probe = Probe::at_coordinates(cells.mean(cell, weights), plane)?;
-        let is_inside = cells.contains(cell, Arc::clone(&probe.point));
-        let number = if is_inside { count(&probe) } else { None };
-        Some((cell as usize, number?))
-    })
+    cell_with_probe(&mut face, plane, count).map(|(_, number)| number)
 }
 
 /// Returns a plane that cuts a face along a segment.
@@ -226,7 +237,7 @@ fn cut(segment: &Segment, face: &Face, shared: &SharedGeometry) -> Arc<Plane> {
     match segment.line {
         Line::Directed | Line::Touching { .. } => Arc::clone(&shared.planes[&segment.other]),
         Line::Edge(edge) => {
-            let corners = shared.surfaces.corners(segment.other);
+            let corners = shared.facets.corners(segment.other);
             let (a, b) = (&corners[edge], &corners[(edge + 1) % 3]);
             let plane = Plane::through_edge(a, b, face.plane.main_axis());
             Arc::new(plane.expect("no edge of a face is parallel to the main axis of its plane"))

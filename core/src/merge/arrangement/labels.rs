@@ -1,4 +1,4 @@
-//! Finds the winding numbers of one operand around the vertices of the other.
+//! Finds the winding numbers of one operand in front of the faces of another, or of its own faces.
 //!
 //! The winding number is the same at all corners of an undivided face, and for divided faces the differences
 //! are known. So one counted number determines the numbers at all connected vertices.
@@ -10,11 +10,12 @@ use smallvec::SmallVec;
 
 use super::candidates::Operand;
 use super::faces::{count_in_face, Arrangement};
-use super::windings::{Probe, Windings};
+use super::windings::Windings;
 use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::Triangle;
 use crate::interrupt::poll;
+use crate::merge::division::Probe;
 use crate::merge::profile::Declined;
 use crate::mesh::handle::{FaceId, VertexId};
 
@@ -38,7 +39,7 @@ pub(super) struct Labels<'a> {
 
 impl<'a> Labels<'a> {
     /// Makes labels without a known number, for winding numbers of `operand`, whose index is `around`, at the
-    /// vertices of the mesh `of`.
+    /// vertices of the mesh `of`; `touching` says which of these lie on other faces of `operand`.
     pub(super) fn new(
         of: Operand<'a>,
         (around, operand): (usize, Operand<'a>),
@@ -54,6 +55,11 @@ impl<'a> Labels<'a> {
             known: vec![None; vertices],
             touching,
         }
+    }
+
+    /// Returns the index of the operand whose winding numbers are stored.
+    pub(super) fn around(&self) -> usize {
+        self.around
     }
 
     /// Returns the root of a vertex's class, and the winding number at the vertex minus the number at the
@@ -117,7 +123,7 @@ impl<'a> Labels<'a> {
     /// # Errors
     /// As for [`Self::join`].
     pub(super) fn join_cells(&mut self, face: &Arrangement) -> Result<(), Declined> {
-        let corners = [0, 1, 2].map(|i| (face.face.vertices[i], face.at_corner(as_number(i))));
+        let corners = [0, 1, 2].map(|i| (face.face.vertices[i], face.at_corner(self.around, i)));
         let free = corners.into_iter().filter(|(v, _)| !self.is_touching(*v));
         let free: SmallVec<[_; 3]> = free.collect();
         free.windows(2)
@@ -132,7 +138,7 @@ impl<'a> Labels<'a> {
     pub(super) fn number_in_front(&mut self, face: &mut Arrangement) -> Result<i32, Declined> {
         let mut corners = (0..).zip(face.face.vertices);
         match corners.find(|(_, v)| !self.is_touching(*v)) {
-            Some((i, vertex)) => Ok(self.number_at(vertex) - face.at_corner(i)),
+            Some((i, vertex)) => Ok(self.number_at(vertex) - face.at_corner(self.around, i)),
             None => self.count_in_front(face),
         }
     }
@@ -142,7 +148,7 @@ impl<'a> Labels<'a> {
         let plane = face.face.plane;
         let count = |probe: &Probe| self.windings.winding_number_in_front(plane, probe);
         let (cell, number) = face.count_in_cell(count).ok_or(Declined::Thin)?;
-        Ok(number - face.cells[cell].in_front)
+        Ok(number - face.in_front(self.around, cell))
     }
 
     /// Returns the winding number at the corners of an undivided face; `None` if all corners lie on other
@@ -241,7 +247,7 @@ impl<'a> Labels<'a> {
             let free = (0..3).find(|i| !self.is_touching(corner[*i])).unwrap_or(0);
             let more = match face {
                 WidestFace::Whole(_) => 0,
-                WidestFace::Divided(i) => arranged[i].at_corner(as_number(free)),
+                WidestFace::Divided(i) => arranged[i].at_corner(self.around, free),
             };
             let (_, above) = self.root(corner[free]);
             self.known[root] = Some(number + more - above);

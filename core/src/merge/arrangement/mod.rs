@@ -6,23 +6,23 @@
 //! these, and `faces` divides each face into cells along the segments. `labels` finds winding numbers, and
 //! `keep_rule` and `scene` make the leaf of the faces that stay.
 
+mod arrange;
 mod boxes;
 mod candidates;
 mod contact;
+mod contacts;
 mod faces;
+mod facets;
 mod keep_rule;
 mod labels;
-mod near;
 mod occupancy;
+mod own_pairs;
 mod pair;
-mod prepared;
 mod sample;
 mod scene;
-mod segments;
 mod self_union;
 mod shells;
 pub(super) mod star;
-mod surfaces;
 mod windings;
 
 pub use pair::{arranged, Arranged};

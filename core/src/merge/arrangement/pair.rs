@@ -1,12 +1,13 @@
 //! Evaluates an expression over two meshes as they were imported, by comparing their faces.
 
+use super::arrange::arrange;
 use super::candidates::{Candidates, FacesInWindow, Operand};
+use super::contacts::{contacts_between, Contacts};
+use super::facets::Facets;
 use super::keep_rule::KeepRule;
 use super::occupancy::Occupancy;
 use super::sample::sample;
 use super::scene::Scene;
-use super::segments::{contacts_of, Contacts};
-use super::surfaces::Surfaces;
 use super::MIN_FACES_FOR_POOL;
 use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
@@ -15,8 +16,9 @@ use crate::geometry::plane::Lattice;
 use crate::merge::expression::Expression;
 use crate::merge::lists::list::Sources;
 use crate::merge::profile::{Declined, Profile};
+use crate::merge::rule::Rule;
 use crate::mesh::tasks::{both, WorkSize};
-use crate::tree::node::{Branch, Node};
+use crate::tree::node::Branch;
 use crate::tree::solid::Solid;
 
 /// The result of an expression over two meshes, and how many faces were compared.
@@ -24,8 +26,10 @@ use crate::tree::solid::Solid;
 pub struct Arranged {
     /// The root of the resulting tree.
     pub root: Branch,
-    /// The number of faces of both meshes that reach into the intersection of their bounding boxes.
+    /// The number of faces of both meshes that were compared with others.
     pub compared: usize,
+    /// For each operand, whether it was united with itself, too.
+    pub resolved: [bool; 2],
 }
 
 /// Evaluates an expression over two meshes as they were imported, and records its stages in `profile`.
@@ -44,33 +48,25 @@ pub fn arranged(
     let work_size = WorkSize::pool_if(faces >= MIN_FACES_FOR_POOL);
     let count = |found: &Result<NearFaces, Declined>| found.as_ref().map_or(0, NearFaces::len);
     let near = profile.timed("candidates", || near(&operands, &window, work_size), count)?;
-    let NearFaces {
-        within,
-        mut candidates,
-    } = near;
-    let faces = candidates.each_mut().map(|c| std::mem::take(&mut c.faces));
-    let surfaces = Surfaces::new(operands.into(), faces.into());
+    let NearFaces { within, candidates } = near;
+    let facets = Facets::of(operands.into());
     let count = |found: &Result<Contacts, Declined>| found.as_ref().map_or(0, Contacts::len);
-    let search = || contacts_of(&surfaces, &candidates, work_size);
-    let found = profile.timed("contacts", search, count)?;
-    let compared = within.iter().map(|w| w.faces.len()).sum();
-    let scene = Scene {
-        surfaces,
+    let search = || contacts_between(&facets, &candidates, work_size);
+    let mut found = profile.timed("contacts", search, count)?;
+    let mut scene = Scene {
+        facets,
         near: within.map(|w| w.faces).into(),
         cell: solids[0].root().cell.join(&solids[1].root().cell),
-        kept: KeepRule::of(expression),
+        kept: KeepRule::new(expression, 2, Rule::Positive),
         work_size,
     };
-    let root = profile.timed("faces", || scene.root(&found), leaf_len)?;
-    Ok(Arranged { root, compared })
-}
-
-/// Returns the number of elements (whole faces and parts) if the root is a deferred leaf; otherwise 0.
-pub(super) fn leaf_len(root: &Result<Branch, Declined>) -> usize {
-    match root.as_ref().map(|branch| &*branch.node) {
-        Ok(Node::Deferred(leaf)) => leaf.len(),
-        _ => 0,
-    }
+    let may_overlap = |k: usize| !solids[k].is_reduced();
+    let root = arrange(&mut scene, &mut found, may_overlap, profile)?;
+    Ok(Arranged {
+        root,
+        compared: scene.near.iter().map(Vec::len).sum(),
+        resolved: [0, 1].map(|k| scene.kept.is_resolved(k)),
+    })
 }
 
 /// For each mesh, the faces in the window (the intersection of both bounding boxes), and the candidates:
@@ -141,6 +137,7 @@ mod tests {
     use super::*;
     use crate::merge::expression::Term;
     use crate::merge::scenes::{both as expression_of_both, cuboid, cuboids, tetrahedra};
+    use crate::tree::node::Node;
 
     fn sources(solids: &[Solid; 2]) -> Sources {
         Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect())
@@ -173,10 +170,14 @@ mod tests {
     }
 
     #[test]
-    fn overlapping_meshes_are_left_to_others() {
+    fn a_mesh_that_overlaps_itself_is_united_where_the_other_one_meets_it() {
         let first = cuboid([0; 3], [4; 3]);
         let twice = cuboids([[[-9, 1, 1], [9, 3, 3]], [[-9, 2, 2], [9, 5, 5]]]);
-        assert_eq!(counts(&[first.clone(), twice], Term::Or), None);
+        let solids = [first.clone(), twice];
+        let [whole, parts] = counts(&solids, Term::Or).expect("not declined");
+        assert!(whole > 0 && parts > 0);
+        let known = [solids[0].clone(), solids[1].clone().with_reduced(true)];
+        assert_eq!(counts(&known, Term::Or), None);
         let apart = [first, cuboid([5; 3], [8; 3])];
         assert_eq!(counts(&apart, Term::Or), None);
     }

@@ -1,13 +1,13 @@
-//! Builds the leaf that results from one or two meshes, from the contacts of their faces.
+//! Builds the leaf that results from meshes, from the contacts of their faces.
 
 use std::sync::Arc;
 
 use super::candidates::Operand;
-use super::faces::{Arrangement, CellNumbers, Face, Planes, SharedGeometry};
-use super::keep_rule::KeepRule;
+use super::contacts::{Contacts, Cover, Edge, MeetingPoint, Segment};
+use super::faces::{Arrangement, Face, Planes, SharedGeometry};
+use super::facets::{FacetId, Facets};
+use super::keep_rule::{KeepRule, Numbers};
 use super::labels::Labels;
-use super::segments::{Contacts, Cover, Edge, MeetingPoint, Segment};
-use super::surfaces::Surfaces;
 use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::edge::LatticeEdge;
@@ -23,11 +23,11 @@ use crate::tree::node::{Branch, DeferredLeaf, FaceGroup, Node, Part, PartElement
 /// The number of faces or points in a task for another thread.
 const ITEMS_PER_TASK: usize = 32;
 
-/// Two meshes to be combined, or one to be united with itself.
+/// Meshes to be combined, or one to be united with itself.
 #[derive(Debug)]
 pub(super) struct Scene<'a> {
-    pub(super) surfaces: Surfaces<'a>,
-    /// For each operand, the faces in front of which the winding number may differ from 0.
+    pub(super) facets: Facets<'a>,
+    /// For each operand, the faces in front of which a winding number may differ from 0.
     pub(super) near: Vec<Vec<FaceId>>,
     /// The cell of the resulting leaf.
     pub(super) cell: Cell,
@@ -77,7 +77,7 @@ impl<'a> Scene<'a> {
             by_kernel: true,
             ..DeferredLeaf::default()
         };
-        let operands = (0..self.surfaces.operands.len()).collect();
+        let operands = (0..self.facets.operands.len()).collect();
         for left in each(self.work_size, operands, |k| {
             self.remaining_faces(k, found, &shared)
         }) {
@@ -105,7 +105,7 @@ impl<'a> Scene<'a> {
             block.iter().map(vertex).collect::<Vec<_>>()
         });
         SharedGeometry {
-            surfaces: &self.surfaces,
+            facets: &self.facets,
             points: &found.points,
             vertices: vertices.concat(),
             planes,
@@ -118,37 +118,39 @@ impl<'a> Scene<'a> {
         let planes = each(
             self.work_size,
             faces.chunks(ITEMS_PER_TASK).collect(),
-            |block: &[u32]| {
+            |block: &[FacetId]| {
                 let planes = block
                     .iter()
-                    .map(|f| self.surfaces.operand(*f).source.plane(self.surfaces.id(*f)));
+                    .map(|f| self.facets.operand(*f).source.plane(self.facets.face(*f)));
                 planes.collect::<Vec<_>>()
             },
         );
         faces.into_iter().zip(planes.concat()).collect()
     }
 
-    /// Returns the faces that other faces divide or cover, and the faces whose corners all lie on other
-    /// faces, by ascending number (faces of both operands are numbered together).
-    fn arranged_faces(&self, found: &Contacts) -> Vec<u32> {
-        let segments = found.segments.iter().map(|s| s.face);
-        let covered = found.covers.iter().map(|c| c.face);
-        let mut faces: Vec<u32> = segments.chain(covered).collect();
-        faces.dedup();
-        let operands = 0..self.surfaces.operands.len();
-        for k in operands.filter(|k| !found.touching[*k].is_empty()) {
-            let touches = |v: &VertexId| found.touching[k][v.index()];
-            let of_operand = self.surfaces.of_operand(k);
-            faces.extend(of_operand.filter(|f| self.surfaces.vertices(*f).iter().all(touches)));
+    /// Returns the facets that others divide or cover, and those whose corners all lie on faces of an operand,
+    /// ascending.
+    fn arranged_faces(&self, found: &Contacts) -> Vec<FacetId> {
+        let segments = found.segments.iter().map(|s| s.facet);
+        let covered = found.covers.iter().map(|c| c.facet);
+        let mut facets: Vec<FacetId> = segments.chain(covered).collect();
+        facets.dedup();
+        for (k, near) in self.near.iter().enumerate() {
+            for touching in found.touching.all_of(k) {
+                let touches = |v: &VertexId| touching[v.index()];
+                let vertices = |id: &FaceId| self.facets.operands[k].mesh.vertices_of(*id);
+                let between_others = near.iter().filter(|id| vertices(id).iter().all(touches));
+                facets.extend(between_others.map(|id| self.facets.number(k, *id)));
+            }
         }
-        faces.sort_unstable();
-        faces.dedup();
-        faces
+        facets.sort_unstable();
+        facets.dedup();
+        facets
     }
 
     fn vertex(&self, point: &MeetingPoint, planes: &Planes) -> Vertex {
         let edge = |(operand, ends): &Edge| {
-            let points = &self.surfaces.operands[*operand].mesh.vertices;
+            let points = &self.facets.operands[*operand].mesh.vertices;
             let [from, to] = ends.map(|v| points[v.index()]);
             LatticeEdge::new(from, to)
         };
@@ -167,26 +169,26 @@ impl<'a> Scene<'a> {
         found: &'b Contacts,
         shared: &'b SharedGeometry,
     ) -> Result<Vec<Arrangement<'b>>, Declined> {
-        let mut faces: Vec<u32> = shared.planes.keys().copied().collect();
-        faces.retain(|f| self.surfaces.operand_of(*f) == operand);
-        faces.sort_unstable();
-        let arranged = |number: u32| {
+        let mut facets: Vec<FacetId> = shared.planes.keys().copied().collect();
+        facets.retain(|f| self.facets.operand_of(*f) == operand);
+        facets.sort_unstable();
+        let arranged = |facet: FacetId| {
             let face = Face {
-                number,
+                facet,
                 operand,
-                corners: self.surfaces.corners(number),
-                vertices: self.surfaces.vertices(number),
-                plane: &shared.planes[&number],
-                segments: rows_of_face(&found.segments, number, |s: &Segment| s.face),
-                covers: rows_of_face(&found.covers, number, |c: &Cover| c.face),
+                corners: self.facets.corners(facet),
+                vertices: self.facets.vertices(facet),
+                plane: &shared.planes[&facet],
+                segments: rows_of_facet(&found.segments, facet, |s: &Segment| s.facet),
+                covers: rows_of_facet(&found.covers, facet, |c: &Cover| c.facet),
             };
             Arrangement::new(face, shared)
         };
         let found = each(
             self.work_size,
-            faces.chunks(ITEMS_PER_TASK).collect(),
-            |block: &[u32]| {
-                let block = block.iter().map(|number| arranged(*number));
+            facets.chunks(ITEMS_PER_TASK).collect(),
+            |block: &[FacetId]| {
+                let block = block.iter().map(|facet| arranged(*facet));
                 block.collect::<Result<Vec<_>, Declined>>()
             },
         );
@@ -202,21 +204,20 @@ impl<'a> Scene<'a> {
         found: &Contacts,
         shared: &SharedGeometry,
     ) -> Result<(Vec<FaceGroup>, Vec<PartElement>), Declined> {
-        let count = self.surfaces.operands[operand].mesh.faces.len();
-        let mut fates = vec![Fate::of(self.kept.at(operand, 0)?, false); count];
+        let count = self.facets.operands[operand].mesh.faces.len();
+        let stays = self.kept.at(operand, self.zeros())?;
+        let mut fates = vec![Fate::of(stays, false); count];
         let mut parts = Vec::new();
-        if self.kept.is_divided(operand) {
+        if self.kept.depends_on_numbers(operand) {
             let mut arranged = self.arrangements(operand, found, shared)?;
             for arrangement in &arranged {
-                fates[self.surfaces.id(arrangement.face.number).index()] = Fate::Cut;
+                fates[self.facets.face(arrangement.face.facet).index()] = Fate::Cut;
             }
-            let mut labels = self.labels(operand, &mut arranged, &fates, found)?;
-            let firsts = arranged.iter_mut().map(|a| labels.number_in_front(a));
-            let firsts = firsts.collect::<Result<Vec<i32>, Declined>>()?;
-            self.decide(operand, &mut labels, &mut fates)?;
-            for face in &found.touched {
-                if self.surfaces.operand_of(*face) == operand {
-                    fates[self.surfaces.id(*face).index()].touch();
+            let mut firsts = vec![self.zeros(); arranged.len()];
+            self.decide(operand, (&mut arranged, &mut firsts), found, &mut fates)?;
+            for facet in &found.touched {
+                if self.facets.operand_of(*facet) == operand {
+                    fates[self.facets.face(*facet).index()].touch();
                 }
             }
             parts = self.parts(operand, arranged, firsts, &mut fates)?;
@@ -224,66 +225,82 @@ impl<'a> Scene<'a> {
         Ok((self.groups(operand, &fates), parts))
     }
 
-    /// Decides whether each face of an operand in `near` stays, except faces that are divided.
+    /// Returns the winding numbers of a point that is outside all operands.
+    fn zeros(&self) -> Numbers {
+        Numbers::from_elem(0, self.facets.operands.len())
+    }
+
+    /// Finds the winding numbers in front of the faces of an operand in `near`: decides whether undivided faces
+    /// stay, and writes the numbers in front of the first cells of divided faces.
     fn decide(
         &self,
         operand: usize,
-        labels: &mut Labels,
+        (arranged, firsts): (&mut [Arrangement], &mut [Numbers]),
+        found: &Contacts,
         fates: &mut [Fate],
     ) -> Result<(), Declined> {
-        let mesh = self.surfaces.operands[operand].mesh;
+        let mesh = self.facets.operands[operand].mesh;
+        let mut all = self.labels(operand, arranged, fates, found)?;
+        for (arrangement, first) in arranged.iter_mut().zip(firsts) {
+            for labels in &mut all {
+                first[labels.around()] = labels.number_in_front(arrangement)?;
+            }
+        }
         for id in &self.near[operand] {
             poll();
             if fates[id.index()] != Fate::Cut {
-                let number = labels
-                    .number_at_corners(mesh.vertices_of(*id))
-                    .ok_or(Declined::Thin)?;
-                fates[id.index()] = Fate::of(self.kept.at(operand, number)?, false);
+                let mut numbers = self.zeros();
+                for labels in &mut all {
+                    let number = labels.number_at_corners(mesh.vertices_of(*id));
+                    numbers[labels.around()] = number.ok_or(Declined::Thin)?;
+                }
+                fates[id.index()] = Fate::of(self.kept.at(operand, numbers)?, false);
             }
         }
         Ok(())
     }
 
-    /// Prepares the winding numbers at an operand's vertices (of the other operand, or of the mesh itself if
-    /// there is only one): relates the numbers of vertices connected by faces, and counts the numbers that
-    /// must be known in advance.
+    /// Prepares the winding numbers of each operand in front of one operand's faces; its own numbers only if
+    /// its faces were compared with each other.
     fn labels<'b>(
         &self,
         operand: usize,
         arranged: &mut [Arrangement],
         fates: &[Fate],
         found: &'b Contacts,
-    ) -> Result<Labels<'b>, Declined>
+    ) -> Result<Vec<Labels<'b>>, Declined>
     where
         'a: 'b,
     {
-        let operands = &self.surfaces.operands;
-        let (of, around) = (operands[operand], operands.len() - 1 - operand);
-        let touching = &found.touching[operand];
-        let mut labels = Labels::new(of, (around, operands[around]), touching);
-        for arrangement in arranged.iter() {
-            labels.join_cells(arrangement)?;
-        }
-        let others = || {
-            self.near[operand]
-                .iter()
-                .filter(|id| fates[id.index()] != Fate::Cut)
+        let others =
+            (0..self.facets.operands.len()).filter(|k| *k != operand || self.kept.is_resolved(*k));
+        let of = self.facets.operands[operand];
+        let is_whole = |id: &&FaceId| fates[id.index()] != Fate::Cut;
+        let whole = || self.near[operand].iter().filter(is_whole);
+        let joined = |around: usize| {
+            let windings = (around, self.facets.operands[around]);
+            let mut labels = Labels::new(of, windings, found.touching.of(operand, around));
+            for arrangement in arranged.iter() {
+                labels.join_cells(arrangement)?;
+            }
+            for id in whole() {
+                poll();
+                labels.join_corners(of.mesh.vertices_of(*id))?;
+            }
+            if around == operand {
+                labels.count_at_widest_faces(arranged, whole())?;
+            } else {
+                labels.record_zero_outside();
+            }
+            Ok(labels)
         };
-        for id in others() {
-            poll();
-            labels.join_corners(of.mesh.vertices_of(*id))?;
-        }
-        match self.kept {
-            KeepRule::Pair(_) => labels.record_zero_outside(),
-            KeepRule::Single(_) => labels.count_at_widest_faces(arranged, others())?,
-        }
-        Ok(labels)
+        others.map(joined).collect()
     }
 
     /// Returns the faces of an operand that stay whole, grouped by orientation and by whether others touch
     /// them.
     fn groups(&self, operand: usize, fates: &[Fate]) -> Vec<FaceGroup> {
-        let Operand { mesh, source, .. } = self.surfaces.operands[operand];
+        let Operand { mesh, source, .. } = self.facets.operands[operand];
         let group = |(touching, orientation)| FaceGroup {
             touching,
             source: Arc::clone(source),
@@ -313,12 +330,12 @@ impl<'a> Scene<'a> {
         &self,
         operand: usize,
         mut arranged: Vec<Arrangement>,
-        firsts: Vec<i32>,
+        firsts: Vec<Numbers>,
         fates: &mut [Fate],
     ) -> Result<Vec<PartElement>, Declined> {
         let numbered = arranged.iter_mut().zip(firsts);
-        let mut all: Vec<(FaceId, &mut Arrangement, i32)> = numbered
-            .map(|(a, first)| (self.surfaces.id(a.face.number), a, first))
+        let mut all: Vec<(FaceId, &mut Arrangement, Numbers)> = numbered
+            .map(|(a, first)| (self.facets.face(a.face.facet), a, first))
             .collect();
         all.sort_unstable_by_key(|(id, ..)| *id);
         let ids: Vec<FaceId> = all.iter().map(|(id, ..)| *id).collect();
@@ -326,10 +343,10 @@ impl<'a> Scene<'a> {
         let found = each(
             self.work_size,
             blocks,
-            |block: &mut [(FaceId, &mut Arrangement, i32)]| {
+            |block: &mut [(FaceId, &mut Arrangement, Numbers)]| {
                 let left = block
                     .iter_mut()
-                    .map(|(_, a, first)| self.remaining_parts(operand, a, *first));
+                    .map(|(_, a, first)| self.remaining_parts(operand, a, first));
                 left.collect::<Result<Vec<_>, Declined>>()
             },
         );
@@ -348,43 +365,63 @@ impl<'a> Scene<'a> {
         Ok(parts.concat())
     }
 
-    /// Returns the parts of a divided face that bound the result, given the winding number in front of its
+    /// Returns the parts of a divided face that bound the result, given the winding numbers in front of its
     /// first cell.
     fn remaining_parts(
         &self,
         operand: usize,
         arrangement: &mut Arrangement,
-        first: i32,
+        first: &Numbers,
     ) -> Result<RemainingParts, Declined> {
-        let stays = |cell: &CellNumbers| self.kept.of_cell(operand, cell, first);
-        let all = arrangement
-            .cells
-            .iter()
-            .map(stays)
-            .collect::<Result<Vec<_>, Declined>>()?;
-        if all.iter().all(|s| *s == all[0]) {
-            return Ok(RemainingParts::Whole(all[0]));
+        let cells = 0..arrangement.len();
+        let stays = cells.map(|cell| self.stays(operand, arrangement, cell, first));
+        let stays = stays.collect::<Result<Vec<_>, Declined>>()?;
+        if stays.iter().all(|s| *s == stays[0]) {
+            return Ok(RemainingParts::Whole(stays[0]));
         }
-        let id = self.surfaces.id(arrangement.face.number);
+        let id = self.facets.face(arrangement.face.facet);
         let mut part = |orientation: Orientation| {
-            let edges = arrangement.outline(|cell| stays(cell) == Ok(Some(orientation)));
+            let is_kept: Vec<bool> = stays.iter().map(|s| *s == Some(orientation)).collect();
+            let edges = arrangement.outline(&is_kept);
             (!edges.is_empty()).then(|| {
-                let source = Arc::clone(self.surfaces.operands[operand].source);
+                let source = Arc::clone(self.facets.operands[operand].source);
                 let part = Arc::new(Part::new(source, id, self.cell, edges));
                 PartElement { part, orientation }
             })
         };
         Ok(RemainingParts::Parts(Orientation::BOTH.map(&mut part)))
     }
+
+    /// Returns the orientation in which a cell of a divided face stays; `None` if it does not stay.
+    ///
+    /// # Errors
+    /// `Overlap` if another operand that is not resolved overlaps itself at the cell.
+    fn stays(
+        &self,
+        operand: usize,
+        arrangement: &Arrangement,
+        cell: usize,
+        first: &Numbers,
+    ) -> Result<Option<Orientation>, Declined> {
+        let is_doubtful = |k: &usize| {
+            *k != operand && !self.kept.is_resolved(*k) && arrangement.covers(*k, cell) > 1
+        };
+        if let Some(k) = (0..self.facets.operands.len()).find(is_doubtful) {
+            return Err(Declined::Overlap(k));
+        }
+        let stays = self
+            .kept
+            .between(operand, &arrangement.sides(cell, first))?;
+        Ok(stays.filter(|_| !arrangement.is_of_earlier(cell)))
+    }
 }
 
-/// Returns the rows that belong to one face, from a table sorted by face number; `of` returns the face number
-/// of a row.
-fn rows_of_face<T>(rows: &[T], face: u32, of: impl Fn(&T) -> u32) -> &[T] {
-    let first = rows.partition_point(|row| of(row) < face);
+/// Returns the rows that belong to one facet, from a table sorted by facet; `of` returns the facet of a row.
+fn rows_of_facet<T>(rows: &[T], facet: FacetId, of: impl Fn(&T) -> FacetId) -> &[T] {
+    let first = rows.partition_point(|row| of(row) < facet);
     let count = rows[first..]
         .iter()
-        .take_while(|row| of(row) == face)
+        .take_while(|row| of(row) == facet)
         .count();
     &rows[first..first + count]
 }

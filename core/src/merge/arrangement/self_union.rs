@@ -3,18 +3,19 @@
 use std::sync::Arc;
 
 use super::candidates::Operand;
+use super::contacts::Contacts;
+use super::facets::Facets;
 use super::keep_rule::KeepRule;
-use super::near::{Pairs, PreparedMesh};
+use super::own_pairs::{are_clear, finds_overlap, irregular, own_pairs};
 use super::scene::Scene;
-use super::segments::{contacts_among, Contacts};
 use super::shells::{distinct, is_outward, shells, Shell};
 use super::star::is_star_shaped;
-use super::surfaces::Surfaces;
 use super::MIN_FACES_FOR_POOL;
 use crate::geometry::cell::Cell;
 use crate::geometry::side::Orientation;
+use crate::merge::expression::{Expression, Term};
 use crate::merge::rule::Rule;
-use crate::mesh::handle::{FaceId, Slot};
+use crate::mesh::handle::Slot;
 use crate::mesh::source::Source;
 use crate::mesh::tasks::WorkSize;
 use crate::tree::node::{Branch, Node};
@@ -33,7 +34,7 @@ pub enum United {
 }
 
 /// Unites a mesh as it was imported with itself: the result bounds the points that `rule` calls inside.
-/// `None` if the solid is not a mesh as it was imported, if too many boxes of faces overlap, or if faces are
+/// `None` if the solid is not a mesh as it was imported, if too many of its faces overlap, or if faces are
 /// too thin to count winding numbers at them.
 ///
 /// # Example
@@ -56,29 +57,15 @@ pub fn united(solid: &Solid, rule: Rule) -> Option<United> {
     if is_star(&operand) {
         return Some(United::Same);
     }
-    let irregular = irregular(operand.source);
-    let comparison = SelfComparison::new(operand, solid.root().cell, rule, &irregular)?;
-    let shells = shells(operand.mesh);
-    let count = shells.len();
-    if count == 1 || rule == Rule::EvenOdd {
-        return comparison.united(comparison.pairs());
+    if own_pairs(&operand).is_some() {
+        return arranged_alone(operand, solid.root().cell, rule);
     }
-    let shells = distinct(operand.mesh, shells);
-    let found = if shells.len() < count {
-        Pairs::Overlap
-    } else {
-        comparison
-            .prepared_mesh
-            .pairs_unless_overlapping(&comparison.scene.near[0])
-    };
-    match found {
-        few @ Pairs::Few(_) => comparison.united(few),
-        Pairs::Many | Pairs::Overlap if comparison.are_simple(&shells) => {
+    simple_shells(&operand)
+        .filter(|shells| shells.len() > 1 && rule != Rule::EvenOdd)
+        .map(|shells| {
             let branches = shells.into_iter().map(|s| s.branch(operand.source));
-            Some(United::Shells(branches.collect()))
-        }
-        Pairs::Many | Pairs::Overlap => comparison.united(comparison.pairs()),
-    }
+            United::Shells(branches.collect())
+        })
 }
 
 /// Returns whether a mesh as it was imported neither overlaps itself nor has inner walls; stops at the first
@@ -88,15 +75,11 @@ pub fn is_simple_mesh(solid: &Solid) -> Option<bool> {
     if is_star(&operand) {
         return Some(true);
     }
-    let irregular = irregular(operand.source);
-    let comparison = SelfComparison::new(operand, solid.root().cell, Rule::Positive, &irregular)?;
-    match comparison
-        .prepared_mesh
-        .pairs_unless_overlapping(&comparison.scene.near[0])
-    {
-        Pairs::Overlap => Some(false),
-        found => Some(matches!(comparison.united(found)?, United::Same)),
+    if finds_overlap(&operand) {
+        return Some(false);
     }
+    let united = arranged_alone(operand, solid.root().cell, Rule::Positive)?;
+    Some(matches!(united, United::Same))
 }
 
 /// Returns the mesh of a solid that is a mesh as it was imported; otherwise `None`.
@@ -110,94 +93,36 @@ fn is_star(operand: &Operand) -> bool {
     operand.source.open_vertices().is_empty() && is_star_shaped(operand.mesh)
 }
 
-/// The data for comparing the faces of a mesh with each other.
-struct SelfComparison<'a> {
-    scene: Scene<'a>,
-    prepared_mesh: PreparedMesh<'a>,
-    irregular: &'a [bool],
+/// Unites a mesh with itself by comparing all its faces; `None` if too many may overlap, or if faces do not
+/// determine the result.
+fn arranged_alone(operand: Operand, cell: Cell, rule: Rule) -> Option<United> {
+    let work_size = WorkSize::pool_if(operand.mesh.faces.len() >= MIN_FACES_FOR_POOL);
+    let itself = Expression::new(vec![Term::Operand(0)]).ok()?;
+    let mut scene = Scene {
+        facets: Facets::of(vec![operand]),
+        near: vec![Vec::new()],
+        cell,
+        kept: KeepRule::new(&itself, 1, rule),
+        work_size,
+    };
+    let mut found = Contacts::default();
+    scene.resolve(0, &mut found).ok()?;
+    let root = scene.root(&found).ok()?;
+    Some(if is_all_of(&root, operand.source) {
+        United::Same
+    } else {
+        United::Other(root)
+    })
 }
 
-impl<'a> SelfComparison<'a> {
-    fn new(operand: Operand<'a>, cell: Cell, rule: Rule, irregular: &'a [bool]) -> Option<Self> {
-        Some(Self {
-            scene: Scene::of_one(operand, cell, rule),
-            prepared_mesh: PreparedMesh::new(operand.source, irregular)?,
-            irregular,
-        })
-    }
-
-    fn pairs(&self) -> Pairs {
-        self.prepared_mesh.pairs(&self.scene.near[0])
-    }
-
-    /// Unites the mesh with itself, given the pairs of its faces that may overlap; `None` if these are too
-    /// many, or if faces do not determine the result.
-    fn united(&self, pairs: Pairs) -> Option<United> {
-        let found = self.contacts(pairs)?.with_touching_vertices(self.irregular);
-        let root = self.scene.root(&found).ok()?;
-        Some(
-            if is_all_of(&root, self.scene.surfaces.operands[0].source) {
-                United::Same
-            } else {
-                United::Other(root)
-            },
-        )
-    }
-
-    /// Intersects the given pairs of faces; `None` if there are too many pairs.
-    fn contacts(&self, pairs: Pairs) -> Option<Contacts> {
-        let Pairs::Few(pairs) = pairs else {
-            return None;
-        };
-        let Scene {
-            surfaces,
-            work_size,
-            ..
-        } = &self.scene;
-        Some(contacts_among(surfaces, &pairs, *work_size))
-    }
-
-    /// Returns true if each shell has its inside behind its faces and certainly does not overlap itself.
-    fn are_simple(&self, shells: &[Shell]) -> bool {
-        let mesh = self.scene.surfaces.operands[0].mesh;
-        let is_closed = !self.irregular.contains(&true);
-        let is_simple = |shell: &Shell| {
-            is_outward(mesh, &shell.faces)
-                && self
-                    .contacts(self.prepared_mesh.pairs(&shell.faces))
-                    .is_some_and(|found| found.divide_nothing())
-        };
-        is_closed && shells.iter().all(is_simple)
-    }
-}
-
-impl<'a> Scene<'a> {
-    /// Makes the scene for comparing all faces of one mesh with each other.
-    fn of_one(operand: Operand<'a>, cell: Cell, rule: Rule) -> Self {
-        let all: Vec<FaceId> = operand.mesh.face_ids().collect();
-        Self {
-            work_size: WorkSize::pool_if(all.len() >= MIN_FACES_FOR_POOL),
-            surfaces: Surfaces::new(vec![operand], vec![all.clone()]),
-            near: vec![all],
-            cell,
-            kept: KeepRule::Single(rule),
-        }
-    }
-}
-
-/// Returns for each vertex whether surfaces may cross there although no two faces cross: the vertex is
-/// irregular, or the mesh is not closed there.
-fn irregular(source: &Source) -> Vec<bool> {
-    let count = source.mesh().map_or(0, |mesh| mesh.vertices.len());
-    let mut irregular = vec![false; count];
-    for vertex in source
-        .irregular_vertices()
-        .iter()
-        .chain(source.open_vertices())
-    {
-        irregular[vertex.index()] = true;
-    }
-    irregular
+/// Returns the different shells of a mesh if each has its inside behind its faces and certainly does not
+/// overlap itself.
+fn simple_shells(operand: &Operand) -> Option<Vec<Shell>> {
+    let is_simple =
+        |shell: &Shell| is_outward(operand.mesh, &shell.faces) && are_clear(operand, &shell.faces);
+    let is_regular = !irregular(operand.source).contains(&true);
+    let shells = distinct(operand.mesh, shells(operand.mesh));
+    (is_regular && shells.iter().all(is_simple)).then_some(shells)
 }
 
 /// Returns true if a leaf lists all faces of a mesh, whole and in their orientation, and nothing else.

@@ -1,7 +1,5 @@
 //! Counts winding numbers of a mesh along rays.
 
-use std::sync::Arc;
-
 use super::boxes::RoundedBox;
 use super::candidates::{Candidates, Operand};
 use crate::arith::convert::as_double;
@@ -9,28 +7,8 @@ use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::Point;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::side::Side;
-use crate::geometry::vertex::Vertex;
 use crate::geometry::winding::crossing::{triangle_change, Segment};
-
-/// A point in the plane of a face at which a winding number is counted, and its coordinates, in half lattice
-/// steps, on the two axes other than the plane's main axis.
-#[derive(Clone, Debug)]
-pub(super) struct Probe {
-    pub(super) point: Arc<Vertex>,
-    pub(super) doubled: [i64; 2],
-}
-
-impl Probe {
-    /// Returns the point of a plane that has the coordinates `doubled`, in half lattice steps, on the two
-    /// axes other than the plane's main axis; `None` if the plane is parallel to the main axis, which never
-    /// happens.
-    pub(super) fn at_coordinates(doubled: [i64; 2], plane: &Arc<Plane>) -> Option<Self> {
-        let axis = plane.main_axis();
-        let cut = |i: usize| Arc::new(Plane::axis_cut((axis + i) % 3, doubled[i - 1]));
-        let point = Arc::new(Vertex::meet(plane, &cut(1), &cut(2))?);
-        Some(Self { point, doubled })
-    }
-}
+use crate::merge::division::Probe;
 
 /// Counts winding numbers of a mesh around points; sorts its faces into a tree of boxes on first use.
 #[derive(Debug)]

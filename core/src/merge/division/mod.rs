@@ -4,6 +4,7 @@
 //! the descent. Since all cells are triangles, no caller needs to know how segments are connected: values
 //! that change across segments spread from cell to cell, and the outline of a set of cells is its border.
 
+mod probe;
 mod triangulation;
 
 use std::sync::Arc;
@@ -17,6 +18,7 @@ use crate::geometry::plane::Plane;
 use crate::geometry::polygon::Carrier;
 use crate::geometry::vertex::Vertex;
 
+pub use probe::{cell_with_probe, Probe};
 pub use triangulation::{Defect, Triangulation, NONE};
 
 /// What is known in advance about the position of a point in a polygon.
@@ -153,6 +155,12 @@ impl Division {
     /// Returns the triangulation of the polygon.
     pub fn triangulation(&mut self) -> &mut Triangulation {
         &mut self.triangulation
+    }
+
+    /// Returns the number of triangles.
+    #[allow(clippy::len_without_is_empty, reason = "a polygon has at least one")]
+    pub fn len(&self) -> usize {
+        self.triangulation.cells().len()
     }
 
     /// Returns for each neighbour of a triangle of the division the index of the triangle's edge between

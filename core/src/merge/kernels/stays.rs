@@ -23,6 +23,7 @@ pub enum StayingRegion {
 }
 
 /// Whether a face in a cell is an original face or a piece of a cut one.
+#[derive(Clone, Copy)]
 pub enum Owner {
     /// This whole face of a source.
     Face(SourceFace),
