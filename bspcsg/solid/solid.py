@@ -346,13 +346,19 @@ class Solid(Movable, PointSet):
         return _mesh_of(self.tree, self._source_attributes)
 
     def _divided_mesh(self) -> Mesh:
-        """Return the reduced boundary, with faces divided where edges lie inside them."""
+        """Return the reduced boundary, with faces divided where the surface touches itself."""
         reduced = self.normalized()
         with core_errors():
             divided = reduced.tree.divided()
         return (
             reduced.to_mesh() if divided is None else _mesh_of(divided, reduced._source_attributes)
         )
+
+    def _surfaces_and_euler_number(self) -> tuple[int, int]:
+        """Return the number of surfaces and the Euler number; equal solids have equal ones."""
+        tree = self.normalized().tree
+        with core_errors():
+            return tree.surfaces_and_euler_number()
 
     def normalized(self) -> "Solid":
         """Return the same set with a reduced mesh: each wall between inside and outside once.
@@ -701,23 +707,31 @@ class Solid(Movable, PointSet):
 
     @property
     def euler_number(self) -> int:
-        """The number of vertices minus edges plus triangles of the normalized mesh."""
-        return self.normalized().to_mesh().euler_number
+        """The number of vertices minus edges plus triangles of the boundary.
+
+        Equal solids have equal Euler numbers, whatever their meshes. Where the boundary touches
+        itself, a point or an edge counts once for each of the surfaces that `surface_count` has
+        there.
+        """
+        return self._surfaces_and_euler_number()[1]
 
     @property
     def surface_count(self) -> int:
         """Number of connected surfaces of the boundary; the wall of a cavity counts separately.
 
-        Formerly `components` was this number; now it is the tuple of connected parts. Surfaces that
-        touch only in a point or an edge count separately, even if the edge lies inside a face that
-        belongs to both surfaces and that the mesh does not divide there.
+        Formerly `components` was this number; now it is the tuple of connected parts. Parts that
+        touch only in a point or an edge have separate surfaces, even if the edge lies inside a face
+        that belongs to both and that the mesh does not divide there: around an edge, two walls go
+        over into each other if they bound the same wedge of the inside. Equal solids have equally
+        many surfaces, whatever their meshes.
         """
-        return self._divided_mesh().surface_count
+        return self._surfaces_and_euler_number()[0]
 
     @property
     def genus(self) -> int:
         """Number of handles, as a torus has one, summed over all connected surfaces."""
-        return self._divided_mesh().genus
+        surfaces, euler_number = self._surfaces_and_euler_number()
+        return surfaces - euler_number // 2
 
     def normals(self, sharp_angle: Scalar = 30.0) -> FloatArray:
         """Return unit normals for shading, one for each corner of each triangle.

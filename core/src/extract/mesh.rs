@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::geometry::plane::normal;
+use crate::extract::joining::patches::Patches;
+use crate::geometry::plane::{normal, Lattice};
 use crate::geometry::vertex::Vertex;
 use crate::geometry::vertices::VertexTable;
 use crate::interrupt::spend;
@@ -10,6 +11,7 @@ use crate::merge::lists::list::Sources;
 use crate::mesh::finding::Finding;
 use crate::mesh::handle::{OrientedFace, Slot, VertexId};
 use crate::mesh::source::Shape;
+use crate::mesh::surfaces::{counts, Counts};
 use crate::mesh::tasks::fill_chunks;
 use crate::tree::solid::Solid;
 
@@ -30,9 +32,19 @@ pub struct ExactMesh {
     pub table: VertexTable,
     /// The findings of the assembly, such as contacts.
     pub findings: Vec<Finding>,
+    /// The counts of the surface, if it touches itself at vertices that were split.
+    pub counts: Option<Counts>,
 }
 
 impl ExactMesh {
+    /// The counts of the surface. Around an edge in which it touches itself, two walls are joined if they
+    /// bound the same wedge of the inside, so that the counts depend on the set of points alone, if faces are
+    /// divided at all such edges.
+    pub fn counts(&self) -> Counts {
+        let count = || counts(&self.triangles, self.vertices.len());
+        self.counts.unwrap_or_else(count)
+    }
+
     /// The exact position of a vertex.
     pub fn exact(&self, vertex: VertexId, sources: &Sources) -> Arc<Vertex> {
         match self.vertices[vertex.index()] {
@@ -42,6 +54,24 @@ impl ExactMesh {
                 let place = mesh.map_or([0; 3], |m| m.vertices[index.index()]);
                 Arc::new(Vertex::lattice(place))
             }
+        }
+    }
+
+    /// The lattice point of a vertex; `None` if the vertex is not known to be one.
+    pub fn lattice(&self, vertex: VertexId, solid: &Solid) -> Option<Lattice> {
+        match self.vertices[vertex.index()] {
+            Corner::Source(slot, index) => {
+                Some(solid.sources().get(slot).mesh()?.vertices[index.index()])
+            }
+            Corner::Point(point) => self.table.point(point).as_lattice().copied(),
+        }
+    }
+
+    /// The exact position of a vertex, by value.
+    pub fn vertex(&self, vertex: VertexId, solid: &Solid) -> Vertex {
+        match self.vertices[vertex.index()] {
+            Corner::Point(point) => Vertex::clone(self.table.point(point)),
+            Corner::Source(..) => Vertex::lattice(self.lattice(vertex, solid).unwrap_or_default()),
         }
     }
 
@@ -127,6 +157,9 @@ pub struct Mesh {
     pub flips: Vec<bool>,
     /// The findings of assembly and rounding.
     pub findings: Vec<Finding>,
+    /// The patches whose polygons the mesh is made of: those asked for, divided where walls of the surface
+    /// would pass through one another.
+    pub patches: Patches,
     /// The number of triangles compared exactly with all triangles near them, because they are not untouched
     /// faces of inputs; a finding names those that cross others.
     pub compared: u64,

@@ -13,5 +13,6 @@ mod order;
 pub mod outlines;
 pub mod rounding;
 pub mod simplify;
+pub mod surface;
 pub mod triangulate;
 pub mod vertices;

@@ -2,6 +2,7 @@
 
 pub mod cached;
 pub mod chain;
+pub mod crossing_edges;
 pub mod disjoint;
 mod ears;
 pub mod faces;

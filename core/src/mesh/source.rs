@@ -32,6 +32,7 @@ pub struct Source {
     snapped: [Cached<bool>; 8],
     close: Cached<Vec<[u32; 2]>>,
     own_pairs: Cached<Option<Vec<[FaceId; 2]>>>,
+    passing: Cached<Vec<[u32; 2]>>,
     images: Images<Self>,
     findings: Vec<Finding>,
 }
@@ -69,6 +70,7 @@ impl Source {
             snapped: Default::default(),
             close: Cached::new(),
             own_pairs: Cached::new(),
+            passing: Cached::new(),
             images: Images::default(),
             findings,
         }
@@ -113,6 +115,7 @@ impl Source {
             open: self.open.clone(),
             cell: self.cell.clone(),
             close: self.close.clone(),
+            passing: self.passing.clone(),
             ..named
         }
     }
@@ -275,6 +278,18 @@ impl Source {
     /// too many to be listed.
     pub fn own_pairs(&self) -> &Cached<Option<Vec<[FaceId; 2]>>> {
         &self.own_pairs
+    }
+
+    /// The pairs of faces at which walls of the mesh pass through one another in an edge, although each face
+    /// bounds the solid; known if the mesh was compared with itself.
+    pub fn passing_pairs(&self) -> &Cached<Vec<[u32; 2]>> {
+        &self.passing
+    }
+
+    /// The known pairs of faces that may cross although they bound the solid as a whole.
+    pub fn suspected_pairs(&self) -> Vec<[u32; 2]> {
+        let known = [&self.close, &self.passing].map(Cached::get);
+        known.into_iter().flatten().flatten().copied().collect()
     }
 
     /// The pairing of half-edges with their mates, computed on first use; `None` for a half-space.

@@ -2,10 +2,11 @@
 
 use super::disjoint::DisjointSets;
 use super::handle::VertexId;
+use crate::arith::convert::as_number;
 use crate::interrupt::poll;
 
 /// The numbers of vertices, edges, open edges and surfaces of a mesh.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counts {
     /// The number of vertices that any face uses.
     pub vertices: usize,
@@ -15,6 +16,14 @@ pub struct Counts {
     pub open_edges: usize,
     /// The number of connected surfaces.
     pub surfaces: usize,
+}
+
+impl Counts {
+    /// The Euler number of a surface of `triangles` triangles: vertices minus edges plus triangles.
+    pub fn euler_number(&self, triangles: usize) -> i64 {
+        let signed = |count: usize| i64::from(as_number(count));
+        signed(self.vertices) - signed(self.edges) + signed(triangles)
+    }
 }
 
 /// Counts vertices, edges, open edges and surfaces of a mesh, by index.

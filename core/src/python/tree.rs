@@ -34,7 +34,7 @@ use crate::mesh::half_space::{bounding_plane, half_space};
 use crate::mesh::import::import;
 use crate::mesh::triangles::TriangleMesh;
 use crate::query::classify::{classify, Location};
-use crate::query::contact::{edge_contacts, surfaces_meet};
+use crate::query::contact::{divided, surfaces_and_euler_number, surfaces_meet};
 use crate::query::measure::{volume_near, volume_residues, volume_rounded, volume_within};
 use crate::query::planes::supporting_planes;
 use crate::query::region::section::Sections;
@@ -61,10 +61,13 @@ pub struct Tree {
     patches: Patches,
     counters: Option<Counters>,
     rounded: OnceLock<Rounded>,
+    counts: OnceLock<(usize, i64)>,
 }
 
 /// The rounded mesh of a tree, with its arrays in Python.
 struct Rounded {
+    /// The patches whose polygons the mesh is made of.
+    patches: Patches,
     vertices: Py<PyArray2<f64>>,
     triangles: Py<PyArray2<i64>>,
     origins: Vec<[u32; 2]>,
@@ -79,6 +82,7 @@ impl Tree {
             patches: Patches::default(),
             counters: None,
             rounded: OnceLock::new(),
+            counts: OnceLock::new(),
         }
     }
 
@@ -133,9 +137,11 @@ impl Tree {
             origins,
             flips,
             findings,
+            patches,
             ..
         } = mesh;
         let rounded = Rounded {
+            patches,
             vertices: array(py, vertices)?.unbind(),
             triangles: array(py, triangles)?.unbind(),
             origins,
@@ -143,6 +149,11 @@ impl Tree {
             findings,
         };
         Ok(self.rounded.get_or_init(|| rounded))
+    }
+
+    /// The patches whose polygons the rounded mesh is made of.
+    fn made_patches(&self, py: Python<'_>) -> PyResult<&Patches> {
+        Ok(&self.rounded(py, 0)?.patches)
     }
 }
 
@@ -505,15 +516,29 @@ impl Tree {
         self.run(py, "meets", 0, size, meet)
     }
 
-    /// Return the same solid, but its mesh will divide faces at edges of the surface that lie inside them;
-    /// None if there are no such edges.
+    /// Return the same solid, but its mesh will divide faces at all edges in which the surface touches itself;
+    /// None if its mesh already does.
     fn divided(&self, py: Python<'_>) -> PyResult<Option<Self>> {
-        let contacts = || edge_contacts(&self.solid, &self.patches);
-        let contacts = self.run(py, "divided", 0, self.size(), contacts)?;
-        Ok((!contacts.is_empty()).then(|| Self {
-            patches: self.patches.divided(&contacts),
+        let patches = self.made_patches(py)?;
+        let divided = || divided(&self.solid, patches);
+        let divided = self.run(py, "divided", 0, self.size(), divided)?;
+        Ok(divided.map(|patches| Self {
+            patches,
             ..Self::of(self.solid.clone())
         }))
+    }
+
+    /// Return the number of connected surfaces and the Euler number of the boundary of a reduced solid, divided
+    /// at all edges in which it touches itself.
+    fn surfaces_and_euler_number(&self, py: Python<'_>) -> PyResult<(usize, i64)> {
+        if let Some(known) = self.counts.get() {
+            return Ok(*known);
+        }
+        let divided = self.divided(py)?;
+        let patches = divided.as_ref().unwrap_or(self).made_patches(py)?;
+        let counts = || surfaces_and_euler_number(&self.solid, patches);
+        let counts = self.run(py, "surfaces_and_euler_number", 0, self.size(), counts)?;
+        Ok(*self.counts.get_or_init(|| counts))
     }
 
     #[getter]

@@ -10,7 +10,7 @@ use num_bigint::BigInt;
 use num_integer::Integer;
 use smallvec::SmallVec;
 
-use super::exact::{homogeneous, lattice, lowest};
+use super::exact::{homogeneous, lowest};
 use crate::arith::{inv_mod, mul_mod, Int};
 use crate::extract::mesh::ExactMesh;
 use crate::geometry::plane::Lattice;
@@ -81,7 +81,7 @@ impl Shares {
         let mut points: Vec<Point> = Vec::new();
         for triangle in &mesh.triangles {
             poll();
-            let corners = triangle.map(|v| lattice(solid, mesh, v));
+            let corners = triangle.map(|v| mesh.lattice(v, solid));
             if let [Some(a), Some(b), Some(c)] = corners {
                 sum += determinant(&a, &b, &c);
                 continue;

@@ -12,7 +12,7 @@ use crate::arith::{Int, Sign};
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::boundary::collect::{collect, CutFace};
 use crate::extract::rounding::snapping::{
-    crosses_once_snapped, crossing_faces, look_at_contacts, moved_doubles,
+    crosses_once_snapped, crossing_faces, look_at, look_at_contacts, moved_doubles,
 };
 use crate::geometry::cell::Cell;
 use crate::geometry::edge::LatticeEdge;
@@ -368,10 +368,17 @@ impl SourceData {
 
     fn of(source: &Source) -> Self {
         match source.shape() {
-            Shape::Mesh(mesh) => match source.close_pairs().get() {
-                Some(pairs) => Self::Searched(mesh.clone(), pairs.clone()),
-                None => Self::Mesh(mesh.clone()),
-            },
+            Shape::Mesh(mesh) => {
+                if source.passing_pairs().get().is_some_and(|p| !p.is_empty()) {
+                    // The pairs are stored as one list, of which a reader takes that it is complete.
+                    look_at(source, mesh);
+                }
+                if source.close_pairs().get().is_some() {
+                    Self::Searched(mesh.clone(), source.suspected_pairs())
+                } else {
+                    Self::Mesh(mesh.clone())
+                }
+            }
             Shape::HalfSpace(plane) => Self::HalfSpace(PlaneData::of(plane)),
         }
     }

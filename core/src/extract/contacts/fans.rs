@@ -10,9 +10,12 @@ mod tests;
 
 use std::fmt;
 
+use crate::arith::convert::as_number;
 use crate::arith::Sign;
 use crate::interrupt::poll;
+use crate::mesh::disjoint::DisjointSets;
 use crate::mesh::handle::VertexId;
+use crate::mesh::surfaces::Counts;
 
 /// Marks a corner of a triangle that does not belong to a fan (a ring of triangles around a vertex) yet.
 const NONE: usize = usize::MAX;
@@ -38,6 +41,9 @@ pub struct Split {
     pub split_edges: Vec<[VertexId; 2]>,
     /// Old vertices with more than one copy, in increasing order.
     pub split_vertices: Vec<VertexId>,
+    /// The counts of the surface in which triangles are joined exactly where they bound a wedge of the inside
+    /// together. Two copies of an edge may have the same ends in it.
+    pub counts: Counts,
 }
 
 /// The reasons why triangles are not a closed oriented surface.
@@ -125,12 +131,13 @@ pub fn split_fans<R: Radial>(
     };
     let crowded = surface.pair_all(vertex_count, radial)?;
     let mut fans = Fans::new(&surface);
+    let counts = surface.counts(&fans);
     for edge in &crowded {
         poll();
         fans.tell_apart(&mut surface, &edge.forward);
     }
     let split_edges = crowded.iter().map(|edge| edge.ends).collect();
-    fans.number(&surface, vertex_count, split_edges)
+    fans.number(&surface, vertex_count, split_edges, counts)
 }
 
 fn check_triangles(triangles: &[[VertexId; 3]], vertex_count: u32) -> Result<(), Error> {
@@ -245,6 +252,20 @@ impl Surface<'_> {
         }
     }
 
+    /// Counts vertices, one for each fan, edges and connected surfaces.
+    fn counts(&self, fans: &Fans) -> Counts {
+        let mut sets = DisjointSets::of_one(self.triangles.len());
+        for (half, mate) in self.mates.iter().enumerate() {
+            sets.join(as_number(half / 3), as_number(mate / 3));
+        }
+        Counts {
+            vertices: fans.count,
+            edges: self.mates.len() / 2,
+            open_edges: 0,
+            surfaces: (0..sets.end()).filter(|t| sets.least(*t) == *t).count(),
+        }
+    }
+
     /// Returns the next corner, in the ring of triangles around a vertex, after a given corner.
     fn turn(&self, corner: usize) -> usize {
         self.mates[next(next(corner))]
@@ -329,6 +350,7 @@ impl Fans {
         surface: &Surface,
         vertex_count: u32,
         split_edges: Vec<[VertexId; 2]>,
+        counts: Counts,
     ) -> Result<Split, Error> {
         let mut copies: Vec<Option<VertexId>> = vec![None; self.count];
         let mut is_used = vec![false; vertex_count as usize];
@@ -357,6 +379,7 @@ impl Fans {
             origin,
             split_edges,
             split_vertices,
+            counts,
         })
     }
 }

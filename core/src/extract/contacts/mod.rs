@@ -24,6 +24,7 @@ pub(super) fn split(mesh: &mut ExactMesh, sources: &Sources) -> Result<()> {
     let count = as_number(mesh.vertices.len());
     let split = split_fans(&mesh.triangles, count, &Geometry { mesh, sources })
         .map_err(|e| Error::internal(format!("contacts could not be split: {e}")))?;
+    mesh.counts = Some(split.counts);
     let origin = &split.origin;
     mesh.vertices = origin.iter().map(|v| mesh.vertices[v.index()]).collect();
     mesh.triangles = split.corners;

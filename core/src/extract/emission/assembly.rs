@@ -162,6 +162,7 @@ impl<'a> Assembly<'a> {
             special: self.untouched.special,
             table: self.table,
             findings: Vec::new(),
+            counts: None,
         }
     }
 

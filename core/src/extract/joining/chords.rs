@@ -14,46 +14,58 @@ use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
 use crate::mesh::handle::OrientedFace;
 
-/// An edge of a surface that lies inside a face of the same surface.
+/// A segment in which a surface touches itself: it lies in a face, and other faces of the surface share it.
 #[derive(Clone, Debug)]
 pub struct EdgeContact {
-    /// The two ends of the edge.
-    pub ends: [Arc<Vertex>; 2],
-    /// The two faces that share the edge.
+    /// Points whose convex hull contains the segment, such as its ends.
+    pub hull: SmallVec<[Arc<Vertex>; 3]>,
+    /// Two other faces that share the segment, in one plane or two; the first lies across the face's plane.
     pub beside: [OrientedFace; 2],
-    /// The face whose interior contains the edge.
+    /// The face whose polygon is divided at the segment.
     pub face: OrientedFace,
 }
 
 impl EdgeContact {
-    /// The face that contains the edge, and the two faces that share it.
+    /// The face that contains the segment, and the two faces that share it.
     pub fn faces(&self) -> [OrientedFace; 3] {
         let [first, second] = self.beside;
         [self.face, first, second]
     }
 
-    /// The edge as a chord, which divides the polygon of the face that contains it.
+    /// The face that is divided, and the line at which it is.
+    pub fn place(&self, sources: &Sources) -> (OrientedFace, LineKey) {
+        let [plane, across] = [self.face, self.beside[0]].map(|face| plane_of(face, sources));
+        (self.face, LineKey::of_planes(&plane, &across))
+    }
+
+    /// The segment as a chord, which divides the polygon of the face that contains it.
     pub fn chord(&self, sources: &Sources) -> Chord {
-        let [beside, _] = self.beside;
         Chord {
-            ends: self.ends.clone(),
-            plane: sources.get(beside.slot()).plane(beside.id()),
+            hull: self.hull.clone(),
+            plane: plane_of(self.beside[0], sources),
+            line: self.place(sources).1,
         }
     }
+}
+
+fn plane_of(face: OrientedFace, sources: &Sources) -> Arc<Plane> {
+    sources.get(face.slot()).plane(face.id())
 }
 
 /// A segment in a polygon's plane, and another plane that contains the segment.
 #[derive(Clone, Debug)]
 pub struct Chord {
-    ends: [Arc<Vertex>; 2],
+    /// Points whose convex hull contains the segment.
+    hull: SmallVec<[Arc<Vertex>; 3]>,
     plane: Arc<Plane>,
+    line: LineKey,
 }
 
 impl Chord {
-    /// Returns two flags: whether an end of the chord lies on the minus side of a plane, and whether an end
-    /// lies on the plus side.
+    /// Returns two flags: whether a part of the chord may lie on the minus side of a plane, and whether a
+    /// part may lie on the plus side.
     fn reaches(&self, plane: &Plane) -> [bool; 2] {
-        let sides = self.ends.each_ref().map(|end| end.side_of(plane));
+        let sides: SmallVec<[Side; 3]> = self.hull.iter().map(|p| p.side_of(plane)).collect();
         [Side::Minus, Side::Plus].map(|side| sides.contains(&side))
     }
 }
@@ -99,7 +111,9 @@ pub fn divided(
             continue;
         }
         let pivot = part.chords.swap_remove(part.chords.len() / 2);
-        lines.push(LineKey::of_planes(&plane, &pivot.plane));
+        lines.push(pivot.line);
+        // A chord on the same line divides neither half.
+        part.chords.retain(|chord| chord.line != pivot.line);
         let halves = part.halved(&plane, &pivot.plane, sources);
         open.extend(halves.into_iter().filter(|half| !half.edges.is_empty()));
     }

@@ -1,8 +1,14 @@
 //! Patches: sets of faces, such that only coplanar faces of one patch may be joined to a polygon; and the
 //! edges at which such polygons are divided.
 
+use std::sync::Arc;
+
+use rustc_hash::FxHashSet as HashSet;
+
 use super::chords::EdgeContact;
-use crate::mesh::handle::SourceFace;
+use crate::geometry::line::LineKey;
+use crate::merge::lists::list::Sources;
+use crate::mesh::handle::{OrientedFace, SourceFace};
 use crate::mesh::source::Source;
 
 /// The patch number of each face, by the slot of its source and its number in the input.
@@ -28,7 +34,7 @@ use crate::mesh::source::Source;
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Patches {
-    by_slot: Vec<Option<Vec<u32>>>,
+    by_slot: Arc<[Option<Vec<u32>>]>,
     contacts: Vec<EdgeContact>,
 }
 
@@ -39,18 +45,22 @@ impl Patches {
     /// Takes for each source the patch number of each of its faces; `None` for a source without patches.
     pub fn new(patches: Vec<Option<Vec<u32>>>) -> Self {
         Self {
-            by_slot: patches,
+            by_slot: patches.into(),
             contacts: Vec::new(),
         }
     }
 
-    /// Returns the same patches, but each polygon will also be divided at the edges of `contacts` inside it.
-    #[must_use]
-    pub fn divided(&self, contacts: &[EdgeContact]) -> Self {
-        Self {
-            by_slot: self.by_slot.clone(),
-            contacts: contacts.to_vec(),
-        }
+    /// Returns the same patches, but each polygon will also be divided at the edges of `contacts` inside it;
+    /// `None` if the polygons are already divided at all of them.
+    pub fn divided(&self, contacts: &[EdgeContact], sources: &Sources) -> Option<Self> {
+        let known = self.contacts.iter().map(|c| c.place(sources));
+        let known: HashSet<(OrientedFace, LineKey)> = known.collect();
+        let is_new = |contact: &&EdgeContact| !known.contains(&contact.place(sources));
+        let new: Vec<EdgeContact> = contacts.iter().filter(is_new).cloned().collect();
+        (!new.is_empty()).then(|| Self {
+            by_slot: Arc::clone(&self.by_slot),
+            contacts: [&self.contacts[..], &new].concat(),
+        })
     }
 
     /// The edges inside polygons at which these polygons are divided.

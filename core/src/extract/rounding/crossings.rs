@@ -4,7 +4,6 @@
 //! not both parts have a vertex or an edge there.
 
 use super::broad_phase::triangles_near;
-use super::edges::crossing;
 use super::image::Image;
 use super::star::is_star_shaped;
 use crate::arith::convert::as_number;
@@ -13,6 +12,7 @@ use crate::geometry::doubles::slabs::Slabs;
 use crate::geometry::doubles::Facing;
 use crate::interrupt::{poll, spend};
 use crate::merge::pairs::{pairs, BoundedElement, BoxedElement, ElementsInBox};
+use crate::mesh::crossing_edges::crossing;
 use crate::mesh::faces::Faces;
 use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::{both, each, each_chunk, WorkSize, CHUNK};
@@ -416,5 +416,56 @@ mod tests {
             triangles: &VertexId::rows([[0, 1, 2], [2, 1, 0]]),
         };
         assert_eq!(all_faults(&faces).flat, [0, 1]);
+    }
+
+    /// The vertices of a tetrahedron with a face in the plane z = 0, of an edge in that face, and apexes
+    /// above and below the face.
+    const PLACES: [Point; 12] = [
+        [-9.0, -9.0, 0.0],
+        [0.0, 18.0, 0.0],
+        [9.0, -9.0, 0.0],
+        [0.0, 0.0, -9.0],
+        [-1.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 3.0, 1.0],
+        [0.0, 2.0, 2.0],
+        [0.0, -2.0, 2.0],
+        [0.0, -3.0, 1.0],
+        [0.0, 3.0, -1.0],
+        [0.0, -3.0, -1.0],
+    ];
+
+    /// The number of crossings of a tetrahedron with wedges at the edge from vertex 4 to 5, each given by
+    /// its two other vertices; the same for any order of the triangles.
+    fn crossings_with(wedges: &[[u32; 2]]) -> usize {
+        let tetrahedron = |v: [u32; 4]| TETRAHEDRON.map(|t| t.map(|k| v[k as usize]));
+        let wedge = |[a, b]: &[u32; 2]| tetrahedron([4, 5, *a, *b]);
+        let mut triangles: Vec<[u32; 3]> = tetrahedron([0, 1, 2, 3]).to_vec();
+        triangles.extend(wedges.iter().flat_map(wedge));
+        let mut counts = (0..triangles.len()).map(|_| {
+            triangles.rotate_left(1);
+            let faces = Faces {
+                vertices: &PLACES,
+                triangles: &VertexId::rows(triangles.clone()),
+            };
+            all_faults(&faces).crossings.len()
+        });
+        let first = counts.next().unwrap_or(0);
+        assert!(counts.all(|count| count == first), "{wedges:?}");
+        first
+    }
+
+    // Found: where vertices were joined by place, as STL readers do, `Mesh.certificate` reported
+    // crossings at edges of four triangles that only touch.
+    #[test]
+    fn wedges_that_share_an_edge_touch_what_it_lies_in() {
+        assert_eq!(crossings_with(&[[6, 7]]), 0);
+        assert_eq!(crossings_with(&[[6, 7], [8, 9]]), 0);
+    }
+
+    #[test]
+    fn wedges_that_share_an_edge_cross_what_one_of_them_passes() {
+        assert!(crossings_with(&[[6, 10]]) > 0);
+        assert!(crossings_with(&[[7, 8], [9, 11]]) > 0);
     }
 }

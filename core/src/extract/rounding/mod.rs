@@ -2,7 +2,6 @@
 
 pub mod broad_phase;
 pub mod crossings;
-mod edges;
 mod image;
 pub mod mend;
 pub mod places;

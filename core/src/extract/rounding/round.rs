@@ -16,6 +16,8 @@ use crate::extract::assemble::assemble_patches;
 use crate::extract::joining::patches::Patches;
 use crate::extract::mesh::{numbers_left, Corner, ExactMesh, Mesh};
 use crate::extract::order::put_in_order;
+use crate::extract::surface::passing::passing;
+use crate::extract::surface::Surface;
 use crate::geometry::doubles::bit_key;
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
@@ -66,11 +68,10 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
     put_in_order(&mut exact, &mut vertices);
     let mut mesh = Mesh {
         vertices,
-        triangles: std::mem::take(&mut exact.triangles),
-        origins: Vec::new(),
-        flips: Vec::new(),
+        triangles: exact.triangles.clone(),
         findings: std::mem::take(&mut exact.findings),
-        compared: 0,
+        patches: patches.clone(),
+        ..Mesh::default()
     };
     let sources = Sources::new(solid.sources().clone());
     let unfolded = unfold(&mut mesh, &exact, &sources);
@@ -80,7 +81,11 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
         || names(&exact.faces, &sources),
     );
     (mesh.origins, mesh.flips) = names;
-    let settled = settle_mesh(&mut mesh, solid, &exact, &sources, &parties)?;
+    let surface = Surface::new(solid, patches, &exact);
+    let settled = match settle_mesh(&mut mesh, solid, &surface, &sources, &parties)? {
+        Settling::Settled(settled) => settled,
+        Settling::Divided(patches) => return mesh_of_patches(solid, &patches),
+    };
     let left = if unfolded.left.is_empty() && settled.mended.is_empty() {
         Vec::new()
     } else {
@@ -115,20 +120,17 @@ fn names(faces: &[OrientedFace], sources: &Sources) -> (Vec<[u32; 2]>, Vec<bool>
 /// Compares each new triangle with all triangles near it, and each untouched face with untouched faces of
 /// other inputs or connected pieces: on the lattice untouched faces do not cross, but with their given
 /// doubles they may. If untouched faces cross on the lattice, too, because an input overlaps itself, the mesh
-/// stays as it is, and the faults are `own`.
+/// stays as it is, and the faults are `own`. If exact triangles pass through one another, they are divided
+/// there first.
 fn settle_mesh(
     mesh: &mut Mesh,
     solid: &Solid,
-    exact: &ExactMesh,
+    surface: &Surface,
     sources: &Sources,
     parties: &[u32],
-) -> Result<Settled> {
-    let mut changed = at_blurred(solid, exact);
-    changed.extend(with_others_corners(mesh, sources, exact));
-    changed.extend(where_moving_crosses(sources, exact));
-    changed.sort_unstable();
-    changed.dedup();
-    changed.extend(as_number(exact.untouched)..as_number(mesh.triangles.len()));
+) -> Result<Settling> {
+    let exact = surface.mesh();
+    let changed = changed(mesh, solid, exact, sources);
     let party = |t: u32| parties[t as usize];
     let corner = |v: VertexId| exact.vertices.get(v.index());
     let on_lattice = |v: VertexId| match corner(v) {
@@ -156,6 +158,10 @@ fn settle_mesh(
         snapped.flatten().collect()
     };
     let settled = if found.is_empty() || is_simple(solid, &seem_to_cross())? {
+        let passing = passing(surface, &found.crossings);
+        if let Some(divided) = surface.patches().divided(&passing, sources) {
+            return Ok(Settling::Divided(divided));
+        }
         settle(
             &mut rounded,
             changed,
@@ -173,7 +179,27 @@ fn settle_mesh(
     };
     mesh.vertices = rounded.vertices;
     mesh.triangles = rounded.triangles;
-    Ok(settled)
+    Ok(Settling::Settled(settled))
+}
+
+/// What came of settling a mesh.
+enum Settling {
+    /// The crossings were mended or are reported.
+    Settled(Settled),
+    /// Exact triangles pass through one another, so polygons must be divided as these patches say.
+    Divided(Patches),
+}
+
+/// Returns the triangles that may cross any other triangle, ascending: those that are not untouched faces, or
+/// whose corners have other doubles than when they did not cross.
+fn changed(mesh: &Mesh, solid: &Solid, exact: &ExactMesh, sources: &Sources) -> Vec<u32> {
+    let mut changed = at_blurred(solid, exact);
+    changed.extend(with_others_corners(mesh, sources, exact));
+    changed.extend(where_own_faces_cross(sources, exact));
+    changed.sort_unstable();
+    changed.dedup();
+    changed.extend(as_number(exact.untouched)..as_number(mesh.triangles.len()));
+    changed
 }
 
 /// Returns a party number for each triangle: triangles have equal numbers if they lie in faces of one input
@@ -221,15 +247,15 @@ fn at_blurred(solid: &Solid, exact: &ExactMesh) -> Vec<u32> {
     found
 }
 
-/// Returns the untouched faces that cross other faces of their input because a motion of the lattice rounded
-/// their vertices, ascending.
-fn where_moving_crosses(sources: &Sources, exact: &ExactMesh) -> Vec<u32> {
+/// Returns the untouched faces that cross other faces of their input, ascending: because a motion of the
+/// lattice rounded their vertices, or because walls of the input pass through one another in an edge.
+fn where_own_faces_cross(sources: &Sources, exact: &ExactMesh) -> Vec<u32> {
     let mut found = Vec::new();
     let mut first = 0;
     for run in exact.faces[..exact.untouched].chunk_by(|a, b| a.slot() == b.slot()) {
         let source = sources.get(run[0].slot());
-        let close = source.mesh().zip(source.close_pairs().get());
-        let crossing = close.map_or_else(Vec::new, |(mesh, pairs)| crossing_faces(mesh, pairs));
+        let suspected = |mesh| crossing_faces(mesh, &source.suspected_pairs());
+        let crossing = source.mesh().map_or_else(Vec::new, suspected);
         if !crossing.is_empty() {
             let crosses = |face: &OrientedFace| crossing.binary_search(&face.id().0).is_ok();
             let numbered = (first..).zip(run).filter(|(_, face)| crosses(face));

@@ -21,10 +21,15 @@ pub fn look_at_contacts(solid: &Solid, motion: &Motion) {
     if motion.shifted() != [false; 3] {
         for source in solid.sources().iter() {
             if let Some(mesh) = source.mesh() {
-                source.close_pairs().get_or_make(|| close_on_lattice(mesh));
+                look_at(source, mesh);
             }
         }
     }
+}
+
+/// Finds the pairs of faces of a source's mesh that touch on the lattice, unless they are known.
+pub fn look_at(source: &Source, mesh: &TriangleMesh) {
+    source.close_pairs().get_or_make(|| close_on_lattice(mesh));
 }
 
 /// Returns, in ascending order, the faces that cross others in the doubles of a mesh; `pairs` are the pairs

@@ -223,6 +223,16 @@ impl Contacts {
         }
     }
 
+    /// Returns the pairs of facets that have a segment in common, other than a common edge, ascending; the lower
+    /// number of each pair comes first.
+    pub(super) fn meeting_pairs(&self) -> Vec<[FacetId; 2]> {
+        let pair = |s: &Segment| [s.facet.min(s.other), s.facet.max(s.other)];
+        let mut pairs: Vec<[FacetId; 2]> = self.segments.iter().map(pair).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+
     fn add(&mut self, facets: &Facets, met: Vec<Vec<MeetingFacets>>) {
         for MeetingFacets { pair, kind } in met.into_iter().flatten() {
             poll();

@@ -11,13 +11,19 @@ use super::scene::Scene;
 use super::shells::{distinct, is_outward, shells, Shell};
 use super::star::is_star_shaped;
 use super::MIN_FACES_FOR_POOL;
+use crate::arith::convert::as_double;
 use crate::geometry::cell::Cell;
+use crate::geometry::doubles::meeting::{meeting_of, Meeting};
+use crate::geometry::doubles::{Facing, Point};
 use crate::geometry::side::Orientation;
 use crate::merge::expression::{Expression, Term};
 use crate::merge::rule::Rule;
+use crate::mesh::crossing_edges::crossing;
+use crate::mesh::faces::Faces;
 use crate::mesh::handle::Slot;
 use crate::mesh::source::Source;
 use crate::mesh::tasks::WorkSize;
+use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Node};
 use crate::tree::solid::Solid;
 
@@ -108,7 +114,11 @@ fn arranged_alone(operand: Operand, cell: Cell, rule: Rule) -> Option<United> {
     let mut found = Contacts::default();
     scene.resolve(0, &mut found).ok()?;
     let root = scene.root(&found).ok()?;
-    Some(if is_all_of(&root, operand.source) {
+    let is_same = is_all_of(&root, operand.source) && {
+        let find = || passing_pairs(&scene.facets, &found);
+        operand.source.passing_pairs().get_or_make(find).is_empty()
+    };
+    Some(if is_same {
         United::Same
     } else {
         United::Other(root)
@@ -123,6 +133,37 @@ fn simple_shells(operand: &Operand) -> Option<Vec<Shell>> {
     let is_regular = !irregular(operand.source).contains(&true);
     let shells = distinct(operand.mesh, shells(operand.mesh));
     (is_regular && shells.iter().all(is_simple)).then_some(shells)
+}
+
+/// Returns the pairs of faces at which walls of a mesh pass through one another, given the contacts of its faces,
+/// which all bound the solid: this can be only in edges of six or more walls.
+fn passing_pairs(facets: &Facets, found: &Contacts) -> Vec<[u32; 2]> {
+    let pairs = found.meeting_pairs().into_iter();
+    let pairs: Vec<[u32; 2]> = pairs.map(|pair| pair.map(|f| facets.face(f).0)).collect();
+    crossing_pairs(facets.operands[0].mesh, &pairs)
+}
+
+/// Returns the pairs of faces, of the given ones, that cross on the lattice, or at whose common edge surfaces
+/// cross.
+fn crossing_pairs(mesh: &TriangleMesh, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    if pairs.is_empty() {
+        return Vec::new();
+    }
+    // Lattice coordinates are exact in doubles.
+    let places: Vec<Point> = mesh.vertices.iter().map(|p| p.map(as_double)).collect();
+    let faces = Faces {
+        vertices: &places,
+        triangles: &mesh.faces,
+    };
+    let facing = |face: u32| Facing::of(&faces.corners(face));
+    let met = |[t, u]: &[u32; 2]| ([*t, *u], meeting_of(&facing(*t), &facing(*u)));
+    let (clear, doubtful): (Vec<_>, Vec<_>) = (pairs.iter().map(met))
+        .filter(|(_, meeting)| *meeting != Meeting::Clear)
+        .partition(|(_, meeting)| matches!(meeting, Meeting::Crossing | Meeting::Overlap));
+    let mut found = crossing(&faces, doubtful);
+    found.extend(clear.into_iter().map(|(pair, _)| pair));
+    found.sort_unstable();
+    found
 }
 
 /// Returns true if a leaf lists all faces of a mesh, whole and in their orientation, and nothing else.

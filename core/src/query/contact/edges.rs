@@ -1,15 +1,17 @@
-//! Finds edges of a surface that lie inside faces of the same surface.
+//! Finds edges of a surface at which other walls of the same surface pass inside the solid.
 
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::near::{near_pairs, Element, LatticeBox};
-use super::surface::Surface;
 use crate::arith::convert::as_number;
 use crate::error::Result;
+use crate::extract::assemble::assemble_patches;
 use crate::extract::joining::chords::EdgeContact;
 use crate::extract::joining::patches::Patches;
+use crate::extract::surface::near::{near_pairs, Element, LatticeBox};
+use crate::extract::surface::passing::{contacts_of, Mate, WallPair};
+use crate::extract::surface::Surface;
 use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
@@ -18,11 +20,13 @@ use crate::mesh::handle::{FaceId, VertexId};
 use crate::mesh::topology::{ends, Topology, NONE};
 use crate::tree::solid::Solid;
 
-/// Returns the reflex edges of a reduced solid's surface that lie inside a face: there two parts of the
-/// solid touch, and the face extends over both. Exact.
+/// Returns the reflex edges of a reduced solid's surface that lie inside a face, or that overlap an edge of
+/// two other faces inside the solid: there two parts of the solid touch, but their walls go over into each
+/// other. Exact.
 ///
 /// An edge is reflex if the solid fills more than half of the space around it. An edge that is not reflex
-/// only touches a face from outside, and does not connect two parts of the solid.
+/// only touches other walls from outside, and does not connect two parts of the solid, unless walls of the
+/// surface pass through one another (see `extract/surface/passing.rs`).
 ///
 /// # Cost
 /// Proportional to the mesh, the pairs of a reflex edge and a flat part of the surface whose boxes overlap,
@@ -47,17 +51,21 @@ use crate::tree::solid::Solid;
 /// # Ok::<(), bspcsg::error::Error>(())
 /// ```
 pub fn edge_contacts(solid: &Solid, patches: &Patches) -> Result<Vec<EdgeContact>> {
-    let surface = Surface::of(solid, patches)?;
+    let mesh = assemble_patches(solid, patches)?;
+    let surface = Surface::new(solid, patches, &mesh);
     let folds = Folds::of(&surface);
-    let contact = |[edge, triangle]: [u32; 2]| {
-        let edge = &folds.reflex[edge as usize];
-        EdgeContact {
-            ends: edge.ends.clone().map(Arc::new),
-            beside: edge.beside.map(|t| surface.face(t)),
-            face: surface.face(triangle),
-        }
-    };
-    Ok(folds.contacts().into_iter().map(contact).collect())
+    let found = folds.overlaps().into_iter();
+    Ok(found.flat_map(|overlap| folds.contacts(&overlap)).collect())
+}
+
+/// A reflex edge, by its number, that overlaps a triangle in its plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Overlap {
+    edge: u32,
+    triangle: u32,
+    /// The triangle's edge that overlaps the reflex edge; `None` inside the triangle or its flat part
+    /// (connected coplanar triangles).
+    along: Option<usize>,
 }
 
 /// An edge around which the solid fills more than a half turn.
@@ -77,6 +85,21 @@ impl ReflexEdge {
             ends: vertices.map(|vertex| surface.vertex(vertex)),
             vertices,
             beside: [half, mate].map(|half| FaceId::of_half_edge(half).0),
+        }
+    }
+
+    /// The two triangles that share the edge.
+    fn walls(&self, surface: &Surface) -> WallPair {
+        let [wall, mate] = self.beside;
+        let corners = surface.triangles()[mate as usize];
+        let apex = corners.iter().position(|v| !self.vertices.contains(v));
+        let mate = Mate {
+            wall: mate,
+            apex: apex.unwrap_or(0),
+        };
+        WallPair {
+            wall,
+            mate: Some(mate),
         }
     }
 
@@ -139,10 +162,24 @@ impl<'a> Folds<'a> {
         }
     }
 
-    /// Returns pairs of a reflex edge and a triangle such that the interior of the triangle, or of its flat
-    /// part (connected coplanar triangles), contains the edge. For each edge inside a flat part there is at
-    /// least one pair.
-    fn contacts(&self) -> Vec<[u32; 2]> {
+    /// Returns the contacts at which the faces of an overlap are divided.
+    fn contacts(&self, overlap: &Overlap) -> Vec<EdgeContact> {
+        let edge = &self.reflex[overlap.edge as usize];
+        let hull = edge.ends.iter().cloned().map(Arc::new).collect();
+        if overlap.along.is_some() {
+            let other = WallPair::at(overlap.triangle, overlap.along, &self.topology);
+            return contacts_of(self.surface, [edge.walls(self.surface), other], &hull);
+        }
+        vec![EdgeContact {
+            hull,
+            beside: edge.beside.map(|t| self.surface.face(t)),
+            face: self.surface.face(overlap.triangle),
+        }]
+    }
+
+    /// Returns the overlaps of reflex edges and triangles that lie inside the solid. For each edge inside a
+    /// flat part (connected coplanar triangles) there is at least one.
+    fn overlaps(&self) -> Vec<Overlap> {
         let mut found = Vec::new();
         for run in self.in_planes().chunk_by(|a, b| a[0] == b[0]) {
             let edges = run.iter().map(|[_, edge]| *edge);
@@ -158,7 +195,7 @@ impl<'a> Folds<'a> {
     }
 
     /// Returns pairs of a flat part and a reflex edge whose boxes overlap; the edge lies in the plane of the
-    /// part and is not on the part's boundary.
+    /// part.
     fn in_planes(&self) -> Vec<[u32; 2]> {
         if self.reflex.is_empty() {
             return Vec::new();
@@ -181,9 +218,9 @@ impl<'a> Folds<'a> {
             poll();
             let (number, flat) = (one.min(other), one.max(other) - first);
             let edge = &self.reflex[number as usize];
-            let bounds = edge.beside.iter().any(|t| self.flats.holding(*t) == flat);
-            let triangle = self.flats.triangles(flat)[0];
-            if !bounds && edge.lies_in_plane_of(triangle, self.surface) {
+            let triangles = self.flats.triangles(flat);
+            let is_own = matches!(triangles, [triangle] if edge.beside.contains(triangle));
+            if !is_own && edge.lies_in_plane_of(triangles[0], self.surface) {
                 found.push([flat, number]);
             }
             Some(())
@@ -193,13 +230,13 @@ impl<'a> Folds<'a> {
         found
     }
 
-    /// Adds a pair for each edge that lies inside a triangle at one of its ends; returns the edges without
-    /// such a triangle.
+    /// Adds the overlaps of edges with triangles at one of their ends; returns the edges that do not lie
+    /// inside such a triangle.
     fn at_corners(
         &self,
         edges: impl Iterator<Item = u32>,
         triangles: &[u32],
-        found: &mut Vec<[u32; 2]>,
+        found: &mut Vec<Overlap>,
     ) -> Vec<u32> {
         let mut around: HashMap<VertexId, Vec<u32>> = HashMap::default();
         for triangle in triangles {
@@ -210,16 +247,18 @@ impl<'a> Folds<'a> {
         }
         let is_left = |edge: &u32| {
             let vertices = &self.reflex[*edge as usize].vertices;
-            let mut near = vertices.iter().filter_map(|v| around.get(v)).flatten();
-            let holding = near.find(|triangle| self.is_in_middle(*edge, **triangle));
-            found.extend(holding.map(|triangle| [*edge, *triangle]));
-            holding.is_none()
+            let near = vertices.iter().filter_map(|v| around.get(v)).flatten();
+            let overlaps = near.filter_map(|triangle| self.overlap(*edge, *triangle));
+            let mut inside = overlaps.filter(|overlap| overlap.along.is_none());
+            let first = inside.next();
+            found.extend(first);
+            first.is_none()
         };
         edges.filter(is_left).collect()
     }
 
-    /// Adds all pairs of an edge and a triangle for which [`Self::is_in_middle`] is true.
-    fn compare(&self, edges: &[u32], triangles: &[u32], found: &mut Vec<[u32; 2]>) {
+    /// Adds all overlaps of some edges and triangles of one plane.
+    fn compare(&self, edges: &[u32], triangles: &[u32], found: &mut Vec<Overlap>) {
         let reflex = |edge: &u32| &self.reflex[*edge as usize];
         let mut elements: Vec<Element> = edges.iter().map(|e| reflex(e).element()).collect();
         elements.extend(triangles.iter().map(|triangle| Element {
@@ -236,26 +275,46 @@ impl<'a> Folds<'a> {
         };
         near_pairs(&elements, corners, |one, other| {
             let (edge, triangle) = (edges[one.min(other) as usize], triangle(one.max(other)));
-            if self.is_in_middle(edge, triangle) {
-                found.push([edge, triangle]);
-            }
+            found.extend(self.overlap(edge, triangle));
             Some(())
         });
     }
 
-    /// Returns true if an edge in a triangle's plane has a point in the triangle's interior, or overlaps an
-    /// edge that the triangle shares with another triangle of its flat part (connected coplanar triangles).
-    fn is_in_middle(&self, edge: u32, triangle: u32) -> bool {
+    /// Returns how a reflex edge in a triangle's plane overlaps the triangle, if it has a point in the
+    /// triangle's interior, or overlaps an edge of it and the triangle is inside the solid there.
+    fn overlap(&self, edge: u32, triangle: u32) -> Option<Overlap> {
         poll();
-        let ends = self.reflex[edge as usize].ends.each_ref();
+        let reflex = &self.reflex[edge as usize];
+        if reflex.beside.contains(&triangle) {
+            return None;
+        }
+        let ends = reflex.ends.each_ref();
         let facet = self.surface.facet(triangle);
-        let flat = self.flats.holding(triangle);
-        let goes_on = |half: u32| {
-            let mate = self.topology.mates()[half as usize];
-            mate != NONE && self.flats.holding(FaceId::of_half_edge(mate).0) == flat
+        let overlap = |along| Overlap {
+            edge,
+            triangle,
+            along,
         };
-        let mut inner = (0usize..).zip(FaceId(triangle).half_edges());
-        facet.has_inside(ends) || inner.any(|(i, half)| goes_on(half) && facet.has_along(i, ends))
+        if facet.has_inside(ends) {
+            return Some(overlap(None));
+        }
+        let along = (0..3).find(|i| facet.has_along(*i, ends))?;
+        if self.goes_on(triangle, along) {
+            return Some(overlap(None));
+        }
+        let apex = &facet.corners[(along + 2) % 3];
+        let walls = reflex.walls(self.surface);
+        walls
+            .has_inside(apex, self.surface)
+            .then(|| overlap(Some(along)))
+    }
+
+    /// Returns true if a triangle shares an edge with another triangle of its flat part (connected coplanar
+    /// triangles).
+    fn goes_on(&self, triangle: u32, edge: usize) -> bool {
+        let mate = self.topology.mates()[3 * triangle as usize + edge];
+        let flat = self.flats.holding(triangle);
+        mate != NONE && self.flats.holding(FaceId::of_half_edge(mate).0) == flat
     }
 }
 
@@ -306,8 +365,8 @@ impl FlatParts {
 
 #[cfg(test)]
 mod tests {
+    use super::super::divided;
     use super::*;
-    use crate::extract::assemble::assemble_patches;
     use crate::geometry::plane::Lattice;
     use crate::merge::expression::Term;
     use crate::merge::scenes::{cuboid, made_of, prism, tetrahedron};
@@ -321,7 +380,7 @@ mod tests {
 
     fn contacts(solid: &Solid) -> Vec<[Option<Lattice>; 2]> {
         let found = edge_contacts(solid, &Patches::default()).expect("bounded");
-        let places = |c: &EdgeContact| c.ends.each_ref().map(|end| end.as_lattice().copied());
+        let places = |c: &EdgeContact| [0, 1].map(|i| c.hull[i].as_lattice().copied());
         let mut ends: Vec<_> = found.iter().map(places).collect();
         for pair in &mut ends {
             pair.sort_unstable();
@@ -335,8 +394,9 @@ mod tests {
         let solid = grooved(8);
         assert_eq!(contacts(&solid), [[Some([4, 8, 0]), Some([4, 8, 4])]]);
         let plain = Patches::default();
-        let found = edge_contacts(&solid, &plain).expect("bounded");
-        let divided = plain.divided(&found);
+        let divided = divided(&solid, &plain)
+            .expect("bounded")
+            .expect("edges inside walls");
         assert!(edge_contacts(&solid, &divided).expect("bounded").is_empty());
         let surfaces = |patches| {
             let mesh = assemble_patches(&solid, patches).expect("bounded");

@@ -1,17 +1,16 @@
 //! Contact of surfaces: common points of two surfaces, and edges of a surface inside its own faces.
 
 mod edges;
-mod facet;
-mod near;
-mod surface;
 
 use crate::error::Result;
+use crate::extract::assemble::{assemble, assemble_patches};
 use crate::extract::joining::patches::Patches;
+use crate::extract::surface::facet::Facet;
+use crate::extract::surface::near::{near_pairs, Element};
+use crate::extract::surface::Surface;
+use crate::merge::lists::list::Sources;
 use crate::tree::solid::Solid;
 pub use edges::edge_contacts;
-use facet::Facet;
-use near::{near_pairs, Element};
-use surface::Surface;
 
 /// Return whether the surfaces of two reduced solids on one lattice have a point in common; exact.
 ///
@@ -43,7 +42,9 @@ use surface::Surface;
 /// ```
 pub fn surfaces_meet(first: &Solid, second: &Solid) -> Result<bool> {
     let all = Patches::default();
-    let surfaces = [Surface::of(first, &all)?, Surface::of(second, &all)?];
+    let meshes = [assemble(first)?, assemble(second)?];
+    let surface = |i: usize| Surface::new([first, second][i], &all, &meshes[i]);
+    let surfaces = [surface(0), surface(1)];
     let space = surfaces[0].space().within(&surfaces[1].space());
     let near = surfaces.each_ref().map(|s| s.triangles_in(&space));
     let element = |operand| move |&(_, space): &(u32, _)| Element { operand, space };
@@ -59,4 +60,33 @@ pub fn surfaces_meet(first: &Solid, second: &Solid) -> Result<bool> {
         |p, q| (!facet(p).meets(facet(q))).then_some(()),
     );
     Ok(apart.is_none())
+}
+
+/// Returns patches whose polygons are divided at all edges in which a reduced solid touches itself (see
+/// [`edge_contacts`]); `None` if the given patches already are.
+///
+/// # Errors
+/// `Unbounded`.
+pub fn divided(solid: &Solid, patches: &Patches) -> Result<Option<Patches>> {
+    let sources = Sources::new(solid.sources().clone());
+    let mut all = None;
+    loop {
+        // Dividing joins whole faces to polygons, which may contain further edges.
+        let last = all.as_ref().unwrap_or(patches);
+        let Some(next) = last.divided(&edge_contacts(solid, last)?, &sources) else {
+            return Ok(all);
+        };
+        all = Some(next);
+    }
+}
+
+/// Returns the number of connected surfaces of a bounded solid, and the Euler number of its boundary; both
+/// depend on the set of points alone if `patches` are divided at all edges in which the solid touches itself.
+///
+/// # Errors
+/// `Unbounded`.
+pub fn surfaces_and_euler_number(solid: &Solid, patches: &Patches) -> Result<(usize, i64)> {
+    let mesh = assemble_patches(solid, patches)?;
+    let counts = mesh.counts();
+    Ok((counts.surfaces, counts.euler_number(mesh.triangles.len())))
 }

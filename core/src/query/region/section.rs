@@ -15,7 +15,6 @@ use crate::geometry::vertex::Vertex;
 use crate::geometry::winding::path::determinant;
 use crate::interrupt::poll;
 use crate::mesh::handle::VertexId;
-use crate::query::exact::vertex;
 use crate::tree::solid::Solid;
 
 /// A bounded solid's boundary, prepared for any number of sections by planes.
@@ -34,7 +33,7 @@ impl Sections {
     pub fn of(solid: &Solid) -> Result<Self> {
         let mesh = assemble(solid)?;
         let numbered = VertexId::all().zip(&mesh.vertices);
-        let points: Vec<Vertex> = numbered.map(|(i, _)| vertex(solid, &mesh, i)).collect();
+        let points: Vec<Vertex> = numbered.map(|(i, _)| mesh.vertex(i, solid)).collect();
         let near = |p: &Vertex| p.as_lattice().map_or([f64::NAN; 3], |p| p.map(as_double));
         Ok(Self {
             near: points.iter().map(near).collect(),

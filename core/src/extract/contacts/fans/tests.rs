@@ -271,6 +271,21 @@ fn cavities_that_share_an_edge_join() {
 }
 
 #[test]
+fn counts_do_not_depend_on_where_an_edge_is_divided() {
+    let counted = |surface: &Surface| {
+        let split = surface.split();
+        let euler_number = split.counts.euler_number(split.corners.len());
+        (split.counts.surfaces, euler_number)
+    };
+    for steps in 1..4 {
+        let bodies = wedges(&HEXAGON, steps);
+        assert_eq!(counted(&bodies), (3, 6));
+        // The cavities have one common wall, because three wedges of the inside lie between them.
+        assert_eq!(counted(&bodies.reversed()), (1, 2));
+    }
+}
+
+#[test]
 fn three_wedges_at_an_edge() {
     let parted = wedges(&HEXAGON, 1).split();
     assert_eq!(

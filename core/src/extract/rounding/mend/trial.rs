@@ -1,10 +1,10 @@
 //! Makes and undoes changes of a mesh, and finds the faults that are left.
 
 use super::part::{Edit, Mending, Star, BOXES_PER_TRIANGLE_TEST};
-use crate::extract::rounding::edges::crosses_at;
 use crate::geometry::doubles::extent::Extent;
 use crate::geometry::doubles::meeting::{has_no_area, meeting, Meeting};
 use crate::geometry::doubles::sheets::{Sheet, Sheets};
+use crate::mesh::crossing_edges::crosses_at;
 use crate::mesh::faces::edges;
 use crate::mesh::handle::VertexId;
 

@@ -1,11 +1,13 @@
-//! The triangulated surface of a solid with exact corners.
+//! The triangulated surface of a solid with exact corners, and where it touches itself.
+
+pub mod facet;
+pub mod near;
+pub mod passing;
 
 use std::sync::Arc;
 
-use super::facet::Facet;
-use super::near::LatticeBox;
-use crate::error::Result;
-use crate::extract::assemble::assemble_patches;
+use self::facet::Facet;
+use self::near::LatticeBox;
 use crate::extract::joining::patches::Patches;
 use crate::extract::mesh::ExactMesh;
 use crate::geometry::plane::Plane;
@@ -14,25 +16,33 @@ use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::mesh::handle::{OrientedFace, VertexId};
-use crate::query::exact;
 use crate::tree::solid::Solid;
 
 /// The triangulated surface of a solid with exact corners.
 pub struct Surface<'a> {
     solid: &'a Solid,
     patches: &'a Patches,
-    mesh: ExactMesh,
+    mesh: &'a ExactMesh,
 }
 
 impl<'a> Surface<'a> {
-    /// Makes the surface of a bounded solid; each triangle lies in faces of one patch.
-    pub fn of(solid: &'a Solid, patches: &'a Patches) -> Result<Self> {
-        let mesh = assemble_patches(solid, patches)?;
-        Ok(Self {
+    /// Makes the surface of a solid from its mesh, of which each triangle lies in faces of one patch.
+    pub fn new(solid: &'a Solid, patches: &'a Patches, mesh: &'a ExactMesh) -> Self {
+        Self {
             solid,
             patches,
             mesh,
-        })
+        }
+    }
+
+    /// The mesh of the surface.
+    pub fn mesh(&self) -> &'a ExactMesh {
+        self.mesh
+    }
+
+    /// The patches of faces, of which each triangle lies in one.
+    pub fn patches(&self) -> &'a Patches {
+        self.patches
     }
 
     /// The vertices of each triangle.
@@ -47,7 +57,7 @@ impl<'a> Surface<'a> {
 
     /// The exact position of a vertex.
     pub fn vertex(&self, vertex: VertexId) -> Vertex {
-        exact::vertex(self.solid, &self.mesh, vertex)
+        self.mesh.vertex(vertex, self.solid)
     }
 
     /// The source face that a triangle lies in.
@@ -84,6 +94,14 @@ impl<'a> Surface<'a> {
     /// The corners of a triangle.
     pub fn corners(&self, triangle: u32) -> [Vertex; 3] {
         self.mesh.triangles[triangle as usize].map(|vertex| self.vertex(vertex))
+    }
+
+    /// The sides of a triangle's plane on which the corners of another triangle lie; `Plus` is outside the
+    /// solid at the triangle.
+    pub fn sides(&self, triangle: u32, other: u32) -> [Side; 3] {
+        self.corners(other)
+            .each_ref()
+            .map(|p| self.side(triangle, p))
     }
 
     /// A triangle with its corners and plane.
