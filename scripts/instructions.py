@@ -1,6 +1,8 @@
 """Count the instructions of fixed cases and compare them with the recorded counts.
 
 On a shared machine, times are too noisy to show a small change; counts repeat to within 0.1 %.
+The program is built as users get the core, in one unit: across the many units of development
+builds, functions are not inlined, so that a small change may count as another one there.
 Needs valgrind. With --record the new counts are recorded, with the machine and the compiler.
 """
 
@@ -12,6 +14,7 @@ import re
 import shutil
 import subprocess
 import tempfile
+import tomllib
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -41,10 +44,21 @@ _NAME = "instructions"
 _NOISE = 0.001
 
 
+def users_profile() -> dict[str, Any]:
+    """Return the settings of the build that users install."""
+    workspace = tomllib.loads((REPOSITORY / "Cargo.toml").read_text("utf-8"))
+    return dict(workspace["profile"]["release"])
+
+
 def built_program() -> Path:
-    """Build the program with the cases in release mode, and return its path."""
+    """Build the program with the cases as users get the core, and return its path.
+
+    Settings in the environment, as for development, would replace those of the profile.
+    """
+    settings = ("CARGO_PROFILE_", "CARGO_INCREMENTAL", "CARGO_ENCODED_RUSTFLAGS", "RUSTFLAGS")
+    left = {name: value for name, value in os.environ.items() if not name.startswith(settings)}
     command = ["cargo", "build", "--release", "--quiet", "-p", "bspcsg", "--example", "fixed_cases"]
-    subprocess.run(command, cwd=REPOSITORY, check=True)
+    subprocess.run(command, cwd=REPOSITORY, env=left, check=True)
     target = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
     return target / "release" / "examples" / "fixed_cases"
 
@@ -76,14 +90,15 @@ def all_counted(program: Path, cases: Iterable[str], before: dict[str, int]) -> 
     return counts
 
 
-def compiler_and_machine() -> dict[str, str]:
-    """Return the compiler and the instruction set, on which counts depend."""
+def compiler_and_machine() -> dict[str, Any]:
+    """Return the compiler, its settings and the instruction set, on which counts depend."""
     done = subprocess.run(["rustc", "--version"], capture_output=True, text=True, check=True)
-    return {"compiler": done.stdout.strip(), "instruction set": platform.machine()}
+    found = {"compiler": done.stdout.strip(), "instruction set": platform.machine()}
+    return {**found, "profile": users_profile()}
 
 
 def recorded_counts() -> dict[str, int]:
-    """Return the recorded counts, or none for another compiler or instruction set."""
+    """Return the recorded counts, or none for another compiler, build or instruction set."""
     path = RECORDS / f"{_NAME}.json"
     kept: dict[str, Any] = json.loads(path.read_text("utf-8")) if path.exists() else {}
     return dict(kept["counts"]) if kept.get("place") == compiler_and_machine() else {}
@@ -108,6 +123,8 @@ def main() -> None:
     unknown = [case for case in options.cases if case not in CASES]
     if unknown:
         parser.error(f"no such case: {', '.join(unknown)}; there are {', '.join(CASES)}")
+    if options.record and options.program:
+        parser.error("--record counts what users install; leave out --program")
     if shutil.which("valgrind") is None:
         raise SystemExit("instructions: valgrind is needed: apt-get install valgrind")
     before = recorded_counts()
