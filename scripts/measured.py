@@ -28,8 +28,9 @@ Rows = list[list[str]]
 
 #: The cases of `bspcsg bench` that are shown.
 _CASES = (
-    *["spheres-82k", "spheres-1310k", "spheres-1310k-one-core", "built-1310k", "real-pairs"],
-    *["small-pairs", "overlapping-pairs", "drilled-steps", "drilled-expression", "boxes-steps"],
+    *["spheres-82k", "spheres-1310k", "spheres-1310k-one-core", "built-1310k"],
+    *["large-pairs", "medium-pairs", "tiny-pairs", "overlap-pairs"],
+    *["drilled-steps", "drilled-expression", "boxes-steps"],
     *["milled-cylinders", "milled-capsules", "capsules", "menger-4", "cubes", "coincident"],
     *["needles", "dome", "files-checked", "files-unchecked"],
 )

@@ -11,6 +11,12 @@ from .workloads import Work
 #: A function of the folder of shared data that returns the work of an item.
 WorkMaker: TypeAlias = Callable[[Path], Work]
 
+#: A function of the folder of shared data that returns labels of items.
+Choice: TypeAlias = Callable[[Path], list[str]]
+
+#: The number of items in the small form of a case whose data choose the items.
+_SMALL = 2
+
 
 @dataclass(frozen=True)
 class BenchCase:
@@ -42,6 +48,8 @@ class BenchCase:
     other_sets : bool
         True if other engines interpret the operands as other sets, so that results are not
         compared.
+    chosen : Choice, optional
+        Chooses the items that belong to the case by the shared data; None for all items.
     """
 
     title: str
@@ -56,3 +64,10 @@ class BenchCase:
     checked_at_once: bool = False
     needs_gb: Mapping[str, float] = field(default_factory=dict)
     other_sets: bool = False
+    chosen: Choice | None = None
+
+    def labels(self, shared: Path, *, small: bool) -> list[str]:
+        """Return the labels of the items that are timed."""
+        if self.chosen is None:
+            return list(self.small if small else self.items)
+        return self.chosen(shared)[: _SMALL if small else None]

@@ -8,6 +8,7 @@ from . import public_meshes, shapes
 from .case import BenchCase, WorkMaker
 from .command_line import CommandLine
 from .dense_cases import DENSE_CASES
+from .engines import Operation
 from .targets import (
     MAIN_RIVAL,
     OURS,
@@ -41,6 +42,9 @@ CHAIN_ENGINES = ("bspcsg", "manifold3d")
 _OTHERS = ("meshlib", "trueform")
 
 _MESHES = "meshes/MANIFEST.tsv"
+
+#: The operations on real pairs.
+_OPERATIONS: tuple[Operation, ...] = ("union", "intersection", "difference")
 
 
 def _spheres(level: int) -> WorkMaker:
@@ -106,16 +110,44 @@ def dome(steps: int) -> WorkMaker:
     return lambda _: Carving(block, lambda: shapes.dome(steps)[1])
 
 
-def _real_pair(number: int) -> WorkMaker:
-    return lambda shared: Pair(*public_meshes.posed_pair(shared, number))
+def _real_pair(number: int, operation: Operation, kind: str) -> WorkMaker:
+    work = OverlappingPair if kind == "overlap" else Pair
+
+    def make(shared: Path) -> Work:
+        pair = public_meshes.real_pairs(shared)[number]
+        return work(*pair.meshes(shared), operation, pair.names)
+
+    return make
 
 
-def _small_pair(number: int) -> WorkMaker:
-    return lambda shared: Pair(*public_meshes.posed_pair(shared, number, public_meshes.SMALL))
+def _label(number: int, operation: Operation) -> str:
+    return f"pair {number}, {operation}"
 
 
-def _overlapping_pair(number: int) -> WorkMaker:
-    return lambda shared: OverlappingPair(*public_meshes.overlapping_pair(shared, number))
+def _real_pairs(title: str, kind: str, targets: tuple[Goal, ...]) -> BenchCase:
+    """Return the case of all operations on the real pairs of a kind."""
+    items = {
+        _label(number, operation): _real_pair(number, operation, kind)
+        for number in range(public_meshes.PAIRS)
+        for operation in _OPERATIONS
+    }
+
+    def chosen(shared: Path) -> list[str]:
+        found = enumerate(public_meshes.kinds(shared))
+        numbers = [number for number, each in found if each == kind]
+        return [_label(number, operation) for number in numbers for operation in _OPERATIONS]
+
+    overlap = kind == "overlap"
+    return BenchCase(
+        f"real pairs in random poses, {title}",
+        targets,
+        items,
+        items,
+        CHAIN_ENGINES if overlap else QUICK_ENGINES,
+        needs=_MESHES,
+        other_sets=overlap,
+        chosen=chosen,
+    )
 
 
 def _milled_by_balls(count: int) -> WorkMaker:
@@ -156,6 +188,13 @@ def _sphere_targets(factor: float) -> tuple[Goal, ...]:
 def _none_below(factor: float, *engines: str) -> tuple[Goal, ...]:
     return tuple(Faster(factor, engine) for engine in engines)
 
+
+#: The targets of real pairs with few triangles.
+_SMALL_PAIRS = (
+    MeanFaster(4),
+    MeanFaster(1.5, "meshlib"),
+    *_none_below(1, MAIN_RIVAL, "meshlib"),
+)
 
 _SIZES = (36, 72, 144, 288, 576, 708)
 
@@ -214,38 +253,19 @@ CASES: dict[str, BenchCase] = {
         {"2 × 20 480": _built_spheres(5)},
         QUICK_ENGINES,
     ),
-    "real-pairs": BenchCase(
-        "real pairs in random poses",
+    "large-pairs": _real_pairs(
+        "from 5 000 triangles on",
+        "large",
         (
             MeanFaster(7),
             *(MeanFaster(1.5, name) for name in _OTHERS),
             *_none_below(1.3, MAIN_RIVAL, *_OTHERS),
         ),
-        {f"pair {k}": _real_pair(k) for k in range(16)},
-        {f"pair {k}": _real_pair(k) for k in range(2)},
-        QUICK_ENGINES,
-        needs=_MESHES,
     ),
-    "small-pairs": BenchCase(
-        "small real pairs in random poses, meshes of 10 to 30 000 triangles",
-        (
-            MeanFaster(4),
-            MeanFaster(1.5, "meshlib"),
-            *_none_below(1, MAIN_RIVAL, "meshlib"),
-        ),
-        {f"pair {k}": _small_pair(k) for k in range(24)},
-        {f"pair {k}": _small_pair(k) for k in range(2)},
-        QUICK_ENGINES,
-        needs=_MESHES,
-    ),
-    "overlapping-pairs": BenchCase(
-        "the same, the first of which overlaps itself, as a set",
-        (MeanFaster(2), Faster(0.7)),
-        {f"pair {k}": _overlapping_pair(k) for k in range(16)},
-        {f"pair {k}": _overlapping_pair(k) for k in range(2)},
-        CHAIN_ENGINES,
-        needs=_MESHES,
-        other_sets=True,
+    "medium-pairs": _real_pairs("from 1 000 to 5 000 triangles", "medium", _SMALL_PAIRS),
+    "tiny-pairs": _real_pairs("below 1 000 triangles", "tiny", _SMALL_PAIRS),
+    "overlap-pairs": _real_pairs(
+        "one of which overlaps itself, as sets", "overlap", (MeanFaster(2), Faster(0.7))
     ),
     "drilled-steps": BenchCase(
         "cube minus 1 000 spheres, every step evaluated",
@@ -389,7 +409,7 @@ CASES: dict[str, BenchCase] = {
 #: The default cases, which take one or two minutes.
 SHORT = (
     "spheres-82k",
-    "small-pairs",
+    "tiny-pairs",
     "drilled-expression",
     "milled-cylinders",
     "menger-3",

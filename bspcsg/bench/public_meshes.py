@@ -2,18 +2,27 @@
 
 import csv
 from functools import cache
+from math import inf
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
-from .._types import MeshArrays
-from .shapes import generator, moved, random_rotation, scaled, turned, unit_vector
+from .._types import FloatArray, MeshArrays
+from .shapes import moved, rotation_of, scaled, turned
 
-#: The least and the greatest number of triangles of a mesh in large pairs, and in small pairs.
-LARGE, SMALL = (10_000, 500_000), (10, 30_000)
+#: The number of random pairs, and the seed that draws them.
+PAIRS, _SEED = 60, 11
 
-#: The distance between the box centres of two meshes, in multiples of their half diagonal.
-_CENTRE_DISTANCE = 0.3
+#: The largest number of triangles of a mesh.
+_MOST_TRIANGLES = 60_000
+
+#: The largest distance between the centres of two meshes along each axis.
+_SHIFT = 0.25
+
+#: The kinds of pairs, and the numbers of triangles below which a pair is of that kind. Pairs of
+#: which a mesh overlaps itself are of a kind of their own.
+KINDS = {"tiny": 1000, "medium": 5000, "large": inf, "overlap": 0}
 
 
 def swept_capsules(shared: Path) -> tuple[MeshArrays, list[MeshArrays]]:
@@ -26,64 +35,77 @@ def swept_capsules(shared: Path) -> tuple[MeshArrays, list[MeshArrays]]:
     return base, [(points, triangles[:, ::-1].copy()) for points, triangles in tools]
 
 
-def posed_pair(
-    shared: Path, number: int, sizes: tuple[int, int] = LARGE
-) -> tuple[MeshArrays, MeshArrays]:
-    """Return two public meshes, scaled to half diagonal 1, rotated and shifted at random."""
-    random = generator(number)
-    names = solid_names(shared, sizes)
-    first, second = random.choice(len(names), size=2, replace=False)
-    return _posed(shared, (names[first], names[second]), random)
-
-
-def overlapping_pair(shared: Path, number: int) -> tuple[MeshArrays, MeshArrays]:
-    """Return two small public meshes in a random pose, the first of which overlaps itself."""
-    random = generator(number)
-    overlapping = solid_names(shared, SMALL, overlapping=True)
-    first = overlapping[random.integers(len(overlapping))]
-    others = [name for name in (*overlapping, *solid_names(shared, SMALL)) if name != first]
-    return _posed(shared, (first, others[random.integers(len(others))]), random)
-
-
-def _posed(
-    shared: Path, names: tuple[str, str], random: np.random.Generator
-) -> tuple[MeshArrays, MeshArrays]:
-    posed = [turned(_unit(shared / "meshes" / name), random_rotation(random)) for name in names]
-    return posed[0], moved(posed[1], _CENTRE_DISTANCE * unit_vector(random))
-
-
-@cache
-def solid_names(
-    shared: Path, sizes: tuple[int, int] = LARGE, *, overlapping: bool = False
-) -> list[str]:
-    """Return the names of closed public meshes that every engine accepts.
+class RealPair(NamedTuple):
+    """Two public meshes and the random pose of the second.
 
     Parameters
     ----------
-    shared : Path
-    sizes : (int, int)
-        The least and the greatest number of triangles.
-    overlapping : bool
-        True for meshes that overlap themselves, False for meshes that do not.
+    names : (str, str)
+        The files of the meshes.
+    turn : (3, 3) array
+    shift : (3,) array
+        In multiples of the longest side of a mesh's bounding box.
     """
+
+    names: tuple[str, str]
+    turn: FloatArray
+    shift: FloatArray
+
+    def meshes(self, shared: Path) -> tuple[MeshArrays, MeshArrays]:
+        """Return both meshes, scaled to bounding boxes with longest side 1."""
+        first, second = (_unit(shared / "meshes" / name) for name in self.names)
+        return first, moved(turned(second, self.turn), self.shift)
+
+
+@cache
+def real_pairs(shared: Path) -> list[RealPair]:
+    """Return random pairs of all public meshes that are solids and not too large."""
+    random, names = np.random.default_rng(_SEED), solid_names(shared)
+    return [_random_pair(names, random) for _ in range(PAIRS)]
+
+
+def _random_pair(names: list[str], random: np.random.Generator) -> RealPair:
+    first, second = random.choice(names, 2).tolist()
+    turn = rotation_of(random.normal(size=4))
+    return RealPair((first, second), turn, random.uniform(-_SHIFT, _SHIFT, 3))
+
+
+@cache
+def kinds(shared: Path) -> list[str]:
+    """Return the kind of each pair of `real_pairs`, a key of `KINDS`."""
+    return [kind_of(pair.meshes(shared)) for pair in real_pairs(shared)]
+
+
+def kind_of(meshes: tuple[MeshArrays, MeshArrays]) -> str:
+    """Return the kind of a pair of meshes, a key of `KINDS`."""
+    if any(map(_overlaps_itself, meshes)):
+        return "overlap"
+    triangles = sum(len(faces) for _, faces in meshes)
+    return next(kind for kind, below in KINDS.items() if triangles < below)
+
+
+def _overlaps_itself(mesh: MeshArrays) -> bool:
+    from ..solid.solid import Solid
+
+    return "self_overlap" in {finding.code for finding in Solid(*mesh).findings}
+
+
+def solid_names(shared: Path) -> list[str]:
+    """Return the files of closed public meshes that manifold3d accepts, but for the largest."""
     with (shared / "meshes" / "MANIFEST.tsv").open(newline="") as lines:
-        rows = list(csv.DictReader(lines, delimiter="\t"))
-    return sorted(
+        rows = list(csv.DictReader(lines, delimiter="\t", quoting=csv.QUOTE_NONE))
+    return [
         row["file"]
         for row in rows
         if row["is_volume"] == "yes"
-        and row["self_intersecting"].isdigit()
-        and (int(row["self_intersecting"]) > 0) == overlapping
         and row["manifold_status"] == "NoError"
-        and sizes[0] <= int(row["n_triangles"]) <= sizes[1]
-    )
+        and int(row["n_triangles"]) <= _MOST_TRIANGLES
+    ]
 
 
 def _unit(path: Path) -> MeshArrays:
     from ..io import load
 
     vertices, faces = (array.copy() for array in load(path).to_mesh())
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    return scaled(
-        moved((vertices, faces), -(low + high) / 2), 2 / float(np.linalg.norm(high - low))
-    )
+    centred = moved((vertices, faces), -vertices.mean(axis=0))
+    return scaled(centred, 1 / float(np.ptp(vertices, axis=0).max()))

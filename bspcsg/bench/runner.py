@@ -6,7 +6,7 @@ import select
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from statistics import median
@@ -78,7 +78,8 @@ def run_case(key: str, settings: Settings, progress: Progress) -> dict[str, Any]
         missing = f"{settings.shared / case.needs} does not exist"
         return {"case": key, "title": case.title, "left_out": missing, "items": []}
     too_large = _too_large(case, settings)
-    labels = [label for label in _items_of(case, settings) if label not in too_large]
+    asked = case.labels(settings.shared, small=settings.small)
+    labels = [label for label in asked if label not in too_large]
     items = [_item(key, label, settings, progress) for label in labels]
     # Targets do not apply to a partial run.
     small = settings.small or _is_cut(key, settings)
@@ -86,17 +87,13 @@ def run_case(key: str, settings: Settings, progress: Progress) -> dict[str, Any]
     return row | {"too_large": too_large} if too_large else row
 
 
-def _items_of(case: BenchCase, settings: Settings) -> Iterable[str]:
-    return case.small if settings.small else case.items
-
-
 def _too_large(case: BenchCase, settings: Settings) -> dict[str, str]:
     """Return why items need more memory than this machine has, by the item's label."""
     has = machine()["memory_gb"]
     return {
-        label: f"needs {case.needs_gb[label]:g} GB of memory, this machine has {has:g}"
-        for label in _items_of(case, settings)
-        if has and case.needs_gb.get(label, 0) > has
+        label: f"needs {needed:g} GB of memory, this machine has {has:g}"
+        for label, needed in case.needs_gb.items()
+        if has and needed > has and label in (case.small if settings.small else case.items)
     }
 
 
@@ -253,7 +250,7 @@ class Gathered:
     def take(self, message: dict[str, Any]) -> None:
         """Store one report of a worker."""
         if message["say"] == "extent":
-            self._extent = {name: message[name] for name in ("area", "size", "triangles")}
+            self._extent = {name: message[name] for name in ("area", "size", "triangles", "names")}
         elif message["say"] == "plan":
             self._of(message)["planned"] = message["runs"]
         elif message["say"] == "run":

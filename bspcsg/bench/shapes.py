@@ -43,6 +43,12 @@ def rotation(axis: object, angle: float) -> FloatArray:
     return np.asarray(np.eye(3) + np.sin(angle) * across + (1 - np.cos(angle)) * (across @ across))
 
 
+def rotation_of(quaternion: FloatArray) -> FloatArray:
+    """Return the matrix of the rotation that a quaternion (w, x, y, z) of any length describes."""
+    w, axis = quaternion[0], quaternion[1:]
+    return rotation(axis, 2 * float(np.arctan2(np.linalg.norm(axis), w)))
+
+
 def random_rotation(random: np.random.Generator) -> FloatArray:
     """Return a uniformly distributed rotation matrix, (3, 3)."""
     matrix, upper = np.linalg.qr(random.normal(size=(3, 3)))

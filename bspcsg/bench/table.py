@@ -3,13 +3,16 @@
 from typing import Any
 
 from .cases import CASES
-from .targets import MAIN_RIVAL, OURS, DoublingTarget, Faster
+from .targets import MAIN_RIVAL, OURS, DoublingTarget, Faster, ratio
 from .times import seconds_text
 
 Row = dict[str, Any]
 
 #: A median of fewer runs than this is printed with the number of runs.
 _MIN_RUNS_FOR_MEDIAN = 5
+
+#: The number of the worst results that are named.
+_WORST = 12
 
 #: The text for a missing figure.
 _MISSING = "—"
@@ -74,10 +77,28 @@ def remarks(record: dict[str, Any]) -> list[str]:
         row for row in record["cases"] if _doubling(row) and row["items"] and not row.get("small")
     ]
     said += _dense_cases_sentence(dense) if dense else []
+    said += _worst_sentences(record["cases"])
     return said + [
         f"{row['case']}, {label}: left out, {reason}."
         for row in record["cases"]
         for label, reason in row.get("too_large", {}).items()
+    ]
+
+
+def _worst_sentences(rows: list[Row]) -> list[str]:
+    """Return a sentence for each of the worst results of meshes from files."""
+    items = [
+        (found, row["case"], item)
+        for row in rows
+        for item in row["items"]
+        if item.get("names") and (found := ratio(item, MAIN_RIVAL)) is not None
+    ]
+    worst = sorted(items, key=lambda each: each[0].value)[:_WORST]
+    return [
+        f"Worst: {found.text} {MAIN_RIVAL}, {case}, {item['item']} of {' and '.join(item['names'])}"
+        f" ({item['triangles']} triangles), {_time(item['engines'][OURS])} against"
+        f" {_time(item['engines'][MAIN_RIVAL])}."
+        for found, case, item in worst
     ]
 
 

@@ -83,8 +83,7 @@ def perform(task: Task, say: Callable[[dict[str, Any]], None]) -> None:
     """Perform a task, and report each result to `say` as soon as it is known."""
     _limit_resources(task)
     work = _work_of(task)
-    extent = work.extent()
-    say({"say": "extent", "area": extent.area, "size": extent.size, "triangles": extent.triangles})
+    say({"say": "extent", "names": work.names, **asdict(work.extent())})
     turns = [_EngineRuns(ENGINES[name](), work, task, say) for name in task.engines]
     while any(turn.left for turn in turns):
         for turn in turns:

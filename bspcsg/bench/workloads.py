@@ -67,6 +67,9 @@ class SurfaceExtent:
 class Work(ABC):
     """The base class of the kinds of work that are timed."""
 
+    #: The names of the operands' files; empty if there are none.
+    names: tuple[str, ...] = ()
+
     @abstractmethod
     def extent(self) -> SurfaceExtent:
         """Return the total extent of the operands."""
@@ -95,6 +98,7 @@ class Pair(Work):
     first: MeshArrays
     second: MeshArrays
     operation: Operation = "difference"
+    names: tuple[str, ...] = ()
 
     def extent(self) -> SurfaceExtent:
         """Return the total extent of both operands."""
@@ -150,7 +154,7 @@ class OverlappingPair(Pair):
 
     def proof(self, answer: MeshArrays) -> Evidence:
         """Check the result at random points, by exact counts of crossings."""
-        wrong, settled = wrong_points(self.first, self.second, answer, self.samples)
+        wrong, settled = wrong_points(self, answer)
         return Evidence(wrong == 0 < settled, f"wrong at {wrong} of {settled} points")
 
 
@@ -278,6 +282,14 @@ class Carving(Work):
         return Outcome(mesh, {"steps": sum(steps), **laps.seconds}, steps, solid)
 
 
+#: For each operation, whether a point is in the result, from whether it is in the operands.
+_HOLDS: dict[Operation, Callable[[Any, Any], bool]] = {
+    "union": lambda first, second: first or second,
+    "intersection": lambda first, second: first and second,
+    "difference": lambda first, second: first and not second,
+}
+
+
 class Stopwatch:
     """A stopwatch that records the seconds of each part of a run."""
 
@@ -309,22 +321,20 @@ def stepwise(
     return solid, steps
 
 
-def wrong_points(
-    first: MeshArrays, second: MeshArrays, answer: MeshArrays, samples: int
-) -> tuple[int, int]:
-    """Return the numbers of tested points where the difference `answer` is wrong, and of all.
+def wrong_points(work: OverlappingPair, answer: MeshArrays) -> tuple[int, int]:
+    """Return the numbers of tested points where the result `answer` is wrong, and of all.
 
     The points are random; one so near a surface that its side is uncertain is not tested.
     """
-    meshes = [RayClassifier(_mesh(arrays)) for arrays in (first, second, answer)]
-    low, high = first[0].min(axis=0), first[0].max(axis=0)
-    points = generator().uniform(low, high, (samples, 3))
+    meshes = [RayClassifier(_mesh(arrays)) for arrays in (work.first, work.second, answer)]
+    low, high = work.first[0].min(axis=0), work.first[0].max(axis=0)
+    points = generator().uniform(low, high, (work.samples, 3))
     wrong = settled = 0
     for x, y, z in points.tolist():
         found = [mesh.is_inside((x, y, z)) for mesh in meshes]
         if None not in found:
             settled += 1
-            wrong += (found[0] and not found[1]) != found[2]
+            wrong += _HOLDS[work.operation](found[0], found[1]) != found[2]
     return wrong, settled
 
 

@@ -25,6 +25,7 @@ from bspcsg.bench import (
 )
 from bspcsg.bench.cases import CASES, SHORT
 from bspcsg.bench.dense_cases import DENSE_CASES
+from bspcsg.bench.engines import Operation
 from bspcsg.bench.result_facts import facts_of, mesh_volume
 from bspcsg.bench.runner import with_volumes_compared
 from bspcsg.bench.targets import (
@@ -130,6 +131,7 @@ def _result(seconds: float, volume: float = 1.0, **more: Any) -> dict[str, Any]:
         "median": seconds,
         "cpu": seconds,
         "volumes": [volume],
+        "runs": 1,
         "facts": facts,
     } | more
 
@@ -237,14 +239,68 @@ def test_sets_that_overlap_themselves_are_checked_at_points() -> None:
     assert not work.proof(first).agrees
 
 
-def test_overlapping_pairs_overlap_and_others_do_not(shared_meshes: Path) -> None:
-    data = shared_meshes.parent
-    names = public_meshes.solid_names(data, public_meshes.SMALL)
-    overlapping = public_meshes.solid_names(data, public_meshes.SMALL, overlapping=True)
-    assert len(names) > 50 and len(overlapping) >= 20 and not {*names} & {*overlapping}
-    first, second = public_meshes.overlapping_pair(data, 3)
+@pytest.mark.parametrize("operation", ["union", "intersection", "difference"])
+def test_a_result_of_another_operation_is_refuted(operation: Operation) -> None:
+    first, second = shapes.box((0, 0, 0), (1, 1, 1)), shapes.box((0.5, 0, 0), (2, 1, 1))
+    work = OverlappingPair(first, second, operation, samples=30)
+    ours = engines.ENGINES["bspcsg"]()
+    assert work.proof(ours.boolean(first, second, operation)).agrees
+    other: Operation = "union" if operation != "union" else "difference"
+    assert not work.proof(ours.boolean(first, second, other)).agrees
+
+
+def test_real_pairs_are_drawn_from_all_solids_that_are_not_too_large(shared_meshes: Path) -> None:
+    shared = shared_meshes.parent
+    pairs, names = public_meshes.real_pairs(shared), public_meshes.solid_names(shared)
+    drawn = {name for pair in pairs for name in pair.names}
+    assert len(pairs) == 60 and len(names) > 90 and drawn < {*names}
+    first, second = pairs[0].meshes(shared)
     assert facts_of(first).open_edges == facts_of(second).open_edges == 0
-    assert np.linalg.norm(np.ptp(first[0], axis=0)) <= 2 * 3**0.5
+    assert np.ptp(first[0], axis=0).max() == pytest.approx(1)
+    assert np.abs(first[0].mean(axis=0)).max() < 1e-12
+    assert np.abs(second[0].mean(axis=0)).max() <= 0.25
+    turn = pairs[0].turn
+    assert np.allclose(turn @ turn.T, np.eye(3)) and np.linalg.det(turn) > 0
+
+
+def test_rotations_by_quaternions() -> None:
+    for w, x, y, z in np.random.default_rng(1).normal(size=(9, 4)):
+        turn = shapes.rotation_of(np.array([w, x, y, z]))
+        expected = np.array(
+            [w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y)]
+        )
+        assert np.allclose(turn[:, 0], expected / (w * w + x * x + y * y + z * z))
+        assert np.allclose(turn @ (x, y, z), (x, y, z))
+
+
+def test_real_pairs_belong_to_the_case_of_their_kind(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(public_meshes, "kinds", lambda _: ["tiny", "overlap", "tiny"])
+    labels = CASES["tiny-pairs"].labels(Path(), small=False)
+    assert labels[::2] == ["pair 0, union", "pair 0, difference", "pair 2, intersection"]
+    assert {*labels} < {*CASES["tiny-pairs"].items}
+    assert CASES["tiny-pairs"].labels(Path(), small=True) == labels[:2]
+    assert CASES["overlap-pairs"].labels(Path(), small=False)[0] == "pair 1, union"
+    assert CASES["large-pairs"].labels(Path(), small=False) == []
+
+
+def test_kinds_of_pairs() -> None:
+    ball, box = shapes.octasphere(12), shapes.box((0, 0, 0), (1, 1, 1))
+    overlapping = shapes.joined(dense_meshes.turned_cubes(2))
+    assert public_meshes.kind_of((box, box)) == "tiny"
+    assert public_meshes.kind_of((ball, box)) == "medium"
+    assert public_meshes.kind_of((shapes.octasphere(25), box)) == "large"
+    assert public_meshes.kind_of((ball, overlapping)) == "overlap"
+
+
+def test_remarks_name_the_worst_results() -> None:
+    items = [_item(2.0, k, triangles=90, names=["a.stl", "b.off"]) for k in (1.0, 6.0)]
+    row = {"case": "tiny-pairs", "title": "pairs", "small": True, "items": items}
+    assert table.remarks({"cases": [row]}) == [
+        "Worst: 0.5 × (processor 0.5 ×) manifold3d, tiny-pairs, x of a.stl and b.off"
+        " (90 triangles), 2 s / 2 s (1) against 1 s / 1 s (1).",
+        "Worst: 3 × (processor 3 ×) manifold3d, tiny-pairs, x of a.stl and b.off"
+        " (90 triangles), 2 s / 2 s (1) against 6 s / 6 s (1).",
+    ]
 
 
 def test_the_command_line_is_metered_in_a_process_of_its_own(
