@@ -1,5 +1,6 @@
 """`Profile`: the time and the counts of each stage of the evaluation of a solid."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from .._core import Tree
@@ -35,6 +36,33 @@ class Stage:
 
 
 @dataclass(frozen=True)
+class KernelCount:
+    """How often a kernel, a procedure for set operations, was asked in an evaluation.
+
+    Parameters
+    ----------
+    name : str
+        "arrangement", which is asked once about all faces, or "orthogonal", "general" or "trees",
+        which are asked about cells of the descent.
+    asked, took : int
+        The number of requests, and of those that the kernel carried out.
+    refused : dict of str to int
+        The number of requests that the kernel refused, by the reason.
+    """
+
+    name: str
+    asked: int
+    took: int
+    refused: Mapping[str, int]
+
+    def __str__(self) -> str:
+        """Return the counts as a line of text."""
+        reasons = ", ".join(f"{reason} ({count})" for reason, count in self.refused.items())
+        refused = f", refused {self.asked - self.took}: {reasons}" if reasons else ""
+        return f"{self.name}: asked {self.asked}, took {self.took}{refused}"
+
+
+@dataclass(frozen=True)
 class Profile:
     """The stages of the evaluation of a solid, in order.
 
@@ -43,20 +71,31 @@ class Profile:
     stages : tuple of Stage
     handed_on : str or None
         The reason why the fast path left the evaluation to the descent through space, if it did.
+    kernels : tuple of KernelCount
+        How often each kernel was asked, and why it refused.
     """
 
     stages: tuple[Stage, ...] = ()
     handed_on: str | None = None
+    kernels: tuple[KernelCount, ...] = ()
 
     @classmethod
     def of(cls, tree: Tree) -> "Profile":
         """Return the profile of the evaluation that made a tree."""
         stages, handed_on = tree.profile()
-        return cls(tuple(Stage(*stage) for stage in stages), handed_on)
+        kernels = (
+            KernelCount(name, asked, took, dict(refused))
+            for name, asked, took, refused in tree.kernels()
+        )
+        return cls(tuple(Stage(*stage) for stage in stages), handed_on, tuple(kernels))
 
     def lines(self) -> list[str]:
-        """Return a line for each stage; last, if there is one, the reason against the fast path."""
+        """Return a line for each stage and each kernel that was asked about cells.
+
+        The last line, if there is one, is the reason against the fast path.
+        """
         lines = [f"{s.name}: {s.seconds:.4f} s, {s.count} {COUNTED[s.name]}" for s in self.stages]
+        lines += [str(kernel) for kernel in self.kernels[1:] if kernel.asked]
         if self.handed_on is None:
             return lines
         return [*lines, f"left to the descent: {self.handed_on}"]

@@ -448,7 +448,8 @@ class Solid(Movable, PointSet):
         """Return the times and counts of the stages of the solid's evaluation; empty for a mesh.
 
         Operations on two different unchanged meshes take a fast path, which looks only at faces
-        that may meet; `Profile.handed_on` has the reason why an evaluation could not take it.
+        that may meet; `Profile.handed_on` has the reason why an evaluation could not take it, and
+        `Profile.kernels` how often each method was asked, and why it refused.
 
         Examples
         --------

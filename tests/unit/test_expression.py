@@ -178,9 +178,15 @@ def test_a_profile_tells_the_stages_and_why_work_was_handed_on() -> None:
     assert [stage.name for stage in pair.stages] == ["candidates", "contacts", "faces"]
     assert all(stage.count > 0 and stage.seconds >= 0 for stage in pair.stages)
     assert pair.handed_on is None
+    assert [(k.name, k.asked, k.took) for k in pair.kernels] == [
+        *[("arrangement", 1, 1), ("orthogonal", 0, 0), ("general", 0, 0), ("trees", 0, 0)]
+    ]
     step = (b.cube(2) - b.cube(1) - b.cube(1).translate(1.5, 1.5, 1.5)).profile()
     assert [stage.name for stage in step.stages] == ["descent"]
     assert "two different, unchanged" in str(step)
+    assert "orthogonal: asked 1, took 1\n" in str(step)
+    (reason,) = step.kernels[0].refused
+    assert "two different, unchanged" in reason and step.kernels[0].took == 0
     apart = (cube | b.cube(1).translate(5, 5, 5)).profile()
     assert "do not overlap" in (apart.handed_on or "")
     assert (
@@ -188,3 +194,14 @@ def test_a_profile_tells_the_stages_and_why_work_was_handed_on() -> None:
         == "left to the descent: the bounding boxes of the meshes do not overlap"
     )
     assert cube.profile().lines() == []
+
+
+def test_a_profile_tells_which_kernels_were_asked_and_why_they_refused() -> None:
+    turned = [b.cube(2).rotate(20 * k, (1, 2, 3)) for k in range(3)]
+    crossing = b.union(turned).profile()
+    orthogonal, general, _ = crossing.kernels[1:]
+    assert orthogonal.refused == {"faces not perpendicular to axes": orthogonal.asked}
+    assert general.took > 0
+    assert all(k.asked == k.took + sum(k.refused.values()) for k in crossing.kernels)
+    touching = b.union([*turned, turned[0].rotate(90, (1, 2, 3))]).profile()
+    assert "general: asked" in str(touching)

@@ -66,6 +66,24 @@ impl Declined {
     }
 }
 
+/// How often a kernel was asked in the evaluation of an expression, and why it refused.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct KernelCount {
+    /// The name of the kernel, such as "arrangement" or "trees".
+    pub name: &'static str,
+    /// The number of requests that the kernel solved.
+    pub took: u64,
+    /// The reasons why it refused, as texts for people, each with the number of requests refused for it.
+    pub refused: Vec<(&'static str, u64)>,
+}
+
+impl KernelCount {
+    /// Returns how often the kernel was asked.
+    pub fn asked(&self) -> u64 {
+        self.took + self.refused.iter().map(|(_, count)| count).sum::<u64>()
+    }
+}
+
 /// The stages of the evaluation of an expression, in the order in which they ran.
 ///
 /// # Example
@@ -86,6 +104,19 @@ pub struct Profile {
 }
 
 impl Profile {
+    /// Returns whether the arrangement, which each evaluation asks once, solved it, and if not, why.
+    pub fn arrangement(&self) -> KernelCount {
+        KernelCount {
+            name: "arrangement",
+            took: u64::from(self.declined.is_none()),
+            refused: self
+                .declined
+                .map(|why| (why.text(), 1))
+                .into_iter()
+                .collect(),
+        }
+    }
+
     /// Runs `work`, records it as a stage with its duration, and returns its result; `count` extracts the
     /// recorded number of items.
     pub fn timed<T>(

@@ -26,7 +26,7 @@ use crate::interrupt::poll;
 use crate::merge::descent::counters::Counters;
 use crate::merge::evaluate::{blamed_on_snapshot, evaluate, normalize, union_with_itself};
 use crate::merge::expression::{Expression, Term};
-use crate::merge::profile::Declined;
+use crate::merge::profile::{Declined, KernelCount};
 use crate::merge::rule::Rule;
 use crate::mesh::finding::{Finding, Severity};
 use crate::mesh::grid::{snap_point, Pitch};
@@ -664,7 +664,18 @@ impl Tree {
         let stages = profile.stages.iter().map(|s| (s.name, s.seconds, s.count));
         (stages.collect(), profile.declined.map(Declined::text))
     }
+
+    /// Return the kernels of the evaluation that made the tree, each with its name, how often it was asked
+    /// and took a cell, and the reasons why it refused, with their counts.
+    fn kernels(&self) -> Vec<KernelRow> {
+        let counts = self.counters.iter().flat_map(Counters::kernel_counts);
+        let row = |kernel: KernelCount| (kernel.name, kernel.asked(), kernel.took, kernel.refused);
+        counts.map(row).collect()
+    }
 }
+
+/// The name of a kernel, how often it was asked and took a cell, and the reasons why it refused.
+type KernelRow = (&'static str, u64, u64, Vec<(&'static str, u64)>);
 
 fn term(name: &str, arguments: Vec<u32>) -> Result<Term> {
     match (name, arguments.as_slice()) {

@@ -2,7 +2,8 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::merge::profile::Profile;
+use crate::merge::kernels::counts::KernelCounters;
+use crate::merge::profile::{KernelCount, Profile};
 
 /// Counts of the cells visited, faces sorted and cells solved by kernels in an evaluation.
 ///
@@ -41,6 +42,8 @@ pub struct Counters {
     pub leaves: AtomicU64,
     /// The number of elements (faces or parts of faces) in cells solved by kernels.
     pub leaf_elements: AtomicU64,
+    /// The numbers of cells that each kernel solved or refused.
+    pub kernels: KernelCounters,
     /// The stages of the evaluation with their durations; empty until it has ended.
     pub profile: Profile,
 }
@@ -58,6 +61,7 @@ impl Counters {
         for (count, more) in pairs {
             count.fetch_add(more.load(Ordering::Relaxed), Ordering::Relaxed);
         }
+        self.kernels.add(&other.kernels);
     }
 
     /// Returns these counts with the stages of the evaluation.
@@ -81,6 +85,12 @@ impl Counters {
     /// Returns the number of cells that the descent visited.
     pub(in crate::merge) fn cells_visited(&self) -> usize {
         usize::try_from(self.cells.load(Ordering::Relaxed)).unwrap_or(usize::MAX)
+    }
+
+    /// Returns how often the arrangement, and each kernel in the cells of the descent, was asked and refused.
+    pub fn kernel_counts(&self) -> [KernelCount; 4] {
+        let [orthogonal, general, trees] = self.kernels.counts();
+        [self.profile.arrangement(), orthogonal, general, trees]
     }
 
     /// Returns the counts, each with its name.

@@ -486,7 +486,7 @@ impl<'a> Descent<'a> {
             sources: self.sources,
         };
         let mut overlapping = Vec::new();
-        let node = problem.solve_by(kernels, &mut overlapping);
+        let node = problem.solve_by(kernels, &self.counters.kernels, &mut overlapping);
         self.record_overlaps(&overlapping)?;
         Ok(node.map(|node| {
             self.counters.count_leaf(total);

@@ -4,6 +4,7 @@
 //! `merge/descent/descend.rs` also asks single kernels about larger cells, which `merge/descent/choice.rs`
 //! chooses.
 
+pub mod counts;
 pub mod general;
 pub(super) mod kept;
 pub mod orthogonal;

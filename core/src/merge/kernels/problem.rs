@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::counts::{KernelCounters, KernelName, Refusal};
 use crate::geometry::cell::Cell;
 use crate::merge::expression::Expression;
 use crate::merge::lists::list::{List, Sources};
@@ -41,6 +42,7 @@ pub struct ListedOperand<'a> {
 /// ```
 /// use bspcsg::geometry::cell::Cell;
 /// use bspcsg::merge::expression::{Expression, Term};
+/// use bspcsg::merge::kernels::counts::{KernelCounters, KernelName, Refusal};
 /// use bspcsg::merge::kernels::problem::{CellProblem, Kernel};
 /// use bspcsg::merge::kernels::ALL;
 /// use bspcsg::merge::lists::list::Sources;
@@ -51,8 +53,13 @@ pub struct ListedOperand<'a> {
 /// struct Empty;
 ///
 /// impl Kernel for Empty {
-///     fn solve(&self, problem: &CellProblem, _: &mut Vec<u32>) -> Option<Node> {
-///         problem.operands.is_empty().then(|| Node::Leaf(0))
+///     fn name(&self) -> KernelName {
+///         KernelName::Trees
+///     }
+///
+///     fn solve(&self, problem: &CellProblem, _: &mut Vec<u32>) -> Result<Node, Refusal> {
+///         let empty = problem.operands.is_empty();
+///         empty.then(|| Node::Leaf(0)).ok_or(Refusal::Operands)
 ///     }
 /// }
 ///
@@ -63,21 +70,34 @@ pub struct ListedOperand<'a> {
 ///     operands: Vec::new(),
 ///     sources: &Sources::new(Default::default()),
 /// };
-/// let left = problem.solve_by(&[&Empty, ALL[0]], &mut Vec::new());
+/// let counters = KernelCounters::default();
+/// let left = problem.solve_by(&[&Empty, ALL[0]], &counters, &mut Vec::new());
 /// assert!(matches!(left, Some(Node::Leaf(0))));
 /// # Ok::<(), bspcsg::error::Error>(())
 /// ```
 pub trait Kernel {
-    /// Returns the result in the cell; `None` if the kernel refuses the cell. In both cases adds to
+    /// Returns the name under which the kernel's answers are counted.
+    fn name(&self) -> KernelName;
+
+    /// Returns the result in the cell, or the reason why the kernel refuses the cell. In both cases adds to
     /// `overlapping` the numbers of operands found to overlap themselves.
-    fn solve(&self, problem: &CellProblem, overlapping: &mut Vec<u32>) -> Option<Node>;
+    fn solve(&self, problem: &CellProblem, overlapping: &mut Vec<u32>) -> Result<Node, Refusal>;
 }
 
 impl CellProblem<'_> {
-    /// Returns the result of the first kernel that does not refuse the cell; `None` if all do.
-    pub fn solve_by(&self, kernels: &[&dyn Kernel], overlapping: &mut Vec<u32>) -> Option<Node> {
-        let mut answers = kernels.iter().map(|kernel| kernel.solve(self, overlapping));
-        answers.find_map(|answer| answer)
+    /// Returns the result of the first kernel that does not refuse the cell; `None` if all do. Counts each
+    /// kernel's answer.
+    pub fn solve_by(
+        &self,
+        kernels: &[&dyn Kernel],
+        counters: &KernelCounters,
+        overlapping: &mut Vec<u32>,
+    ) -> Option<Node> {
+        kernels.iter().find_map(|kernel| {
+            let answer = kernel.solve(self, overlapping);
+            counters.record(kernel.name(), answer.as_ref().err().copied());
+            answer.ok()
+        })
     }
 }
 
@@ -92,15 +112,23 @@ mod tests {
     struct Answers(i32);
 
     impl Kernel for Refuses {
-        fn solve(&self, _: &CellProblem, overlapping: &mut Vec<u32>) -> Option<Node> {
+        fn name(&self) -> KernelName {
+            KernelName::General
+        }
+
+        fn solve(&self, _: &CellProblem, overlapping: &mut Vec<u32>) -> Result<Node, Refusal> {
             overlapping.push(1);
-            None
+            Err(Refusal::Touching)
         }
     }
 
     impl Kernel for Answers {
-        fn solve(&self, _: &CellProblem, _: &mut Vec<u32>) -> Option<Node> {
-            Some(Node::Leaf(self.0))
+        fn name(&self) -> KernelName {
+            KernelName::Trees
+        }
+
+        fn solve(&self, _: &CellProblem, _: &mut Vec<u32>) -> Result<Node, Refusal> {
+            Ok(Node::Leaf(self.0))
         }
     }
 
@@ -108,11 +136,17 @@ mod tests {
     fn the_first_kernel_that_takes_a_cell_answers() {
         let (scene, expression) = (crossing(), both(Term::And));
         let problem = scene.problem(&expression);
-        let mut seen = Vec::new();
-        let left = problem.solve_by(&[&Refuses, &Answers(1), &Answers(0)], &mut seen);
+        let (counters, mut seen) = (KernelCounters::default(), Vec::new());
+        let left = problem.solve_by(&[&Refuses, &Answers(1), &Answers(0)], &counters, &mut seen);
         assert!(matches!(left, Some(Node::Leaf(1))));
         // Overlaps are recorded even if the cell is not solved.
-        assert!(problem.solve_by(&[&Refuses], &mut seen).is_none());
+        let none = problem.solve_by(&[&Refuses], &counters, &mut seen);
+        assert!(none.is_none());
         assert_eq!(seen, [1, 1]);
+        let [orthogonal, general, trees] = counters.counts();
+        assert_eq!(orthogonal.asked(), 0);
+        assert_eq!((general.asked(), general.took), (2, 0));
+        assert_eq!(general.refused, [("faces touch without crossing", 2)]);
+        assert_eq!((trees.took, trees.refused.len()), (1, 0));
     }
 }

@@ -18,6 +18,7 @@ mod trace;
 
 use smallvec::SmallVec;
 
+use super::counts::{KernelName, Refusal};
 use super::kept::{assemble, KeptPart};
 use super::problem::{CellProblem, Kernel};
 use crate::merge::rule::Rule;
@@ -43,19 +44,19 @@ type PieceLabels = SmallVec<[Labels; 2]>;
 pub struct GeneralPosition;
 
 impl Kernel for GeneralPosition {
-    fn solve(&self, problem: &CellProblem, overlapping: &mut Vec<u32>) -> Option<Node> {
+    fn name(&self) -> KernelName {
+        KernelName::General
+    }
+
+    fn solve(&self, problem: &CellProblem, overlapping: &mut Vec<u32>) -> Result<Node, Refusal> {
+        check(problem)?;
         let operands = &problem.operands;
-        let simple = operands.iter().all(|l| (0..=1).contains(&l.list.corner));
-        let some = (2..=MAX_OPERANDS).contains(&operands.len());
-        if problem.rule != Rule::Positive || !simple || !some {
-            return None;
-        }
         let scene = Scene::new(problem.cell, operands, problem.sources);
         let found = kept_and_corner(&scene, problem);
         overlapping.extend(scene.overlapping.get().map(|k| operands[*k].number));
         let (kept, corner) = found?;
         let touching = operands.iter().any(|l| l.list.is_touching());
-        Some(assemble(
+        Ok(assemble(
             kept,
             corner,
             touching,
@@ -65,19 +66,36 @@ impl Kernel for GeneralPosition {
     }
 }
 
-/// Returns the parts of the operands' faces that bound the result, and the expression's value at the cell's
-/// corner (1 for inside); `None` if the kernel refuses the cell.
-fn kept_and_corner(scene: &Scene, problem: &CellProblem) -> Option<(Vec<KeptPart>, i32)> {
+/// Refuses a cell with another rule than w > 0, with too few or too many operands, or with an operand whose
+/// winding number at the corner shows that it overlaps itself.
+fn check(problem: &CellProblem) -> Result<(), Refusal> {
     let operands = &problem.operands;
-    let statuses = scene.cut_statuses()?;
-    let labels = scene.labels(&statuses)?;
+    if problem.rule != Rule::Positive {
+        return Err(Refusal::Rule);
+    }
+    if !(2..=MAX_OPERANDS).contains(&operands.len()) {
+        return Err(Refusal::Operands);
+    }
+    let simple = operands.iter().all(|l| (0..=1).contains(&l.list.corner));
+    simple.then_some(()).ok_or(Refusal::Overlap)
+}
+
+/// Returns the parts of the operands' faces that bound the result, and the expression's value at the cell's
+/// corner (1 for inside).
+fn kept_and_corner(scene: &Scene, problem: &CellProblem) -> Result<(Vec<KeptPart>, i32), Refusal> {
+    let operands = &problem.operands;
+    let statuses = scene.cut_statuses().ok_or(Refusal::Touching)?;
+    let labels = scene.labels(&statuses).ok_or_else(|| {
+        let overlap = scene.overlapping.get();
+        overlap.map_or(Refusal::Doubtful, |_| Refusal::Overlap)
+    })?;
     let operand_index = |number: u32| operands.partition_point(|l| l.number < number);
     let scratch = &mut Vec::new();
     let expression = problem.expression;
     let mut value = |bits: Labels| expression.value(|k| bits >> operand_index(k) & 1 == 1, scratch);
     let corner = i32::from(value(scene.at_corner()));
     let kept = scene.keep(statuses, &labels, &mut value);
-    Some((kept, corner))
+    Ok((kept, corner))
 }
 
 #[cfg(test)]
@@ -106,7 +124,8 @@ mod tests {
         let expression = both(Term::Or);
         let problem = scene.problem(&expression);
         let mut seen = Vec::new();
-        assert!(GeneralPosition.solve(&problem, &mut seen).is_none());
+        let refused = GeneralPosition.solve(&problem, &mut seen).err();
+        assert_eq!(refused, Some(Refusal::Touching));
         assert!(seen.is_empty());
     }
 
@@ -123,7 +142,8 @@ mod tests {
         let expression = Expression::new(terms.collect()).expect("well formed");
         let mut seen = Vec::new();
         let problem = scene.problem(&expression);
-        assert!(GeneralPosition.solve(&problem, &mut seen).is_none());
+        let refused = GeneralPosition.solve(&problem, &mut seen).err();
+        assert_eq!(refused, Some(Refusal::Overlap));
         assert_eq!(seen, [2]);
     }
 }

@@ -12,6 +12,7 @@ mod labels;
 mod pieces;
 mod position;
 
+use super::counts::{KernelName, Refusal};
 use super::kept::{assemble, KeptPart};
 use super::problem::{CellProblem, Kernel, ListedOperand};
 use crate::merge::expression::Expression;
@@ -32,24 +33,28 @@ const MAX_WORDS: usize = 1 << 18;
 pub struct Orthogonal;
 
 impl Kernel for Orthogonal {
-    fn solve(&self, problem: &CellProblem, _: &mut Vec<u32>) -> Option<Node> {
+    fn name(&self) -> KernelName {
+        KernelName::Orthogonal
+    }
+
+    fn solve(&self, problem: &CellProblem, _: &mut Vec<u32>) -> Result<Node, Refusal> {
         let CellProblem { cell, sources, .. } = *problem;
         let (kept, corner) = kept_and_corner(problem)?;
-        Some(assemble(kept, corner, true, cell, sources))
+        Ok(assemble(kept, corner, true, cell, sources))
     }
 }
 
 /// Returns the parts of the operands' faces that bound the result, and the expression's value at the cell's
-/// corner (1 for inside); `None` if the kernel refuses the cell.
-fn kept_and_corner(problem: &CellProblem) -> Option<(Vec<KeptPart>, i32)> {
+/// corner (1 for inside).
+fn kept_and_corner(problem: &CellProblem) -> Result<(Vec<KeptPart>, i32), Refusal> {
     let operands = &problem.operands;
-    let facets = Facets::new(problem.cell, operands, problem.sources)?;
-    let grid = Grid::new(problem.cell, &facets)?;
+    let facets = Facets::new(problem.cell, operands, problem.sources).ok_or(Refusal::Slanted)?;
+    let grid = Grid::new(problem.cell, &facets).ok_or(Refusal::Fine)?;
     if operands.len() * grid.columns() > MAX_WORDS {
-        return None;
+        return Err(Refusal::Fine);
     }
     let positions: Vec<FacetPosition> = facets.all.iter().map(|f| f.position(&grid)).collect();
-    let fields = fields(&grid, &facets, &positions, operands)?;
+    let fields = fields(&grid, &facets, &positions, operands).ok_or(Refusal::Overlap)?;
     let operand_indices = operand_indices(operands);
     let value = value(
         problem.expression,
@@ -67,8 +72,8 @@ fn kept_and_corner(problem: &CellProblem) -> Option<(Vec<KeptPart>, i32)> {
         expression: problem.expression,
         operand_indices: &operand_indices,
     };
-    let kept = scene.keep()?;
-    Some((kept, i32::from(value[0] & 1 != 0)))
+    let kept = scene.keep().ok_or(Refusal::Overlap)?;
+    Ok((kept, i32::from(value[0] & 1 != 0)))
 }
 
 /// Returns for each operand the boxes of the grid that are inside it, as a word of bits for each column along
@@ -137,6 +142,7 @@ mod tests {
     fn slanted_faces_are_left_to_others() {
         let (scene, expression) = (crossing(), both(Term::Or));
         let problem = scene.problem(&expression);
-        assert!(Orthogonal.solve(&problem, &mut Vec::new()).is_none());
+        let refused = Orthogonal.solve(&problem, &mut Vec::new()).err();
+        assert_eq!(refused, Some(Refusal::Slanted));
     }
 }

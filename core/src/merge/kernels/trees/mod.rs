@@ -11,6 +11,7 @@ mod local_tree;
 mod operand;
 mod overlay;
 
+use super::counts::{KernelName, Refusal};
 use super::kept::{assemble, KeptPart};
 use super::problem::{CellProblem, Kernel, ListedOperand};
 use crate::geometry::polygon::Polygon;
@@ -39,14 +40,18 @@ pub(in crate::merge) struct Piece {
 }
 
 impl Kernel for LocalTrees {
-    fn solve(&self, problem: &CellProblem, overlapping: &mut Vec<u32>) -> Option<Node> {
+    fn name(&self) -> KernelName {
+        KernelName::Trees
+    }
+
+    fn solve(&self, problem: &CellProblem, overlapping: &mut Vec<u32>) -> Result<Node, Refusal> {
         let CellProblem { cell, sources, .. } = *problem;
         let operand = |l: &ListedOperand| Operand::new(l.number, &l.list, cell, sources);
         let operands: Vec<Operand> = problem.operands.iter().map(operand).collect();
         let overlaps = |o: &&Operand| !o.simple;
         overlapping.extend(operands.iter().filter(overlaps).map(|o| o.number));
         let (kept, corner) = keep_all(&operands, problem.expression, problem.rule);
-        Some(assemble(kept, corner, true, cell, sources))
+        Ok(assemble(kept, corner, true, cell, sources))
     }
 }
 
