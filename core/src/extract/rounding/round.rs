@@ -16,7 +16,7 @@ use crate::extract::assemble::assemble_patches;
 use crate::extract::joining::patches::Patches;
 use crate::extract::mesh::{numbers_left, Corner, ExactMesh, Mesh};
 use crate::extract::order::put_in_order;
-use crate::extract::surface::passing::passing;
+use crate::extract::surface::passing::{passing, share_more_than_points};
 use crate::extract::surface::Surface;
 use crate::geometry::doubles::bit_key;
 use crate::geometry::plane::Lattice;
@@ -157,7 +157,9 @@ fn settle_mesh(
         let snapped = places.iter().map(|p| snap_point(solid.pitch(), p));
         snapped.flatten().collect()
     };
-    let settled = if found.is_empty() || is_simple(solid, &seem_to_cross())? {
+    // What meets in points only before rounding does not overlap; the question about the whole solid is dear.
+    let crosses_before = share_more_than_points(surface, &found.crossings);
+    let settled = if !crosses_before || is_simple(solid, &seem_to_cross())? {
         let passing = passing(surface, &found.crossings);
         if let Some(divided) = surface.patches().divided(&passing, sources) {
             return Ok(Settling::Divided(divided));

@@ -86,6 +86,13 @@ pub fn passing(surface: &Surface, pairs: &[[u32; 2]]) -> Vec<EdgeContact> {
         .collect()
 }
 
+/// Returns true if two triangles of a pair have a segment in common, or may have an area in common.
+pub fn share_more_than_points(surface: &Surface, pairs: &[[u32; 2]]) -> bool {
+    let are_coplanar = |[t, u]: &[u32; 2]| surface.sides(*t, *u) == [Side::On; 3];
+    let mut pairs = pairs.iter();
+    pairs.any(|pair| are_coplanar(pair) || Meeting::of(surface, *pair).is_some())
+}
+
 /// Returns the contacts at which all walls of two pairs are divided; a corner of `hull` or a point between
 /// its corners is on each point of the segment that the pairs share.
 pub fn contacts_of(
