@@ -181,12 +181,21 @@ def test_a_profile_tells_the_stages_and_why_work_was_handed_on() -> None:
     assert [(k.name, k.asked, k.took) for k in pair.kernels] == [
         *[("arrangement", 1, 1), ("orthogonal", 0, 0), ("general", 0, 0), ("trees", 0, 0)]
     ]
-    step = (b.cube(2) - b.cube(1) - b.cube(1).translate(1.5, 1.5, 1.5)).profile()
+    made = cube - b.cube(1).translate(-0.5, -0.5, -0.5)
+    assert made.volume == 7.875
+    step = (made - b.cube(1).translate(1.5, 1.5, 1.5)).profile()
     assert [stage.name for stage in step.stages] == ["descent"]
-    assert "two different, unchanged" in str(step)
+    assert "different, unchanged input meshes" in str(step)
     assert "orthogonal: asked 1, took 1\n" in str(step)
     (reason,) = step.kernels[0].refused
-    assert "two different, unchanged" in reason and step.kernels[0].took == 0
+    assert "different, unchanged input meshes" in reason and step.kernels[0].took == 0
+    three = (cube - b.cube(1) - b.cube(1).translate(1.5, 1.5, 1.5)).profile()
+    assert three.handed_on is None and three.kernels[0].took == 1
+    vertices, faces = cube.to_mesh().vertices, cube.to_mesh().faces
+    twice = b.Solid(np.vstack([vertices, vertices + 1]), np.vstack([faces, faces + 8]))
+    resolved = (twice - b.cube(1).translate(1.5, 1.5, 1.5)).profile()
+    assert "own pairs" in [stage.name for stage in resolved.stages]
+    assert "pairs of faces" in str(resolved)
     apart = (cube | b.cube(1).translate(5, 5, 5)).profile()
     assert "do not overlap" in (apart.handed_on or "")
     assert (

@@ -68,7 +68,7 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
     let expression = merged.as_ref().unwrap_or(expression);
     let mut operands: Vec<Solid> = solids.iter().map(bounding).collect();
     let mut profile = Profile::default();
-    let reason = match evaluate_imported_pair(expression, &operands, pitch, &mut profile) {
+    let reason = match evaluate_imported_meshes(expression, &operands, pitch, &mut profile) {
         Ok((solid, counters)) => return Ok((solid, counters.with(profile))),
         Err(reason) => reason,
     };
@@ -125,9 +125,9 @@ fn unite_operands(operands: &mut [Solid], numbers: &[usize], profile: &mut Profi
     Ok(())
 }
 
-/// Evaluates an expression over two meshes as they were imported, by comparing all their faces at once; the
+/// Evaluates an expression over a few meshes as they were imported, by comparing all their faces at once; the
 /// error is the reason why this is not possible.
-fn evaluate_imported_pair(
+fn evaluate_imported_meshes(
     expression: &Expression,
     operands: &[Solid],
     pitch: Pitch,

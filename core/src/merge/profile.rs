@@ -14,19 +14,19 @@ pub struct Stage {
     pub count: usize,
 }
 
-/// A reason why a Boolean expression over two meshes cannot be evaluated by comparing all their faces at
+/// A reason why a Boolean expression over a few meshes cannot be evaluated by comparing all their faces at
 /// once, so that the descent through cells evaluates it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Declined {
-    /// The expression is not over two different meshes as they were imported.
+    /// The expression is not over two to four different meshes as they were imported.
     Operands,
-    /// The bounding boxes of the two meshes are disjoint.
+    /// The bounding boxes of all meshes are disjoint.
     Apart,
-    /// The two meshes touch nearly everywhere, as revisions of one mesh do.
+    /// Two of the meshes touch nearly everywhere, as revisions of one mesh do.
     AllOver,
     /// The boxes of faces overlap in too many pairs.
     Crowded,
-    /// The operand with this index (0 or 1) overlaps itself near faces of the other operand.
+    /// The operand with this index overlaps itself in too many places to compare its faces with each other.
     Overlap(usize),
     /// A face is too thin to choose a point in front of it at which to count the winding number.
     Thin,
@@ -55,11 +55,11 @@ impl Declined {
     /// Returns the reason as a text for people.
     pub fn text(self) -> &'static str {
         match self {
-            Self::Operands => "the operands are not two different, unchanged input meshes",
+            Self::Operands => "the operands are not two to four different, unchanged input meshes",
             Self::Apart => "the bounding boxes of the meshes do not overlap",
             Self::AllOver => "the meshes touch nearly everywhere",
             Self::Crowded => "the faces are too dense: their bounding boxes do not separate them",
-            Self::Overlap(_) => "a mesh overlaps itself where the other one meets it",
+            Self::Overlap(_) => "a mesh overlaps itself in too many places",
             Self::Thin => "faces are too thin to count winding numbers in front of them",
             Self::Defect => "a segment left its face, which is a defect",
         }

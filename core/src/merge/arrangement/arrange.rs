@@ -22,7 +22,7 @@ pub(super) fn arrange(
         match profile.timed("faces", || scene.root(found), leaf_len) {
             Err(Declined::Overlap(k)) if may_overlap(k) && !scene.kept.is_resolved(k) => {
                 let count = |found: &Result<usize, Declined>| found.unwrap_or(0);
-                profile.timed("own contacts", || scene.resolve(k, found), count)?;
+                profile.timed("own pairs", || scene.resolve(k, found), count)?;
             }
             root => return root,
         }

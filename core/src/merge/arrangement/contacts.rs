@@ -138,37 +138,6 @@ enum MeetingKind {
     Touching(Box<Touching>),
 }
 
-/// Finds the contacts between the candidate faces of two operands.
-///
-/// # Errors
-/// `Crowded` if more than `MAX_PAIRS_PER_FACE` pairs of boxes meet for each face.
-pub(super) fn contacts_between(
-    facets: &Facets,
-    candidates: &[Candidates; 2],
-    work_size: WorkSize,
-) -> Result<Contacts, Declined> {
-    let [first, second] = candidates;
-    let left =
-        AtomicUsize::new(MAX_PAIRS_PER_FACE * (first.triangles.len() + second.triangles.len()));
-    let facet = |k: usize| {
-        let candidates = &candidates[k];
-        move |i: u32| {
-            let number = facets.number(k, candidates.faces[i as usize]);
-            (number, candidates.triangles[i as usize])
-        }
-    };
-    let visit = |block: &[[u32; 2]]| -> Result<Vec<MeetingFacets>, Declined> {
-        let take = |left: usize| left.checked_sub(block.len());
-        left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take)
-            .map_err(|_| Declined::Crowded)?;
-        Ok(meeting_facets(block, facet(0), facet(1)))
-    };
-    let met = first.tree.each_block(&second.tree, work_size, visit)?;
-    let mut contacts = Contacts::default();
-    contacts.add(facets, met);
-    Ok(contacts)
-}
-
 /// Intersects pairs of facets; `first` and `second` return the facets of a pair, with their corners.
 fn meeting_facets(
     pairs: &[[u32; 2]],
@@ -198,6 +167,38 @@ impl Contacts {
     /// Returns the number of segments, counted once for each facet that they divide.
     pub(super) fn len(&self) -> usize {
         self.segments.len()
+    }
+
+    /// Adds the contacts between the candidate faces of two operands.
+    ///
+    /// # Errors
+    /// `Crowded` if more than `MAX_PAIRS_PER_FACE` pairs of boxes meet for each face.
+    pub(super) fn add_between(
+        &mut self,
+        facets: &Facets,
+        operands: [usize; 2],
+        candidates: &[Candidates; 2],
+        work_size: WorkSize,
+    ) -> Result<(), Declined> {
+        let [first, second] = candidates;
+        let left =
+            AtomicUsize::new(MAX_PAIRS_PER_FACE * (first.triangles.len() + second.triangles.len()));
+        let facet = |k: usize| {
+            let candidates = &candidates[k];
+            move |i: u32| {
+                let number = facets.number(operands[k], candidates.faces[i as usize]);
+                (number, candidates.triangles[i as usize])
+            }
+        };
+        let visit = |block: &[[u32; 2]]| -> Result<Vec<MeetingFacets>, Declined> {
+            let take = |left: usize| left.checked_sub(block.len());
+            left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take)
+                .map_err(|_| Declined::Crowded)?;
+            Ok(meeting_facets(block, facet(0), facet(1)))
+        };
+        let met = first.tree.each_block(&second.tree, work_size, visit)?;
+        self.add(facets, met);
+        Ok(())
     }
 
     /// Adds the contacts of an operand's own faces, given the pairs of its faces that may overlap, and marks

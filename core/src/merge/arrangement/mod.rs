@@ -1,10 +1,12 @@
-//! Combines two meshes, or unites one mesh with itself, by cutting each face once along all segments in which
+//! Combines a few meshes, or unites one mesh with itself, by cutting each face once along all segments in which
 //! other faces meet it.
 //!
-//! The stages are in files of their own. `pair` (with `sample`, `occupancy` and `candidates`) or `self_union`
-//! finds faces that may meet, and `boxes` pairs of faces whose boxes meet. `contact` and `segments` intersect
-//! these, and `faces` divides each face into cells along the segments. `labels` finds winding numbers, and
-//! `keep_rule` and `scene` make the leaf of the faces that stay.
+//! The stages are in files of their own. `meshes` (with `sample`, `occupancy` and `candidates`) finds faces that
+//! may meet faces of other meshes, `own_pairs` pairs of faces of one mesh, and `boxes` pairs of faces whose boxes
+//! meet. `contact` and `contacts` intersect these, and `faces` divides each face into cells along the segments.
+//! `labels` finds winding numbers, `keep_rule` and `scene` make the leaf of the faces that stay, and `arrange`
+//! repeats this with the own pairs of operands that turn out to overlap themselves. `self_union` arranges one
+//! mesh alone.
 
 mod arrange;
 mod boxes;
@@ -15,9 +17,9 @@ mod faces;
 mod facets;
 mod keep_rule;
 mod labels;
+mod meshes;
 mod occupancy;
 mod own_pairs;
-mod pair;
 mod sample;
 mod scene;
 mod self_union;
@@ -25,7 +27,7 @@ mod shells;
 pub(super) mod star;
 mod windings;
 
-pub use pair::{arranged, Arranged};
+pub use meshes::{arranged, Arranged};
 pub use self_union::{is_simple_mesh, united, United};
 
 /// The number of faces from which it pays to wake the thread pool: they take several milliseconds.

@@ -1,8 +1,8 @@
-//! Evaluates an expression over two meshes as they were imported, by comparing their faces.
+//! Evaluates an expression over a few meshes as they were imported, by comparing their faces.
 
 use super::arrange::arrange;
-use super::candidates::{Candidates, FacesInWindow, Operand};
-use super::contacts::{contacts_between, Contacts};
+use super::candidates::{Candidates, Operand};
+use super::contacts::Contacts;
 use super::facets::Facets;
 use super::keep_rule::KeepRule;
 use super::occupancy::Occupancy;
@@ -17,22 +17,27 @@ use crate::merge::expression::Expression;
 use crate::merge::lists::list::Sources;
 use crate::merge::profile::{Declined, Profile};
 use crate::merge::rule::Rule;
+use crate::mesh::handle::FaceId;
 use crate::mesh::tasks::{both, WorkSize};
 use crate::tree::node::Branch;
 use crate::tree::solid::Solid;
 
-/// The result of an expression over two meshes, and how many faces were compared.
+/// The most meshes that are arranged at once: the table of walls has an entry for each two sets of them, and
+/// each is compared with each other.
+const MAX_MESHES: usize = 4;
+
+/// The result of an expression over meshes, and how many faces were compared.
 #[derive(Debug)]
 pub struct Arranged {
     /// The root of the resulting tree.
     pub root: Branch,
-    /// The number of faces of both meshes that were compared with others.
+    /// The number of faces of all meshes that were compared with others.
     pub compared: usize,
     /// For each operand, whether it was united with itself, too.
-    pub resolved: [bool; 2],
+    pub resolved: Vec<bool>,
 }
 
-/// Evaluates an expression over two meshes as they were imported, and records its stages in `profile`.
+/// Evaluates an expression over two to four meshes as they were imported, and records its stages in `profile`.
 ///
 /// # Errors
 /// The reason why the expression must be evaluated by a descent instead.
@@ -43,21 +48,28 @@ pub fn arranged(
     profile: &mut Profile,
 ) -> Result<Arranged, Declined> {
     let operands = operands(expression, solids, sources).ok_or(Declined::Operands)?;
-    let window = window(operands.each_ref().map(|o| o.bounds)).ok_or(Declined::Apart)?;
     let faces: usize = operands.iter().map(|o| o.mesh.faces.len()).sum();
     let work_size = WorkSize::pool_if(faces >= MIN_FACES_FOR_POOL);
-    let count = |found: &Result<NearFaces, Declined>| found.as_ref().map_or(0, NearFaces::len);
-    let near = profile.timed("candidates", || near(&operands, &window, work_size), count)?;
-    let NearFaces { within, candidates } = near;
-    let facets = Facets::of(operands.into());
+    let search = || near_pairs(&operands, work_size);
+    let count = |found: &Result<Vec<NearPair>, Declined>| {
+        found
+            .as_ref()
+            .map_or(0, |all| all.iter().map(NearPair::len).sum())
+    };
+    let mut pairs = profile.timed("candidates", search, count)?;
+    let near = near_faces(operands.len(), &mut pairs);
+    let facets = Facets::of(operands);
     let count = |found: &Result<Contacts, Declined>| found.as_ref().map_or(0, Contacts::len);
-    let search = || contacts_between(&facets, &candidates, work_size);
+    let search = || contacts_of(&facets, &pairs, work_size);
     let mut found = profile.timed("contacts", search, count)?;
+    let cells = solids.iter().map(|s| s.root().cell);
     let mut scene = Scene {
+        kept: KeepRule::new(expression, solids.len(), Rule::Positive),
         facets,
-        near: within.map(|w| w.faces).into(),
-        cell: solids[0].root().cell.join(&solids[1].root().cell),
-        kept: KeepRule::new(expression, 2, Rule::Positive),
+        near,
+        cell: cells
+            .reduce(|all, cell| all.join(&cell))
+            .ok_or(Declined::Operands)?,
         work_size,
     };
     let may_overlap = |k: usize| !solids[k].is_reduced();
@@ -65,30 +77,51 @@ pub fn arranged(
     Ok(Arranged {
         root,
         compared: scene.near.iter().map(Vec::len).sum(),
-        resolved: [0, 1].map(|k| scene.kept.is_resolved(k)),
+        resolved: (0..solids.len())
+            .map(|k| scene.kept.is_resolved(k))
+            .collect(),
     })
 }
 
-/// For each mesh, the faces in the window (the intersection of both bounding boxes), and the candidates:
-/// faces that may meet faces of the other mesh.
-struct NearFaces {
-    within: [FacesInWindow; 2],
+/// For two operands whose bounding boxes meet, the faces in the window (the intersection of both boxes), and the
+/// candidates: faces that may meet faces of the other operand.
+struct NearPair {
+    operands: [usize; 2],
+    within: [Vec<FaceId>; 2],
     candidates: [Candidates; 2],
 }
 
-impl NearFaces {
+impl NearPair {
     fn len(&self) -> usize {
         self.candidates.iter().map(|c| c.faces.len()).sum()
     }
 }
 
-fn near(
-    operands: &[Operand; 2],
+/// Returns all pairs of operands whose bounding boxes meet, with their near faces.
+fn near_pairs(operands: &[Operand], work_size: WorkSize) -> Result<Vec<NearPair>, Declined> {
+    let mut pairs = Vec::new();
+    for k in 0..operands.len() {
+        for j in 0..k {
+            if let Some(window) = window([j, k].map(|i| operands[i].bounds)) {
+                pairs.push(near_pair(operands, [j, k], &window, work_size)?);
+            }
+        }
+    }
+    if pairs.is_empty() {
+        return Err(Declined::Apart);
+    }
+    Ok(pairs)
+}
+
+fn near_pair(
+    all: &[Operand],
+    numbers: [usize; 2],
     window: &[Point; 2],
     work_size: WorkSize,
-) -> Result<NearFaces, Declined> {
+) -> Result<NearPair, Declined> {
+    let operands = numbers.map(|i| all[i]);
     let within = for_both_operands(work_size, |k| operands[k].faces_in_window(window));
-    sample(operands, &within)?;
+    sample(&operands, &within)?;
     let compared = within.iter().map(|w| w.faces.len()).sum();
     let occupied = for_both_operands(work_size, |k| {
         let triangle = |i: usize| operands[k].triangle(within[k].faces[i]);
@@ -97,7 +130,41 @@ fn near(
     let candidates = for_both_operands(work_size, |k| {
         operands[k].candidates(&within[k], &occupied[1 - k], &window[0])
     });
-    Ok(NearFaces { within, candidates })
+    Ok(NearPair {
+        operands: numbers,
+        within: within.map(|w| w.faces),
+        candidates,
+    })
+}
+
+/// Takes the faces in the windows of all pairs, and returns them for each operand, ascending.
+fn near_faces(operands: usize, pairs: &mut [NearPair]) -> Vec<Vec<FaceId>> {
+    let mut near = vec![Vec::new(); operands];
+    for pair in pairs {
+        for (k, within) in pair.operands.into_iter().zip(&mut pair.within) {
+            if near[k].is_empty() {
+                near[k] = std::mem::take(within);
+            } else {
+                near[k].append(within);
+                near[k].sort_unstable();
+                near[k].dedup();
+            }
+        }
+    }
+    near
+}
+
+/// Finds the contacts between the candidates of all pairs.
+fn contacts_of(
+    facets: &Facets,
+    pairs: &[NearPair],
+    work_size: WorkSize,
+) -> Result<Contacts, Declined> {
+    let mut found = Contacts::default();
+    for pair in pairs {
+        found.add_between(facets, pair.operands, &pair.candidates, work_size)?;
+    }
+    Ok(found)
 }
 
 /// Computes a value for operand 0 and one for operand 1, in parallel if `work_size` says so.
@@ -105,23 +172,24 @@ fn for_both_operands<T: Send>(work_size: WorkSize, value: impl Fn(usize) -> T + 
     both(work_size, || value(0), || value(1)).into()
 }
 
-/// Returns the operands if they are two different meshes as they were imported, and the expression depends on
-/// both; otherwise `None`.
+/// Returns the operands if they are different meshes as they were imported, and the expression depends on all
+/// of them; otherwise `None`.
 fn operands<'a>(
     expression: &Expression,
     solids: &'a [Solid],
     sources: &Sources,
-) -> Option<[Operand<'a>; 2]> {
-    let [first, second] = solids else {
+) -> Option<Vec<Operand<'a>>> {
+    let count = solids.len();
+    if !(2..=MAX_MESHES).contains(&count) || expression.operands().len() != count {
         return None;
-    };
+    }
     let operand = |solid: &'a Solid| {
         let source = solid.whole_mesh().filter(|_| !solid.root().complement)?;
         Operand::new(sources.slot(source), source)
     };
-    let operands = [operand(first)?, operand(second)?];
-    let are_in_order = operands[0].slot < operands[1].slot;
-    (are_in_order && expression.operands() == [0, 1]).then_some(operands)
+    let operands = solids.iter().map(operand).collect::<Option<Vec<_>>>()?;
+    let are_in_order = operands.windows(2).all(|pair| pair[0].slot < pair[1].slot);
+    are_in_order.then_some(operands)
 }
 
 /// Returns the intersection of two boxes as its low and its high corner; `None` if they are disjoint.
