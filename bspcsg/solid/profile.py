@@ -28,7 +28,7 @@ class Stage:
         A key of `COUNTED`, whose value there says what `count` counts.
     seconds : float
     count : int
-        The number of faces, pairs of faces, segments or cells that the stage found, made or visited.
+        The number of faces, pairs, segments or cells that the stage found, made or visited.
     """
 
     name: str

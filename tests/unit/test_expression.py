@@ -206,7 +206,7 @@ def test_a_profile_tells_the_stages_and_why_work_was_handed_on() -> None:
 
 
 def test_a_profile_tells_which_kernels_were_asked_and_why_they_refused() -> None:
-    turned = [b.cube(2).rotate(20 * k, (1, 2, 3)) for k in range(3)]
+    turned = [b.cube(2).rotate(20 * k, (1, 2, 3)) for k in range(5)]
     crossing = b.union(turned).profile()
     orthogonal, general, _ = crossing.kernels[1:]
     assert orthogonal.refused == {"faces not perpendicular to axes": orthogonal.asked}
