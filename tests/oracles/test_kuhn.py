@@ -1,7 +1,7 @@
 """Sets of Kuhn tetrahedra: results of operations against counts of cells, without geometry.
 
 Corners, edges, planes and whole faces are shared at random. Shells are doubled, reversed and
-nested, so that most winding numbers of a mesh are from -2 to 3.
+nested, so that most winding numbers of a mesh are from -2 to 3. Corners of results are integers.
 """
 
 from collections.abc import Callable
@@ -13,19 +13,17 @@ import pytest
 
 import bspcsg as b
 from support import DEEP
-from support.checks import assert_sound
+from support.checks import assert_counts, assert_sound
 from support.kuhn import (
     ORDERS,
     Cells,
     KuhnGrid,
+    Random,
     Shell,
-    Surfaces,
     areas_by_direction,
     reduced,
     tally,
 )
-
-Random = np.random.Generator
 
 OPERATIONS: list[Callable[[Any, Any], Any]] = [or_, and_, sub, xor]
 
@@ -106,16 +104,17 @@ def scene(kind: int, seed: int, count: int) -> tuple[Random, KuhnGrid, list[Oper
 
 
 def assert_is(found: Operand, grid: KuhnGrid) -> None:
-    """Assert that a solid has the cells: by volume, points, and the area of each direction."""
+    """Assert that a solid has the cells: by volume, points, areas of all directions, and counts."""
     solid, cells = found
     assert 6 * solid.volume_exact == int(cells.sum()) * grid.six_volumes
     assert solid.classify(grid.centres).tolist() == np.where(cells, 1, -1).tolist()
     mesh = assert_sound(solid)
-    assert np.allclose(mesh.vertices, np.rint(mesh.vertices), rtol=0, atol=1e-12)
+    assert np.array_equal(mesh.vertices, np.rint(mesh.vertices))
     areas = grid.areas(cells)
     assert areas_by_direction(mesh.vertices, mesh.faces) == areas
     area = sum(count * np.linalg.norm(normal) / 2 for normal, count in areas.items())
     assert solid.area == pytest.approx(area, rel=1e-12)
+    assert_counts(solid, grid.counts(cells))
 
 
 @pytest.mark.sampled(3)
@@ -161,76 +160,31 @@ def made_anew(cells: Cells, grid: KuhnGrid) -> list[b.Solid]:
     ]
 
 
-def equal_sets(seed: int) -> tuple[Random, KuhnGrid, Cells, list[b.Solid]]:
-    """Return solids of the same cells: the result of operations, and others."""
-    rng, grid, operands = scene(4, seed, 3)
-    solid, cells = random_expression(rng, operands)
-    return rng, grid, cells, [solid, ~~solid, *made_anew(cells, grid)]
-
-
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(10)
 @SOME
 def test_equal_sets_are_equal(seed: int) -> None:
-    rng, grid, cells, solids = equal_sets(seed)
+    rng, grid, operands = scene(4, seed, 3)
+    solid, cells = random_expression(rng, operands)
+    solids = [solid, ~~solid, *made_anew(cells, grid)]
     assert all(one.equals(other) for one in solids for other in solids)
+    counts = grid.counts(cells)
+    for solid in solids:
+        assert_counts(solid, counts)
     changed = cells.copy()
     changed[rng.integers(len(changed))] ^= True
     others = made_anew(changed, grid)
     assert not any(one.equals(other) for one in solids for other in others)
 
 
-def assert_counts(solid: b.Solid, cells: Cells, grid: KuhnGrid) -> None:
-    """Assert that the numbers of parts and surfaces are those of the cells."""
-    assert len(solid.components) == grid.part_count(cells)
-    surfaces = grid.surfaces(cells)
-    if surfaces is not None:
-        assert Surfaces(solid.surface_count, solid.euler_number) == surfaces
-
-
-#: The findings about a mesh that is not quite the boundary of the solid.
-FAULTS = {"crossing", "turned", "mended", "collapsed", "flat"}
-
-UNSPLIT = pytest.mark.xfail(
-    strict=False, reason="faces are not divided along edges that parts have in common"
-)
-
-
 @pytest.mark.sampled(3)
 @SOME
-def test_surfaces_of_divided_meshes(seed: int) -> None:
+def test_counts_of_meshes(seed: int) -> None:
     _, grid, (operand,) = scene(0, seed, 1)
-    surfaces = grid.surfaces(operand.cells)
-    if surfaces is not None and surfaces.number:
-        mesh = b.Solid(*grid.mesh(grid.walls(operand.cells))).to_mesh()
-        assert Surfaces(mesh.surface_count, mesh.euler_number) == surfaces
-
-
-@UNSPLIT
-@pytest.mark.sampled(3)
-@MANY
-def test_parts_and_surfaces_of_results(seed: int) -> None:
-    _, grid, (one, other) = scene(1, seed, 2)
-    for merge in OPERATIONS:
-        assert_counts(*one.with_other(merge, other), grid)
-
-
-@UNSPLIT
-@pytest.mark.sampled(3)
-@MANY
-def test_parts_and_surfaces_of_equal_sets(seed: int) -> None:
-    _, grid, cells, solids = equal_sets(seed)
-    for solid in solids:
-        assert_counts(solid, cells, grid)
-
-
-@UNSPLIT
-@pytest.mark.sampled(3)
-@MANY
-def test_nothing_crosses(seed: int) -> None:
-    _, _, (one, other) = scene(1, seed, 2)
-    for merge in OPERATIONS:
-        solid = one.with_other(merge, other).solid.normalized()
-        mesh = solid.to_mesh()
-        assert len(mesh.certificate.crossings) == len(mesh.certificate.flat) == 0
-        assert not FAULTS & {finding.code for finding in solid.findings}
-        assert np.array_equal(mesh.vertices, np.rint(mesh.vertices))
+    cells = operand.cells
+    if cells.any():
+        _, surfaces, euler_number = grid.counts(cells)
+        mesh = b.Solid(*grid.mesh(grid.walls(cells))).to_mesh()
+        if grid.has_twin_edges(cells):
+            assert mesh.surface_count >= surfaces and mesh.euler_number > euler_number
+        else:
+            assert (mesh.surface_count, mesh.euler_number) == (surfaces, euler_number)

@@ -58,6 +58,12 @@ def shift_volume(patch: Patch) -> None:
     )
 
 
+def add_surface(patch: Patch) -> None:
+    """Count one surface too many."""
+    right = b.Solid.surface_count.fget  # type: ignore[attr-defined]
+    patch.setattr(b.Solid, "surface_count", property(lambda self: right(self) + 1))
+
+
 def changed_mesh(change: Callable[[b.Mesh], b.Mesh]) -> Broken:
     """Return a fault that changes every mesh with faces."""
 
@@ -188,6 +194,7 @@ NOTICED: list[tuple[tuple[str, str], dict[str, Any], Broken]] = [
     (EXPRESSIONS, {}, part_coplanar),
     (TETRAHEDRA, {"seed": 0}, turn_point),
     (TETRAHEDRA, {"seed": 0}, shift_volume),
+    (TETRAHEDRA, {"seed": 0}, add_surface),
     (TETRAHEDRA, {"seed": 0}, changed_mesh(triangle_turned)),
     (TETRAHEDRA, {"seed": 0}, swap_operands),
     (TETRAHEDRA, {"seed": 0}, part_coplanar),

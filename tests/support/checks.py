@@ -8,6 +8,9 @@ import bspcsg as b
 
 from .shapes import Faces, Vertices
 
+#: The codes of findings about a mesh that is not quite the boundary of its solid.
+FAULTS = {"crossing", "turned", "mended", "collapsed", "flat", "self_overlap"}
+
 
 def open_edges(faces: Faces) -> list[tuple[int, int]]:
     """Return the directed edges, by vertex indices, that do not have exactly one opposite edge."""
@@ -60,6 +63,15 @@ def assert_sound(solid: "b.Solid") -> "b.Mesh":
     # Rounding moves each vertex by less than a step, so the volume by less than area times that.
     assert abs(mesh.volume - float(solid.volume_exact)) <= mesh.area * 10.0**solid.pitch
     return mesh
+
+
+def assert_counts(solid: "b.Solid", counts: tuple[int, int, int]) -> None:
+    """Assert the numbers of parts, of surfaces and of Euler, and that the mesh has no faults."""
+    assert (len(solid.components), solid.surface_count, solid.euler_number) == counts
+    reduced = solid.normalized()
+    certificate = reduced.to_mesh().certificate
+    assert len(certificate.crossings) == len(certificate.flat) == 0
+    assert not FAULTS & {finding.code for finding in reduced.findings}
 
 
 def facts(mesh: "b.Mesh") -> tuple[int, int, int]:

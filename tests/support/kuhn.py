@@ -2,11 +2,12 @@
 
 Each cube of a grid is divided into six tetrahedra, one for each order of the axes: the corners of a
 tetrahedron are met on the way from the cube's lowest corner along the first, second and third axis.
-A larger cube divided in the same way consists of such tetrahedra, too.
+A larger cube divided in the same way consists of such tetrahedra, too. Up to six walls meet in an
+edge.
 """
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, permutations, product
@@ -20,6 +21,9 @@ from .shapes import Arrays, Vertices, joined
 T = TypeVar("T")
 Integers: TypeAlias = npt.NDArray[np.int64]
 Cells: TypeAlias = npt.NDArray[np.bool_]
+Random: TypeAlias = np.random.Generator
+
+#: Three coordinates; a fourth number tells corners in the same place apart.
 Corner: TypeAlias = tuple[int, ...]
 
 Edge: TypeAlias = tuple[Corner, Corner]
@@ -27,10 +31,16 @@ Edge: TypeAlias = tuple[Corner, Corner]
 #: Corners of a triangle, counter-clockwise seen from outside; the least one comes first.
 Triangle: TypeAlias = tuple[Corner, Corner, Corner]
 
+#: An edge and the two walls that are connected there.
+Meeting: TypeAlias = tuple[Edge, Triangle, Triangle]
+
 ORDERS = list(permutations(range(3)))
 
 #: The faces of a tetrahedron with positive volume, as places in the list of its corners.
 _FACES = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]
+
+#: Edges can be divided at multiples of this part of their length, and walls at their centres.
+STEPS = 12
 
 
 class Shell(NamedTuple):
@@ -63,9 +73,11 @@ class Tetrahedron(NamedTuple):
     @property
     def corners(self) -> list[Corner]:
         """The four corners, in such an order that the volume is positive."""
-        steps = [np.isin(range(3), self.order[:k]) * self.size for k in range(4)]
-        found = [tuple(int(x) for x in self.low + step) for step in steps]
-        is_even = np.linalg.det(np.eye(3)[list(self.order)]) > 0
+        first, second, _ = self.order
+        found = [self.low]
+        for axis in self.order:
+            found.append(tuple(x + self.size * (k == axis) for k, x in enumerate(found[-1])))
+        is_even = (first + 1) % 3 == second
         return found if is_even else [found[k] for k in (0, 2, 1, 3)]
 
     @property
@@ -100,10 +112,11 @@ def tally(shells: Iterable[Shell]) -> Counter[Triangle]:
     return sum((shell.faces for shell in shells), Counter())
 
 
-class Surfaces(NamedTuple):
-    """The number of connected surfaces, and vertices minus edges plus faces."""
+class Counts(NamedTuple):
+    """Numbers of a set: parts, connected surfaces, and vertices minus edges plus faces."""
 
-    number: int
+    parts: int
+    surfaces: int
     euler_number: int
 
 
@@ -154,9 +167,10 @@ class KuhnGrid:
 
     def mesh(self, faces: Iterable[Triangle]) -> Arrays:
         """Return triangles as a mesh; equal corners are one vertex."""
-        corners = np.array(list(faces), np.int64).reshape(-1, 3)
-        vertices, numbers = np.unique(corners, axis=0, return_inverse=True)
-        return (vertices @ self.frame.T).astype(np.float64), numbers.reshape(-1, 3)
+        corners = np.array([*faces] or np.empty((0, 3, 3)), np.int64)
+        rows = corners.reshape(-1, corners.shape[-1])
+        vertices, numbers = np.unique(rows, axis=0, return_inverse=True)
+        return (vertices[:, :3] @ self.frame.T).astype(np.float64), numbers.reshape(-1, 3)
 
     def shells_apart(self, shells: Iterable[Shell]) -> Arrays:
         """Return shells as one mesh in which no two shells have a vertex in common."""
@@ -170,35 +184,38 @@ class KuhnGrid:
         """Return the areas of the boundary of a set by direction (see `areas_by_direction`)."""
         return areas_by_direction(*self.mesh(self.walls(inside)))
 
-    def part_count(self, inside: Cells) -> int:
-        """Return the number of parts of a set; cells with a common face are connected."""
-        parts = Classes[int]()
-        for cell, other in self._sides(inside).values():
-            parts.join(cell, other)
-        return parts.count(np.flatnonzero(inside).tolist())
+    def counts(self, inside: Cells) -> Counts:
+        """Return the numbers of parts and surfaces and the Euler number of a set.
 
-    def surfaces(self, inside: Cells) -> Surfaces | None:
-        """Return the numbers of surfaces and the Euler number of a set; None if a mesh decides.
-
-        Two walls are connected at an edge if cells between them are connected around it. So parts
-        that touch only in an edge or a vertex have separate surfaces. If an edge has two copies
-        then, and these have a common end, it depends on the mesh: two edges of a mesh cannot have
-        both ends in common.
+        Cells with a common face are connected. Two walls are connected at an edge if they bound the
+        same wedge of the inside around it; so parts that touch only in an edge or a vertex have
+        separate surfaces. An edge counts once for each wedge, and a vertex once for each fan of
+        walls that are connected at its edges. These numbers depend on the set alone and are
+        defined for every set; those of a mesh can be larger (see `has_twin_edges`).
         """
+        parts, surfaces = Classes[int](), Classes[Triangle]()
+        for sides in self._sides(inside).values():
+            parts.join(*sides)
         walls, meetings = self.walls(inside), self._meetings(inside)
-        surfaces, fans = Classes[Triangle](), Classes[tuple[Triangle, Corner]]()
-        for edge, wall, other in meetings:
+        for _, wall, other in meetings:
             surfaces.join(wall, other)
-            for corner in edge:
-                fans.join((wall, corner), (other, corner))
-        corners = [(edge, wall, corner) for edge, wall, _ in meetings for corner in edge]
-        ends = {(edge, fans.find((wall, corner))) for edge, wall, corner in corners}
-        if len(ends) < len(corners):
-            return None
-        vertices = fans.count((wall, corner) for wall in walls for corner in wall)
-        return Surfaces(surfaces.count(walls), vertices - len(meetings) + len(walls))
+        vertices = _fans(meetings).count((wall, corner) for wall in walls for corner in wall)
+        euler_number = vertices - len(meetings) + len(walls)
+        count = parts.count(np.flatnonzero(inside).tolist())
+        return Counts(count, surfaces.count(walls), euler_number)
 
-    def _meetings(self, inside: Cells) -> list[tuple[Edge, Triangle, Triangle]]:
+    def has_twin_edges(self, inside: Cells) -> bool:
+        """Return true if two edges of the boundary have both ends in common.
+
+        No mesh can have such edges, so its vertices are doubled there, and perhaps its surfaces
+        are parted.
+        """
+        meetings = self._meetings(inside)
+        fans = _fans(meetings)
+        ends = {tuple(fans.find((wall, end)) for end in edge) for edge, wall, _ in meetings}
+        return len(ends) < len(meetings)
+
+    def _meetings(self, inside: Cells) -> list[Meeting]:
         """Return the edges in which two walls are connected, with these walls."""
         wedges = Classes[tuple[int, Edge]]()
         for face, (cell, other) in self._sides(inside).items():
@@ -222,6 +239,15 @@ class KuhnGrid:
 
 def _edges(face: Triangle) -> list[Edge]:
     return list(combinations(sorted(face), 2))
+
+
+def _fans(meetings: list[Meeting]) -> "Classes[tuple[Triangle, Corner]]":
+    """Return the corners of walls, joined where walls are connected."""
+    fans = Classes[tuple[Triangle, Corner]]()
+    for edge, wall, other in meetings:
+        for corner in edge:
+            fans.join((wall, corner), (other, corner))
+    return fans
 
 
 class Classes(Generic[T]):
@@ -259,3 +285,52 @@ def areas_by_direction(vertices: Vertices, faces: Integers) -> Counter[Corner]:
     for direction, length in zip(directions, lengths.tolist(), strict=True):
         total[tuple(direction)] += length
     return total
+
+
+def divided(grid: KuhnGrid, inside: Cells, rng: Random, *, apart: bool) -> Arrays:
+    """Return the mesh of a set's walls, which are paired at random around each edge.
+
+    The walls of a pair have the same vertices inside their edge, other pairs have others; with
+    `apart`, even where these are in the same places. Each wall is a fan around its centre. The
+    frame of the grid must consist of multiples of `STEPS`.
+    """
+    walls = list(grid.walls(inside))
+    between = _vertices_inside_edges(walls, rng, apart=apart)
+    faces: list[Triangle] = []
+    for wall in walls:
+        centre = (*(np.sum(wall, axis=0) * STEPS // 3).tolist(), 0)
+        rim: list[Corner] = []
+        for start, end in _half_edges(wall):
+            rim += [_on_edge(start, end, 0), *between[wall, start]]
+        faces += [(centre, p, q) for p, q in zip(rim, rim[1:] + rim[:1], strict=True)]
+    return KuhnGrid(grid.side * STEPS, grid.frame // STEPS).mesh(faces)
+
+
+def _half_edges(face: Triangle) -> Iterator[Edge]:
+    return zip(face, (*face[1:], face[0]), strict=True)
+
+
+def _on_edge(start: Corner, end: Corner, steps: int, name: int = 0) -> Corner:
+    """Return the vertex some steps from the start of an edge, in steps of a finer grid."""
+    x, y, z = (STEPS * p + steps * (q - p) for p, q in zip(start, end, strict=True))
+    return x, y, z, name
+
+
+def _vertices_inside_edges(
+    walls: list[Triangle], rng: Random, *, apart: bool
+) -> dict[tuple[Triangle, Corner], list[Corner]]:
+    """Return the vertices inside each edge of each wall, given by where the edge starts there."""
+    at: defaultdict[Edge, list[Triangle]] = defaultdict(list)
+    for wall in walls:
+        for half_edge in _half_edges(wall):
+            at[half_edge].append(wall)
+    inside = {}
+    for start, end in [half_edge for half_edge in at if half_edge[0] < half_edge[1]]:
+        mates = rng.permutation(len(at[end, start])).tolist()
+        for name, (wall, mate) in enumerate(zip(at[start, end], mates, strict=True)):
+            steps = rng.choice(range(1, STEPS), rng.choice((0, 0, 1, 2, 3)), replace=False)
+            places = sorted(steps.tolist())
+            vertices = [_on_edge(start, end, k, name if apart else 0) for k in places]
+            inside[wall, start] = vertices
+            inside[at[end, start][mate], end] = vertices[::-1]
+    return inside
