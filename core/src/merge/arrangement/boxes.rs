@@ -353,7 +353,9 @@ mod tests {
             let visit = |pairs: &[[u32; 2]]| Ok::<_, ()>(pairs.to_vec());
             let found = tree.each_block(&tree, WorkSize::Nothing, visit);
             let mut found = found.expect("no error").concat();
-            found.iter_mut().for_each(|pair| pair.sort_unstable());
+            for pair in &mut found {
+                pair.sort_unstable();
+            }
             found.sort_unstable();
             let met = |i: usize, j: usize| {
                 tree.bounds[i].meets(&tree.bounds[j]) && !tree.slabs[i].miss(&tree.slabs[j])
