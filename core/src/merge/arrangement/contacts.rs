@@ -202,7 +202,7 @@ impl Contacts {
     }
 
     /// Adds the contacts of an operand's own faces, given the pairs of its faces that may overlap, and marks
-    /// its irregular vertices, at which facets may cross although no two faces do.
+    /// its irregular vertices, at which surfaces may cross although no two faces do.
     pub(super) fn add_own(
         &mut self,
         facets: &Facets,
