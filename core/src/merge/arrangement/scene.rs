@@ -246,16 +246,22 @@ impl<'a> Scene<'a> {
                 first[labels.around()] = labels.number_in_front(arrangement)?;
             }
         }
+        // Consecutive faces mostly have the same numbers.
+        let mut numbers = self.zeros();
+        let mut last = (numbers.clone(), self.kept.at(operand, numbers.clone())?);
         for id in &self.near[operand] {
             poll();
-            if fates[id.index()] != Fate::Cut {
-                let mut numbers = self.zeros();
-                for labels in &mut all {
-                    let number = labels.number_at_corners(mesh.vertices_of(*id));
-                    numbers[labels.around()] = number.ok_or(Declined::Thin)?;
-                }
-                fates[id.index()] = Fate::of(self.kept.at(operand, numbers)?, false);
+            if fates[id.index()] == Fate::Cut {
+                continue;
             }
+            for labels in &mut all {
+                let number = labels.number_at_corners(mesh.vertices_of(*id));
+                numbers[labels.around()] = number.ok_or(Declined::Thin)?;
+            }
+            if numbers != last.0 {
+                last = (numbers.clone(), self.kept.at(operand, numbers.clone())?);
+            }
+            fates[id.index()] = Fate::of(last.1, false);
         }
         Ok(())
     }
