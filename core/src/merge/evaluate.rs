@@ -29,8 +29,9 @@ const POOL_AFTER: u64 = 512;
 /// Returns the value of a Boolean expression over solids, and counts of the work.
 ///
 /// A point is inside the result exactly where the expression holds for the operands. If all operands are
-/// reduced (each wall between inside and outside is listed once, and nothing else), so is the result. If an
-/// operand turns out to overlap itself, it is united with itself, and the evaluation restarts.
+/// reduced (each wall between inside and outside is listed once, and nothing else), so is the result. An operand
+/// that turns out to overlap itself is resolved in the arrangement; for a descent it is united with itself, and
+/// the descent restarts.
 ///
 /// # Errors
 /// `PitchMismatch` if the operands live on different lattices.
